@@ -1,0 +1,56 @@
+# Everything a person runs. `make demo` and `make test` set up what they need; nothing else is required
+# than Python 3.11, make and git.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+export HF_HUB_OFFLINE := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test test-fast lint bench bench-decode train-mini qc clean
+
+help: ## list the targets
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
+
+setup: $(READY) ## create .venv with everything installed
+
+$(READY): pyproject.toml
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else f"Python 3.11 to 3.13 is needed, found {v[0]}.{v[1]}: make PYTHON=python3.11 ...")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	@touch $@
+
+demo: setup ## three bundled reports become scenarios; prints where to look
+	$(BIN)/sgcad evaluate docs/demo --config configs/template.yaml --out runs/demo
+
+test: setup ## the whole test suite
+	$(BIN)/python -m pytest
+
+test-fast: setup ## the tests that take no more than seconds
+	$(BIN)/python -m pytest -m "not slow"
+
+bench: setup ## time and share of every stage over the demo reports
+	$(BIN)/python -m benchmarks.stages
+
+bench-decode: setup ## context-aware decoding against greedy, in ratios
+	$(BIN)/python -m benchmarks.decode
+
+train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); goes on from its checkpoint
+	$(BIN)/python -m mini.train --out mini/train --device $(or $(DEVICE),cpu) --budget $(or $(BUDGET),3600)
+
+.venv-qc/.ready:
+	$(PYTHON) -m venv .venv-qc
+	.venv-qc/bin/python -m pip install --quiet --disable-pip-version-check asam-qc-opendrive==1.0.0 asam-qc-openscenarioxml==1.0.0
+	@touch $@
+
+qc: .venv-qc/.ready ## ASAM's checkers over RUNS=runs
+	.venv-qc/bin/python deploy/qc.py $(or $(RUNS),runs)
+
+clean: ## remove environments and caches, never results
+	rm -rf $(VENV) .venv-qc .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+
+lint: setup ## ruff, mypy, import-linter
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
