@@ -1,0 +1,182 @@
+"""One YAML = one experiment: parsed, overridden, checked whole before anything starts.
+
+Flat: one mapping a plugin, its `name` and its fields. Knows the registry; no plugin, no flow.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+import yaml
+from pydantic import ConfigDict, Field, ValidationError
+
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+from sgcad_core.interfaces import (
+    Backbone,
+    Decoder,
+    Plugin,
+    ReportReader,
+    Retriever,
+    RoadWriter,
+    ScenarioWriter,
+    Simulator,
+    Tracker,
+    Validator,
+)
+from sgcad_core.records import Record
+from sgcad_core.registry import plugin_class
+
+SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
+SCALARS = ("seed", "max_attempts", "show_findings")
+OPTIONAL = {"backbone", "decoder"}
+
+
+class Config(Record):
+    """An experiment, ready to run: plugins are built, nothing heavy is loaded."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    name: str
+    seed: int = Field(42, ge=0)
+    max_attempts: int = Field(10, ge=1, le=10)
+    show_findings: bool = True
+    """Findings stand in the next attempt's prompt; false for models too small to read them."""
+    report_reader: ReportReader
+    retriever: Retriever
+    backbone: Backbone | None = None
+    decoder: Decoder | None = None
+    road_writer: RoadWriter
+    scenario_writer: ScenarioWriter
+    validators: tuple[Validator, ...] = ()
+    simulator: Simulator
+    tracker: Tracker
+    raw: dict[str, Any] = Field(repr=False)
+    """The mapping it was built from, for logs, digests and worker processes."""
+
+    def validators_of(self, stage: str) -> tuple[Validator, ...]:
+        """Validators of one stage in the order of the YAML."""
+        return tuple(v for v in self.validators if v.stage == stage)
+
+
+def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
+    """Read a YAML and `key=value` overrides into a checked Config. Raises ConfigError with every fault."""
+    file = _find(Path(path))
+    try:
+        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError, OSError) as fault:
+        raise ConfigError(f"{file}: cannot be read as YAML: {fault}") from fault
+    if not isinstance(raw, dict):
+        raise ConfigError(f"{file}: expected a mapping of plugin kinds, found {type(raw).__name__}")
+    for text in overrides:
+        _override(raw, text)
+    return build(raw, name_of(file), str(file))
+
+
+def name_of(file: Path) -> str:
+    """The config's name in runs/: its path under configs/ without suffix, "/" as "-"."""
+    file = file.resolve()
+    inner = file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
+    return "-".join(inner.with_suffix("").parts)
+
+
+def build(raw: dict[str, Any], name: str, where: str) -> Config:
+    """Build a Config from a mapping. Raises ConfigError listing every fault with its key path."""
+    faults: list[str] = []
+    fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
+    known = {*SINGLE, "validators", *SCALARS}
+    faults += [f"{key}: unknown key; known: {', '.join(sorted(known))}" for key in raw if key not in known]
+    for kind in SINGLE:
+        if raw.get(kind) is None:
+            if kind not in OPTIONAL:
+                faults.append(f"{kind}: missing; give it a `name`")
+        else:
+            fields[kind] = _plugin(kind, raw[kind], kind, faults)
+    validators = raw.get("validators") or []
+    if not isinstance(validators, list):
+        faults.append(f"validators: expected a list, found {validators!r}")
+        validators = []
+    fields["validators"] = tuple(_plugin("validator", v, f"validators[{i}]", faults) for i, v in enumerate(validators))
+    if not faults:
+        faults += _pairing(fields, raw)
+    config = None
+    if not faults:
+        try:
+            config = Config(name=name, raw=raw, **fields)
+        except ValidationError as fault:
+            faults += _lines("", fault)
+    if config is None:
+        raise ConfigError("\n".join([f"{where}: {len(faults)} fault(s)", *(f"  {f}" for f in faults)]))
+    return config
+
+
+def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | None:
+    if isinstance(entry, str):
+        entry = {"name": entry}
+    if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
+        faults.append(f"{path}: expected a mapping with a `name`, found {entry!r}")
+        return None
+    try:
+        return plugin_class(kind, entry["name"])(**{k: v for k, v in entry.items() if k != "name"})
+    except ConfigError as fault:
+        faults.append(f"{path}: {fault}")
+    except ValidationError as fault:
+        faults += _lines(path, fault)
+    return None
+
+
+def _lines(path: str, fault: ValidationError) -> list[str]:
+    return [
+        f"{'.'.join([p for p in (path, *map(str, e['loc'])) if p])}: {e['msg']} (found {e['input']!r})"
+        for e in fault.errors(include_url=False)
+    ]
+
+
+def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
+    """Refuse combinations that cannot work, before any weights load."""
+    faults = []
+    backbone = cast("Backbone | None", fields.get("backbone"))
+    decoder = cast("Decoder | None", fields.get("decoder"))
+    asking = [k for k in ("road_writer", "scenario_writer") if fields[k].asks_model]
+    if asking and backbone is None:
+        faults.append(f"backbone: missing, but {' and '.join(asking)} ask a model")
+    if asking and decoder is None:
+        faults.append("decoder: missing; use `decoder: {name: greedy}`")
+    if backbone and decoder and decoder.needs_prior and not backbone.gives_logits:
+        faults.append(
+            f"decoder {_name(raw['decoder'])!r} needs logits; backbone {_name(raw['backbone'])!r} gives none; "
+            "use decoder 'greedy', or a backbone that gives logits, such as 'hf_vision'"
+        )
+    return faults
+
+
+def _name(entry: Any) -> str:
+    return str(entry["name"] if isinstance(entry, dict) else entry)
+
+
+def _find(path: Path) -> Path:
+    for file in (path, settings.CONFIGS / path, settings.CONFIGS / f"{path}.yaml"):
+        if file.is_file():
+            return file
+    known = ", ".join(sorted(str(f.relative_to(settings.CONFIGS)) for f in settings.CONFIGS.rglob("*.yaml")))
+    raise ConfigError(f"{path}: no such config; in configs/: {known}")
+
+
+def _override(raw: dict[str, Any], text: str) -> None:
+    """Apply one `decoder.alpha=0.3`; values are YAML."""
+    key, found, value = text.partition("=")
+    if not found or not key:
+        raise ConfigError(f"--set {text!r}: expected key=value, such as decoder.alpha=0.3")
+    *parents, last = key.split(".")
+    place = raw
+    for parent in parents:
+        if isinstance(place.get(parent), str):
+            place[parent] = {"name": place[parent]}
+        place = place.setdefault(parent, {})
+        if not isinstance(place, dict):
+            raise ConfigError(f"--set {text!r}: {parent!r} is no mapping")
+    try:
+        place[last] = yaml.safe_load(value)
+    except yaml.YAMLError as fault:
+        raise ConfigError(f"--set {text!r}: the value is no YAML: {fault}") from fault

@@ -1,0 +1,58 @@
+"""Every error the project raises on purpose, one class per reaction.
+
+    SgcadError
+    ├── ConfigError        edit the YAML or the command line          (exit 2, nothing started)
+    ├── BadInput           this report cannot be read: mend the file  (the case fails, the batch goes on)
+    ├── MissingTool        install what is named                      (exit 2, nothing started)
+    ├── InvalidOutput      the writer's output is wrong: ask again    (caught by the refinement loop)
+    ├── Refused            the evidence does not carry the crash      (a result, never retried)
+    └── SimulationFailed   the execution died: may be retried         (the case fails, the batch goes on)
+
+A message says what, the value, the limit and the remedy. Knows nothing else of the project.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sgcad_core.records import Finding
+
+
+class SgcadError(Exception):
+    """Root of the tree; never raised itself."""
+
+
+class ConfigError(SgcadError):
+    """The configuration or the command line is wrong; the message lists every fault found."""
+
+
+class BadInput(SgcadError):
+    """A report cannot be read; the message names the file, the value and the remedy."""
+
+
+class MissingTool(SgcadError):
+    """A program or package is not installed; the message says how to install it."""
+
+
+class InvalidOutput(SgcadError):
+    """A writer produced something that cannot be used; `findings` go back to the model."""
+
+    def __init__(self, message: str, findings: Sequence[Finding] = ()) -> None:
+        super().__init__(message)
+        self.findings = tuple(findings)
+
+
+class Refused(SgcadError):
+    """The model, a writer or the evidence gate declines; `missing` names the evidence that lacks."""
+
+    def __init__(self, reason: str, missing: Sequence[str] = ()) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.missing = tuple(missing)
+
+
+class SimulationFailed(SgcadError):
+    """A simulator died or gave no trajectory; the message carries its last words."""

@@ -1,0 +1,1 @@
+"""Standards on one side, records on the other: SUMO XML, OpenDRIVE, OpenSCENARIO."""

@@ -1,0 +1,192 @@
+"""A road network as SUMO drives it: edges, lanes, connections, nodes, and what can be counted in it.
+
+Metres and m/s in the network's frame (x east, y north). Ids written by this project: road R is edge "R"
+in its forward and edge "-R" in its backward direction. Knows no file format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Direction = Literal["left", "through", "right", "u_turn"]
+
+
+
+class NetNode(NamedTuple):
+    """A SUMO node: place in metres and type ("priority", "traffic_light", "dead_end", ...)."""
+
+    x_m: float
+    y_m: float
+    type: str
+
+
+@dataclass(frozen=True, eq=False)
+class Lane:
+    """One lane; index 0 is the rightmost. `shape` is its center line, (n, 2) metres, in travel direction."""
+
+    id: str
+    index: int
+    shape: Floats
+    width_m: float
+    length_m: float
+    speed_mps: float
+    allows_cars: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """One direction of a road; lanes from right to left."""
+
+    id: str
+    from_node: str
+    to_node: str
+    lanes: tuple[Lane, ...]
+
+    @property
+    def car_lanes(self) -> tuple[Lane, ...]:
+        """Lanes that passenger cars may use, from right to left."""
+        return tuple(lane for lane in self.lanes if lane.allows_cars)
+
+
+@dataclass(frozen=True, eq=False)
+class Connection:
+    """A way across a node from lane to lane (indices as in Lane).
+
+    `via_shape`: (n, 2) metres, the internal lanes joined, from the end of the first lane to the start of
+    the second (two equal or near points where the network has no internal lanes).
+    """
+
+    from_edge: str
+    from_lane: int
+    to_edge: str
+    to_lane: int
+    via_shape: Floats
+    direction: Direction
+
+
+@dataclass(frozen=True, eq=False)
+class LaneGraph:
+    """A road network as SUMO drives it; internal edges stand in the connections."""
+
+    edges: Mapping[str, Edge]
+    connections: tuple[Connection, ...]
+    nodes: Mapping[str, NetNode]
+
+    def leaving(self, edge: str, lane: int | None = None) -> tuple[Connection, ...]:
+        """Connections out of an edge (or of one of its lanes)."""
+        return tuple(c for c in self.connections if c.from_edge == edge and lane in (None, c.from_lane))
+
+
+class NetworkFigures(NamedTuple):
+    """What the road metrics compare; nodes of degree 2 are contracted, only lanes for passenger cars count."""
+
+    intersections: int
+    components: int
+    mean_lanes: float
+    segments: int
+
+
+def edge_id(road: str, direction: str) -> str:
+    """Edge of a road in "forward" or "backward" direction."""
+    return road if direction == "forward" else f"-{road}"
+
+
+def road_of(edge: str) -> tuple[str, Literal["forward", "backward"]]:
+    """Road and direction that an edge id means."""
+    return (edge[1:], "backward") if edge.startswith("-") else (edge, "forward")
+
+
+# ------------------------------------------------------------------ counting
+def segments(graph: LaneGraph) -> list[dict[str, str | int]]:
+    """Roads with their passenger lanes: [{"id", "lanes_forward", "lanes_backward"}], in the network's order."""
+    roads = {road_of(edge)[0]: None for edge in graph.edges}
+    return [
+        {"id": road, "lanes_forward": _car_lanes(graph, road), "lanes_backward": _car_lanes(graph, f"-{road}")}
+        for road in roads
+    ]
+
+
+def _car_lanes(graph: LaneGraph, edge: str) -> int:
+    return len(graph.edges[edge].car_lanes) if edge in graph.edges else 0
+
+
+def network_figures(graph: LaneGraph) -> NetworkFigures:
+    """Intersections (nodes with three or more neighbors), connected parts, mean lanes, contracted segments.
+
+    `mean_lanes` is the mean over contracted segments and directions of the lanes of the widest piece; a
+    direction that is interrupted on the way does not count.
+    """
+    lanes = _lanes_between(graph.edges.values())
+    near = _neighbors(lanes)
+    paths = list(_paths(near))
+    counts = [n for path in paths for way in (path, path[::-1]) if (n := _widest(lanes, way))]
+    return NetworkFigures(
+        intersections=sum(len(others) >= 3 for others in near.values()),
+        components=_components(near),
+        mean_lanes=sum(counts) / len(counts) if counts else 0.0,
+        segments=len(paths),
+    )
+
+
+def _lanes_between(edges: Iterable[Edge]) -> dict[tuple[str, str], int]:
+    found: dict[tuple[str, str], int] = {}
+    for edge in edges:
+        if edge.car_lanes and edge.from_node != edge.to_node:
+            ends = (edge.from_node, edge.to_node)
+            found[ends] = found.get(ends, 0) + len(edge.car_lanes)
+    return found
+
+
+def _neighbors(lanes: Iterable[tuple[str, str]]) -> dict[str, dict[str, None]]:
+    near: dict[str, dict[str, None]] = {}
+    for a, b in lanes:
+        near.setdefault(a, {})[b] = None
+        near.setdefault(b, {})[a] = None
+    return near
+
+
+def _components(near: Mapping[str, Mapping[str, None]]) -> int:
+    seen: set[str] = set()
+    count = 0
+    for node in near:
+        count += node not in seen
+        stack = [node]
+        while stack:
+            if (here := stack.pop()) not in seen:
+                seen.add(here)
+                stack += near[here]
+    return count
+
+
+def _paths(near: Mapping[str, Mapping[str, None]]) -> Iterator[list[str]]:
+    """Maximal paths through nodes of degree 2; a network that is one ring is one path from any node to itself."""
+    ends = [n for n in near if len(near[n]) != 2] or list(near)[:1]
+    used: set[frozenset[str]] = set()
+    for end in ends:
+        for step in near[end]:
+            if frozenset((end, step)) not in used:
+                yield _walk(near, end, step, set(ends), used)
+
+
+def _walk(
+    near: Mapping[str, Mapping[str, None]], end: str, step: str, ends: set[str], used: set[frozenset[str]]
+) -> list[str]:
+    path = [end, step]
+    used.add(frozenset(path))
+    while path[-1] not in ends:
+        onward = [n for n in near[path[-1]] if n != path[-2]]
+        used.add(frozenset((path[-1], onward[0])))
+        path.append(onward[0])
+    return path
+
+
+def _widest(lanes: Mapping[tuple[str, str], int], path: list[str]) -> int:
+    steps = [lanes.get(step, 0) for step in pairwise(path)]
+    return max(steps) if min(steps) > 0 else 0

@@ -1,0 +1,53 @@
+"""What a road spec's own fields contradict, before anything is drawn. Knows no file format."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from sgcad_core.records import Finding
+from sgcad_core.specs import Road, RoadSpec
+
+SOURCE = "road_spec"
+
+
+def spec_findings(spec: RoadSpec) -> list[Finding]:
+    """Faults that leave nothing to compile: double ids, unknown nodes, loops, roads without lanes."""
+    return [*_doubles(spec), *(f for i, road in enumerate(spec.roads) for f in _road_faults(spec, i, road))]
+
+
+def _doubles(spec: RoadSpec) -> Iterator[Finding]:
+    for kind, ids in (("nodes", [n.id for n in spec.nodes]), ("roads", [r.id for r in spec.roads])):
+        for name, count in Counter(ids).items():
+            if count > 1:
+                what = f"{count} {kind} have one id"
+                yield Finding(source=SOURCE, what=what, where=kind, value=name, remedy="give each an id of its own")
+
+
+def _road_faults(spec: RoadSpec, index: int, road: Road) -> Iterator[Finding]:
+    known = sorted({node.id for node in spec.nodes})
+    for end in ("from_node", "to_node"):
+        if (node := getattr(road, end)) not in known:
+            yield _finding(f"roads[{index}].{end}", "no such node", node, f"use one of {', '.join(known)}, or add it")
+    if road.from_node == road.to_node:
+        remedy = "let it end at another node; cut a loop into two roads"
+        yield _finding(f"roads[{index}]", "the road ends where it begins", road.from_node, remedy)
+    if not road.lanes_forward and not road.lanes_backward:
+        yield _finding(f"roads[{index}]", "the road has no lanes", "0 and 0", "give one direction a lane")
+
+
+def turn_findings(spec: RoadSpec) -> list[Finding]:
+    """Lists of turns that do not have one entry a lane (they are passed over when the road is drawn)."""
+    found = []
+    for i, road in enumerate(spec.roads):
+        for way in ("forward", "backward"):
+            turns, lanes = getattr(road, f"turns_{way}"), getattr(road, f"lanes_{way}")
+            if turns and len(turns) != lanes:
+                what = f"turns_{way} does not have one entry for each of lanes_{way}"
+                remedy = "count the lanes again: turn lanes are lanes; make both agree or leave the turns empty"
+                found.append(_finding(f"roads[{i}].turns_{way}", what, f"{len(turns)} turns, {lanes} lanes", remedy))
+    return found
+
+
+def _finding(where: str, what: str, value: str, remedy: str) -> Finding:
+    return Finding(source=SOURCE, what=what, where=where, value=value, remedy=remedy)

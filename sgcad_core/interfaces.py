@@ -1,0 +1,166 @@
+"""The whole extension surface: nine plugin kinds, one abstract method each.
+
+A plugin is one frozen pydantic class in one file: its fields are its configuration, its method is its
+job, heavy state is a `functools.cached_property`. Register it under the entry-point group
+`sgcad.<kind>`; nothing else is needed. Signatures and docstrings only.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict
+
+from sgcad_core.records import (
+    Context,
+    CrashReport,
+    Evidence,
+    Execution,
+    Finding,
+    Generation,
+    Passage,
+    Query,
+    RoadNetwork,
+    Scenario,
+)
+
+Ask = Callable[[Context, Query], Generation]
+"""How a writer speaks to the model: backbone and decoder are already chosen, the call is recorded."""
+
+
+class Plugin(BaseModel, ABC):
+    """Fields are the configuration; unknown keys are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    kind: ClassVar[str]
+    version: ClassVar[str] = "1"
+    """Part of every cache key: raise it when the same inputs give another result."""
+
+
+class ReportReader(Plugin):
+    """Files to evidence."""
+
+    kind = "report_reader"
+
+    @abstractmethod
+    def read(self, source: Path) -> CrashReport:
+        """Read one case (a folder or a file). Raises BadInput naming file, value and remedy."""
+
+
+class Retriever(Plugin):
+    """Knowledge that both rows see."""
+
+    kind = "retriever"
+
+    @abstractmethod
+    def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
+        """Passages for a stage ("road" or "scenario"), best first; empty where nothing is known."""
+
+
+class Decoder(Plugin):
+    """A pure function of the two logit rows: no model, no cache, no state but its fields."""
+
+    kind = "decoder"
+    needs_prior: ClassVar[bool]
+    """True if `scores` reads the row without context; the backbone then runs both."""
+
+    @abstractmethod
+    def scores(self, with_context: Any, without_context: Any | None) -> Any:
+        """Combine rows of logits, tensors (rows, vocabulary), into the logits to pick from; -inf excludes."""
+
+    def contrast_context(self, context: Context) -> Context | None:
+        """What the second row sees in place of the evidence: nothing, unless a decoder says otherwise."""
+        return None
+
+    def reads_prior(self) -> bool:
+        """False where the fields switch the contrast off (alpha 0): the second row is then not run."""
+        return self.needs_prior
+
+    def draw(self, scores: Any, generator: Any) -> Any:
+        """Pick one token a row, (rows,), from scores behind the grammar; the default takes the best."""
+        return scores.argmax(-1)
+
+
+class Backbone(Plugin):
+    """Owns the model, the token loop and the KV caches."""
+
+    kind = "backbone"
+    gives_logits: ClassVar[bool]
+    """False: cannot be paired with a decoder that needs the prior; refused before weights load."""
+
+    @abstractmethod
+    def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
+        """Answer a query. Thread-safe. Raises InvalidOutput if no valid answer fits."""
+
+
+class RoadWriter(Plugin):
+    """Evidence to a road network."""
+
+    kind = "road_writer"
+    asks_model: ClassVar[bool]
+    """False: `ask` is never called, so no backbone is needed and findings cannot change the answer."""
+
+    @abstractmethod
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Write (or, with findings, mend) a network. Raises InvalidOutput or Refused."""
+
+
+class ScenarioWriter(Plugin):
+    """Evidence and a road network to a scenario."""
+
+    kind = "scenario_writer"
+    asks_model: ClassVar[bool]
+
+    @abstractmethod
+    def write(
+        self,
+        context: Context,
+        passages: Sequence[Passage],
+        findings: Sequence[Finding],
+        ask: Ask,
+        attempt: int,
+        network: RoadNetwork,
+    ) -> Scenario:
+        """Write (or, with findings, mend) a scenario on that network. Raises InvalidOutput or Refused."""
+
+
+class Validator(Plugin):
+    """Judges one stage's artifact."""
+
+    kind = "validator"
+    stage: ClassVar[str]
+    """"road" or "scenario": the artifact it reads. What it cannot judge it passes over: []."""
+
+    @abstractmethod
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """Everything wrong, worst first; an empty list is a pass. Raises MissingTool only."""
+
+
+class Simulator(Plugin):
+    """Runs a scenario."""
+
+    kind = "simulator"
+
+    @abstractmethod
+    def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
+        """Execute in a process that may die. Raises SimulationFailed."""
+
+
+class Tracker(Plugin):
+    """Where results can be compared. Called from one thread, after the case is on disk."""
+
+    kind = "tracker"
+
+    @abstractmethod
+    def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
+        """Log one finished case: parameters, metrics, attempts as steps, every file in case_dir."""
+
+    def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
+        """Log one model call; the default keeps nothing."""
+        return

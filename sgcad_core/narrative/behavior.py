@@ -1,0 +1,77 @@
+"""Facts on a road network: every vehicle gets a road, a direction, a lane and an exit.
+
+Places are chosen so that travel headings fit the text, the pair in contact can meet, and turns exist; what
+does not fit costs, and the cheapest choice stands. Works on any road spec. Knows no narrative.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.errors import Refused
+from sgcad_core.narrative.assign import Placed, assign
+from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.narrative.lane_choice import lane_of
+from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, RoadSpec
+
+_TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
+"""Length of what such a vehicle tows, hitch included, metres."""
+_LONGEST_M = 30.0
+_FROM_STOP_MPH = 12
+"""After 7 m at 2 m/s^2."""
+_MOST_ACTORS, _MOST_CONTACTS = 12, 8
+
+
+def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
+    """The crash on that network. Raises Refused where the text names no vehicle at all."""
+    if not facts.vehicles:
+        raise Refused("the narrative names no vehicle", ["which vehicles were involved", "how they traveled"])
+    vehicles = facts.vehicles[:_MOST_ACTORS]
+    placed = assign(facts, spec)
+    actors = [_actor(v, placed, facts) for v in vehicles]
+    contacts = [c for c in facts.contacts if all(x in {a.id for a in actors} for x in (c.striker, c.struck))]
+    if not contacts:
+        actors, contacts = _with_others(actors, facts)
+    return BehaviorSpec(
+        actors=tuple(actors), contacts=tuple(_contact(c) for c in contacts[:_MOST_CONTACTS]),
+        light=facts.light, weather=facts.weather, surface=facts.surface,
+    )  # fmt: skip
+
+
+def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Actor:
+    place = placed[v.id]
+    return Actor(
+        id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
+        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None, maneuver=v.maneuver,
+        speed_mph=_speed_mph(v), length_m=_length(v),
+    )  # fmt: skip
+
+
+def _speed_mph(v: VehicleFacts) -> int | None:
+    """As told; who starts from a stop is slow at the contact; else the planner's choice."""
+    if v.standing:
+        return None
+    return v.speed_mph or (_FROM_STOP_MPH if v.from_stop else None)
+
+
+def _length(v: VehicleFacts) -> float | None:
+    """A vehicle with a trailer is one long box: the trailer is part of the numbered vehicle."""
+    if not v.trailer or v.kind not in _TRAILER_M:
+        return None
+    return min(SIZE_M[v.kind][0] + _TRAILER_M[v.kind], _LONGEST_M)
+
+
+def _contact(c: ContactFacts) -> Contact:
+    return Contact(striker=c.striker, struck=c.struck, striker_area=c.striker_area, struck_area=c.struck_area)
+
+
+def _with_others(actors: list[Actor], facts: CrashFacts) -> tuple[list[Actor], list[ContactFacts]]:
+    """A crash without a second vehicle: the first thing or person that was hit joins in."""
+    hits = [c for c in facts.contacts if c.striker == actors[0].id and any(o.id == c.struck for o in facts.others)]
+    if not hits:
+        return actors, []
+    other = next(o for o in facts.others if o.id == hits[0].struck)
+    driver = next(a for a in actors if a.id == hits[0].striker)
+    joined = Actor(
+        id=other.id, kind=other.kind, road=driver.road, direction=driver.direction,
+        maneuver="straight" if other.kind in ("pedestrian", "bicycle") else "stopped",
+    )  # fmt: skip
+    return [*actors, joined], hits[:1]

@@ -1,0 +1,43 @@
+"""Compass words: directions in text, turns between them, what lies opposite. Knows no vehicle."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import get_args
+
+from sgcad_core.specs import Compass
+
+COMPASS: tuple[Compass, ...] = get_args(Compass)
+WORDS: dict[str, Compass] = {
+    "north": "N", "northeast": "NE", "east": "E", "southeast": "SE", "south": "S", "southwest": "SW", "west": "W",
+    "northwest": "NW",
+}  # fmt: skip
+DIRECTION = r"(?:north|south)(?:east|west)?|east|west"
+"""Pattern of a direction word without its ending."""
+
+
+def compass_of(word: str) -> Compass | None:
+    """ "northbound", "north", "northerly" -> "N"; None if it is no direction."""
+    match = re.match(rf"({DIRECTION})(?:bound|erly|ern|ward)?s?$", word.lower())
+    return WORDS[match.group(1)] if match else None
+
+
+def turned(heading: Compass, clockwise_deg: float) -> Compass:
+    """The heading after a clockwise turn, to the nearest eighth."""
+    return COMPASS[round(COMPASS.index(heading) + clockwise_deg / 45) % 8]
+
+
+def between(first: Compass, second: Compass) -> int:
+    """Clockwise turn from the first heading to the second, degrees in [0, 360)."""
+    return (COMPASS.index(second) - COMPASS.index(first)) % 8 * 45
+
+
+def compass_of_angle(heading_rad: float) -> Compass:
+    """The nearest compass word of a heading counter-clockwise from east."""
+    return COMPASS[round((90 - math.degrees(heading_rad)) % 360 / 45) % 8]
+
+
+def angle_of(heading: Compass) -> float:
+    """Heading in radians counter-clockwise from east."""
+    return math.radians(90 - 45 * COMPASS.index(heading))

@@ -1,0 +1,241 @@
+"""Who struck whom and where: contacts in the order of the text.
+
+A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is
+read with its subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from sgcad_core.narrative import contact_words as says
+from sgcad_core.narrative.clauses import Told, subject_starts
+from sgcad_core.narrative.roles import HIT, Role
+from sgcad_core.narrative.vehicles import MENTION, Roster
+from sgcad_core.narrative.zones import AREA, Zone, area_of, plain
+
+
+@dataclass(frozen=True)
+class Blow:
+    """A contact as told: `other` is a vehicle id or the object's word; an area not told is None."""
+
+    actor: str
+    other: str
+    actor_area: Zone | None
+    other_area: Zone | None
+    number: int
+    role: Role
+    passive: bool = False
+    words: str = ""
+    mutual: bool = False
+    """They collided: the text names no striker."""
+
+
+def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
+    """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
+    crash: list[Blow] = []
+    retold: list[Blow] = []
+    for t in told:
+        if t.role in ("codes", "factors", "police", "health"):
+            continue
+        into = (
+            crash
+            if t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
+            else retold
+        )
+        into += _sentence(t, who)
+    first = min((b.number for b in crash if b.other in who.ids), default=0)
+    early = [b for b in retold if b.number < first and b.other in who.ids]
+    late = [b for b in retold if b not in early]
+    return (*early, *crash, *late)
+
+
+def _sentence(told: Told, who: Roster) -> list[Blow]:
+    text = plain(told, who)
+    found: list[Blow] = []
+    starts = subject_starts(told._replace(text=text), who)
+    for m in HIT.finditer(text):
+        if any(p.start() < m.start() <= p.end() for p in says.BOTH_PARTS.finditer(text)):
+            continue
+        blow = _blow(told, text, m, starts, who)
+        if blow:
+            found.append(blow)
+    for m in (*says.BETWEEN.finditer(text), *says.BOTH_PARTS.finditer(text)):
+        found.append(Blow(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), told.number, told.role, words="between"))
+    for m in says.PUSHED.finditer(text):
+        a, b, area = (m["v1"], m["v2"], m["a2"]) if m["v1"] else (m["v3"], m["v4"], m["a4"])
+        found.append(Blow(a, b, "front", _maybe(area) or "back", told.number, told.role, words="pushed"))
+    return [b for b in found if b.actor in who.ids and b.actor != b.other]
+
+
+def _maybe(words: str | None) -> Zone | None:
+    return area_of(words) if words else None
+
+
+def _blow(
+    told: Told, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
+) -> Blow | None:
+    before, behind = text[: m.start()], text[m.end() :]
+    passive = bool(says.PASSIVE.search(before)) and not re.match(r"(?:made|making|came)", m.group(), re.I)
+    if (says.NEAR_MISS.search(before) and not says.TO_HIT.search(before)) or _is_noun(before, m.group(), behind):
+        return None
+    subjects = _subjects(told, before, m, starts)
+    if not subjects:
+        return None
+    nxt = HIT.search(behind)
+    scope = behind[: nxt.start()] if nxt else behind
+    if len(subjects) > 1:
+        return _mutual(told, subjects, m.group(), before, scope)
+    actor, actor_area = subjects[0], _subject_area(before, subjects[0])
+    return (
+        _passive(told, actor, actor_area, scope, m.group(), who)
+        if passive
+        else _active(told, actor, actor_area, scope, m.group(), who)
+    )
+
+
+def _is_noun(before: str, word: str, behind: str) -> bool:
+    """ "the impact", "at impact", "of contact": no verb."""
+    if word.lower() not in ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike"):
+        return False
+    return bool(
+        re.search(
+            r"\b(?:the|an?|of|at|to|on|upon|after|first|second|this|initial|prior|no|from|point of|"
+            r"before|for|frontal|rear|side|secondary|minor)\s*$",
+            before,
+            re.I,
+        )
+    )
+
+
+def _subjects(
+    told: Told, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
+) -> tuple[str, ...]:
+    """The vehicles whose verb this is."""
+    fitting = [s for at, _, s in starts if at < m.start()]
+    if fitting:
+        return fitting[-1]
+    mentions = MENTION.findall(before)
+    if mentions:
+        return (mentions[-1],)
+    return (told.subject,) if told.subject else ()
+
+
+def _subject_area(before: str, subject: str) -> Zone | None:
+    """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
+    found = list(re.finditer(rf"(?:\b(?P<area>{AREA})\s+(?:of|on)\s+(?:the )?)?\b{subject}\b", before, re.I))
+    if (
+        found
+        and found[-1]["area"]
+        and not re.search(r"\b(?:in|into|along|toward) the (?:\w+ )?$", before[: found[-1].start("area")])
+    ):
+        return area_of(found[-1]["area"])
+    return None
+
+
+def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+    scope = _clause(scope)
+    own = says.WITH_ITS.search(scope)
+    area = area_of(own["area"]) if own else area
+    rest = scope[: own.start()] + scope[own.end() :] if own else scope
+    other, other_area = _object(told, actor, rest, who)
+    if other is None:
+        return None
+    if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
+        area, other_area = area or "front", other_area or "back"
+    return Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+
+
+def _clause(scope: str) -> str:
+    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
+    first = MENTION.search(scope)
+    end = says.CLAUSE_END.search(scope, first.end() if first and first.start() < 70 else 0)
+    return scope[: end.start()] if end else scope
+
+
+def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
+    """What was hit, and where."""
+    m = says.ACTIVE_OBJECT.match(scope)
+    thing = says.OBJECT.match(scope)
+    if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
+        area = _maybe(m["area"]) or _area_behind(scope[m.end() :])
+        return _not_itself(m["v"], actor, who), area
+    if thing and thing["object"].lower() not in ("trailer", "parked"):
+        return thing["object"].lower(), None
+    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or re.match(r"\W*$", scope):
+        only = says.THE_AREA.match(scope)
+        return who.other(actor), _maybe(only["area"]) if only else _area_behind(scope)
+    late = MENTION.search(scope)
+    if late and late.group() != actor and late.start() < 60:
+        named = re.search(rf"\b(?P<area>{AREA}) of (?:the )?{late.group()}", scope, re.I)
+        return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
+    return None, None
+
+
+def _not_itself(named: str, actor: str, who: Roster) -> str | None:
+    """A vehicle cannot strike itself: the writer meant the other one."""
+    return named if named != actor else who.other(actor)
+
+
+def _area_behind(text: str) -> Zone | None:
+    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
+    near = re.split(r"\blane|\bof V\d", _clause(text)[:80])[0]
+    areas = [
+        area_of(m["area"]) for m in re.finditer(rf"\b(?:the |its |his |her |their )(?P<area>{AREA})\b", near, re.I)
+    ]
+    return next(filter(None, areas), None) if says.ON_THE.search(near) else None
+
+
+def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+    by = says.BY.search(scope)
+    where = says.ON_THE.search(scope[: by.start()] if by else scope) or re.match(rf"^\W*(?P<area>{AREA})\b", scope)
+    area = area or (area_of(where["area"]) if where else None)
+    if not by and re.search(r"\bby (?:an?|another|the)\b", scope) and who.other(actor) is None:
+        return None
+    other = by["v"] if by else who.other(actor)
+    if by and re.search(r"\bby (?:an?|another) (?!V\d)", scope[: by.start()]):
+        return None
+    other_area = _maybe(by["area"]) if by else _by_area(scope)
+    own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
+    other_area = other_area or (area_of(own["area"]) if own else None)
+    if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
+        area, other_area = area or "back", other_area or "front"
+    if other is None:
+        return None
+    other = _not_itself(other, actor, who) or other
+    return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+
+
+def _by_area(scope: str) -> Zone | None:
+    m = re.search(rf"\bby (?:the |its )?(?P<area>{AREA})\b", scope, re.I)
+    return area_of(m["area"]) if m else None
+
+
+def _mutual(told: Told, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
+    """ "V1 and V2 collided front to front"."""
+    against = says.AGAINST.search(scope)
+    if against:
+        zones = {against["v1"]: _maybe(against["a1"]), against["v2"]: _maybe(against["a2"])}
+        first, second = zones.get(subjects[0]), zones.get(subjects[1])
+        return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+    pair = says.PAIRED.search(scope)
+    first, second = (_maybe(pair["a1"]), _maybe(pair["a2"])) if pair else (None, None)
+    if not pair:
+        both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
+        first = second = area_of(both["area"]) if both else None
+    if re.search(r"\bhead-on\b", scope):
+        first = second = "front"
+    return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+
+
+def with_areas(blow: Blow, retold: Iterable[Blow]) -> Blow:
+    """The blow with areas that it lacks taken from other tellings of the same pair."""
+    for other in retold:
+        if {other.actor, other.other} != {blow.actor, blow.other}:
+            continue
+        same = other.actor == blow.actor
+        mine, theirs = (other.actor_area, other.other_area) if same else (other.other_area, other.actor_area)
+        blow = replace(blow, actor_area=blow.actor_area or mine, other_area=blow.other_area or theirs)
+    return blow

@@ -1,0 +1,76 @@
+"""What was read and what is settled so far, handed between the steps of inference. Angles are clockwise degrees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.vehicles import Roster
+from sgcad_core.narrative.zones import Zone
+from sgcad_core.specs import Area, Compass, Maneuver
+
+TURN_DEG: dict[Maneuver, float] = {
+    "turn_left": -50.0,
+    "turn_right": 50.0,
+    "u_turn": -110.0,
+    "crossing_centerline": -10.0,
+}
+"""Heading change of a vehicle at the moment of contact, clockwise degrees: turns are seldom complete then."""
+HIT_FROM: dict[Area, float] = {"left": 90.0, "right": 270.0, "back": 0.0, "front": 180.0}
+"""Heading of a striking vehicle relative to the one whose side it hits with its front, clockwise degrees."""
+
+
+@dataclass
+class Draft:
+    """What was read."""
+
+    who: Roster
+    motions: dict[str, Motion]
+    blows: tuple[Blow, ...]
+
+
+class Joined(NamedTuple):
+    """A contact with all areas; whether both areas (and no corner), and whether the contact itself was told."""
+
+    striker: str
+    struck: str
+    striker_area: Area
+    struck_area: Area
+    areas_told: bool
+    told: bool
+
+
+@dataclass
+class Settled:
+    """What follows."""
+
+    headings: dict[str, Compass] = field(default_factory=dict)
+    stated: set[str] = field(default_factory=set)
+    exits: dict[str, Compass] = field(default_factory=dict)
+    maneuvers: dict[str, Maneuver] = field(default_factory=dict)
+    told_maneuvers: set[str] = field(default_factory=set)
+    speeds: dict[str, int] = field(default_factory=dict)
+    contacts: list[Joined] = field(default_factory=list)
+
+
+def end_of(zone: Zone | None) -> Area | None:
+    """A corner's end; an area as it is."""
+    return zone.split("/")[0] if zone else None  # type: ignore[return-value]
+
+
+def bend_deg(maneuver: Maneuver, own: Area | None, other: Area | None) -> float:
+    """Heading change at contact, clockwise degrees: little where a turning vehicle's front finds a flank."""
+    early = own == "front" and other in ("left", "right", "back")
+    return TURN_DEG.get(maneuver, 0.0) * (0.3 if early else 1.0)
+
+
+def apart(a: float, b: float) -> float:
+    """Unsigned difference of two angles, degrees in [0, 180]."""
+    return abs((a - b + 180) % 360 - 180)
+
+
+def side_hit(from_deg: float) -> Area:
+    """The side that a vehicle heading `from_deg` clockwise of mine hits with its front."""
+    return min(HIT_FROM, key=lambda area: apart(HIT_FROM[area], from_deg))

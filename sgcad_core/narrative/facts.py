@@ -1,0 +1,144 @@
+"""The facts of a crash as its narrative tells them: who moved how, who struck whom, in what conditions.
+
+`crash_facts` is the one entry. What the text leaves open is inferred from what it says (relation words,
+critical events, the sides that touched) and marked as such. Knows no road network.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sgcad_core.narrative.clauses import segments, tell
+from sgcad_core.narrative.conditions import conditions
+from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.draft import Draft, Settled, end_of
+from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
+from sgcad_core.narrative.motion import Access, Motion
+from sgcad_core.narrative.motion_reader import motions
+from sgcad_core.narrative.others import OtherFacts, others
+from sgcad_core.narrative.text import sentences
+from sgcad_core.narrative.vehicles import Identity, roster
+from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
+
+
+@dataclass(frozen=True)
+class VehicleFacts:
+    """One numbered vehicle. None: neither told nor to be inferred."""
+
+    id: str
+    kind: ActorKind
+    year: int | None = None
+    make: str | None = None
+    model: str | None = None
+    heading: Compass | None = None
+    """Initial heading of travel, before any turn."""
+    heading_stated: bool = False
+    """False: inferred from the other vehicle, or just assumed where `CrashFacts.oriented` is False."""
+    exit_heading: Compass | None = None
+    """Heading it turned to or meant to turn to, where told."""
+    maneuver: Maneuver = "straight"
+    maneuver_stated: bool = False
+    lane: int | None = None
+    """1 = at the right curb."""
+    lane_word: str | None = None
+    """left, right, middle, left_turn, right_turn."""
+    speed_mph: int | None = None
+    trailer: bool = False
+    origin: Access | None = None
+    """driveway, parking_lot, ramp, shoulder: where it came from, if not from a road."""
+    target: Access | None = None
+    """driveway or parking_lot that it turned or meant to turn into."""
+    meant: Maneuver | None = None
+    """The turn that it meant to make, where told; `maneuver` is what it did."""
+    from_stop: bool = False
+    """Whether it had just started from a stop."""
+
+    @property
+    def standing(self) -> bool:
+        """Whether it does not move before the contact."""
+        return self.maneuver in ("stopped", "parked")
+
+
+@dataclass(frozen=True)
+class ContactFacts:
+    """One contact; `struck` may be an object or other road user of `CrashFacts.others`."""
+
+    striker: str
+    struck: str
+    striker_area: Area
+    struck_area: Area
+    areas_stated: bool
+    """Whether the text names both sides, and no corner."""
+    stated: bool = True
+    """False: the pair is inferred, the text tells no contact."""
+
+
+@dataclass(frozen=True)
+class CrashFacts:
+    """A crash as told."""
+
+    vehicles: tuple[VehicleFacts, ...]
+    others: tuple[OtherFacts, ...] = ()
+    contacts: tuple[ContactFacts, ...] = ()
+    light: Light | None = None
+    weather: Weather | None = None
+    surface: Surface | None = None
+    oriented: bool = False
+    """Whether any heading is told: if not, all headings are right only relative to one another."""
+
+    def vehicle(self, id: str) -> VehicleFacts | None:
+        """The vehicle of that number."""
+        return next((v for v in self.vehicles if v.id == id), None)
+
+
+_SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet": "ice"}
+"""Surface where only the weather is told."""
+
+
+def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
+    """One vehicle's facts put together."""
+    return VehicleFacts(
+        id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
+        heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
+        maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
+        lane=motion.lane, lane_word=motion.lane_word, speed_mph=settled.speeds.get(v.id),
+        trailer=v.trailer, origin=motion.origin, target=motion.target,
+        meant=meant_turn(motion), from_stop=started_from_stop(motion, settled.maneuvers[v.id]),
+    )  # fmt: skip
+
+
+def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
+    """What a single vehicle hit: objects with its front unless told, people from their left side."""
+    ids = {o.word: o for o in beside}
+    found: dict[str, ContactFacts] = {}
+    for blow in draft.blows:
+        other = ids.get(blow.other)
+        if other and other.id not in found:
+            area = end_of(blow.actor_area) or "front"
+            side: Area = "front" if other.kind == "object" else "left"
+            found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
+    return tuple(found.values())
+
+
+def crash_facts(narrative: str) -> CrashFacts:
+    """Read a report. Never raises; an empty or foreign text gives no vehicles."""
+    found = sentences(narrative)
+    who = roster(s.text for s in found)
+    told = tell(found, who)
+    cut = segments(told, who)
+    draft = Draft(who, motions(told, cut, who), blows(told, who))
+    settled = settle(draft)
+    sky = conditions(found)
+    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in who.vehicles)
+    beside = others(draft.blows, who.ids)
+    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
+    return CrashFacts(
+        vehicles,
+        beside,
+        contacts,
+        sky.light,
+        sky.weather,
+        sky.surface or _SURFACE.get(sky.weather),
+        bool(settled.stated),
+    )

@@ -1,0 +1,127 @@
+"""From what is told to what follows: maneuvers decided, headings completed, contact sides completed.
+
+Evidence is added up: stated headings beat relation words, relation words beat what the sides that touched
+suggest. Angles here are clockwise degrees, as compass words turn. Knows no text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sgcad_core.narrative.compass import between, turned
+from sgcad_core.narrative.contact import Blow, with_areas
+from sgcad_core.narrative.draft import Draft, Settled, end_of
+from sgcad_core.narrative.maneuvers import changed_lanes_after_turn, decide
+from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.relative import contact_prefers, relative
+from sgcad_core.narrative.sides import join_contacts
+from sgcad_core.specs import Area, Compass, Maneuver
+
+
+def settle(draft: Draft) -> Settled:
+    """Decide everything that the text allows to decide."""
+    out = Settled()
+    pairs = _vehicle_blows(draft)
+    _stated_headings(draft, out)
+    for v in draft.who.ids:
+        motion = draft.motions[v]
+        out.maneuvers[v], sure = decide(motion, _areas_hit(v, pairs), _same_way_turn(draft, out, v))
+        if sure:
+            out.told_maneuvers.add(v)
+        if motion.speeds_mph:
+            out.speeds[v] = max(motion.speeds_mph, key=lambda s: s[0])[1]
+    _mend_headings(draft, out, pairs)
+    _complete_headings(draft, out, pairs)
+    out.exits = {v: e for v in draft.who.ids if (e := _exit(draft.motions[v], out, v)) is not None}
+    out.contacts = join_contacts(draft, out, pairs)
+    return out
+
+
+def _stated_headings(draft: Draft, out: Settled) -> None:
+    for v, motion in draft.motions.items():
+        turned_in = motion.exits and changed_lanes_after_turn(motion)
+        if motion.headings or turned_in:
+            out.headings[v] = max(motion.headings, key=lambda h: h[0])[1] if motion.headings else motion.exits[0]
+            out.stated.add(v)
+
+
+def _same_way_turn(draft: Draft, out: Settled, vehicle: str) -> Maneuver:
+    """Which turn brings a vehicle into the direction of the other: right, unless it came from the left."""
+    other = draft.who.other(vehicle)
+    if other and {vehicle, other} <= out.stated and between(out.headings[vehicle], out.headings[other]) == 270:
+        return "turn_left"
+    return "turn_right"
+
+
+def _vehicle_blows(draft: Draft) -> list[Blow]:
+    """Contacts between numbered vehicles, one a pair, each completed from its other tellings."""
+    hits = [b for b in draft.blows if b.other in draft.who.ids]
+    found: list[Blow] = []
+    for i, blow in enumerate(hits):
+        if all({blow.actor, blow.other} != {b.actor, b.other} for b in found):
+            found.append(with_areas(blow, hits[i + 1 :]))
+    return found
+
+
+def _areas_hit(vehicle: str, pairs: list[Blow]) -> tuple[Area | None, ...]:
+    """Sides of the vehicle that were hit, first contact first; of a corner the end."""
+    zones = (b.actor_area if b.actor == vehicle else b.other_area for b in pairs if vehicle in (b.actor, b.other))
+    return tuple(end_of(z) for z in zones)
+
+
+def _exit(motion: Motion, out: Settled, vehicle: str) -> Compass | None:
+    """The told heading behind a turn, if it is not the initial one."""
+    told = [e for e in motion.exits if e != out.headings.get(vehicle)]
+    return told[0] if told and out.maneuvers[vehicle] in ("turn_left", "turn_right", "u_turn") else None
+
+
+# ------------------------------------------------------------------ headings
+def _complete_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
+    """Headings of vehicles that have none, from a partner that has; V1 heads north if nothing is told."""
+    ids = draft.who.ids
+    if not ids:
+        return
+    if not out.headings:
+        _from_exits(draft, out)
+    if not out.headings:
+        out.headings[ids[0]] = "N"
+    for _ in ids:
+        for v in ids:
+            partner = _partner(v, out.headings, pairs, ids)
+            if v not in out.headings and partner:
+                turn = relative(draft, out, partner, v, pairs)
+                out.headings[v] = turned(out.headings[partner], turn)
+
+
+def _mend_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
+    """A told heading that both the told exit and the sides that touched contradict was a slip: the opposite one."""
+    for v in sorted(out.stated):
+        side = {"turn_left": -90, "turn_right": 90}.get(out.maneuvers[v])
+        exits = draft.motions[v].exits
+        partner = _partner(v, out.headings, pairs, draft.who.ids)
+        if side is None or not exits or partner not in out.stated or partner is None:
+            continue
+        if all(between(turned(out.headings[v], side), e) == 180 for e in exits):
+            opposite = turned(out.headings[v], 180)
+            if contact_prefers(out, partner, v, pairs, between(out.headings[partner], opposite)):
+                out.headings[v] = opposite
+                out.stated.discard(v)
+
+
+def _from_exits(draft: Draft, out: Settled) -> None:
+    """A vehicle that turned left to go west had come from the south."""
+    for v in draft.who.ids:
+        exits, maneuver = draft.motions[v].exits, out.maneuvers[v]
+        if exits and maneuver in ("turn_left", "turn_right"):
+            out.headings[v] = turned(exits[0], 90 if maneuver == "turn_left" else -90)
+            return
+
+
+def _partner(vehicle: str, known: Mapping[str, Compass], pairs: list[Blow], ids: tuple[str, ...]) -> str | None:
+    """The vehicle that tells most of this one's heading: the first that it touched, else any."""
+    for b in pairs:
+        if vehicle in (b.actor, b.other):
+            other = b.other if b.actor == vehicle else b.actor
+            if other in known:
+                return other
+    return next((v for v in ids if v in known and v != vehicle), None)

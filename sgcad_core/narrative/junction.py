@@ -1,0 +1,270 @@
+"""The junction of a crash: what kind, where its side leg lies, what controls it.
+
+Reads resolved sentences and the vehicles' facts; legs lie at bearings seen from the junction, so a vehicle
+that heads north comes from the leg at S. Knows no lane count.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.compass import DIRECTION, between, compass_of, turned
+from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
+from sgcad_core.narrative.facts import VehicleFacts
+from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.road_merge import GatheredRoad
+from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.specs import Compass, Maneuver
+
+JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
+
+
+@dataclass(frozen=True)
+class JunctionFacts:
+    """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
+    legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion)."""
+
+    kind: JunctionKind = "none"
+    stem: Compass | None = None
+    control: Control = "none"
+    stopped: tuple[Compass, ...] = ()
+    stated: bool = False
+    notes: tuple[str, ...] = field(default=())
+
+
+_T = re.compile(
+    r"\b[TY]-intersection|\bT[- ]junction|\b[TY](?:\"|')?[- ]?(?:type|shaped?|style)[- ](?:\w+ )?(?:intersection|"
+    r"junction)|\btee[- ](?:intersection|junction)|"
+    r"\b(?:three|3)[- ](?:leg\w*|way)\b(?! (?:stop|crash|car|collision))|\btype (?:of )?\"?T\"? (?:intersection|"
+    r"junction)", re.I)
+_FOUR = re.compile(
+    r"\bfour-leg intersection|\b(?:four|4)[- ](?:leg\w*|way)\b|\bcross(?:ing)? intersection|\bcrossroads?\b", re.I)
+_JUNCTION = re.compile(r"\bintersections?\b|\bjunction\b|\bcrossroads?\b|\bcrossover\b|\broundabout\b", re.I)
+_NO_JUNCTION = re.compile(
+    r"\b(?:no|non|not (?:at|in|near)(?: an?)?|without an?|away from (?:the|any|an)|far from (?:the|any|an)|"
+    r"(?:next|previous|nearby|nearest|another|last|distant|upcoming|following)(?: \w+)?)[ -](?:\w+ )?(?:intersection|"
+    r"junction)s?\b|"
+    r"\bnon-?(?:intersection|junction)|\bmid-?block", re.I)  # fmt: skip
+
+def junction_of(
+    told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+) -> JunctionFacts:
+    """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
+    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    kind, stated = _kind(story, told, vehicles, roads)
+    if kind == "none":
+        return JunctionFacts(stated=stated)
+    control = control_of(told)
+    signed = control in ("stop", "yield", "flashing")
+    halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
+    if kind == "four_leg":
+        return JunctionFacts(kind, None, control, halted, stated)
+    stem = _stem(kind, story, vehicles, roads, halted)
+    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated)
+
+
+# ------------------------------------------------------------------ kind
+def _kind(
+    story: Sequence[Told], told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+) -> tuple[JunctionKind, bool]:
+    named = _named(story)
+    access = any(v.origin in ("driveway", "parking_lot") or v.target in ("driveway", "parking_lot") for v in vehicles)
+    if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
+        return "ramp", True
+    if named in ("t", "four_leg"):
+        return named, True
+    if access and not (named == "some" and controlled(story)):
+        return "driveway", True
+    if named == "some" or controlled(story):
+        return ("t", False) if _one_sided(story, roads) else ("four_leg", False)
+    if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
+        return "t", False
+    if _crossing(vehicles) or _turning(vehicles):
+        return ("t", False) if _one_sided(story, roads) or not _crossing(vehicles) else ("four_leg", False)
+    return "none", False
+
+
+def _named(story: Sequence[Told]) -> JunctionKind | Literal["some"]:
+    """The first junction kind that the story names; "some" if it only says intersection."""
+    some = False
+    for t in story:
+        text = _NO_JUNCTION.sub(" ", t.text)
+        shape, cross = _T.search(text), _FOUR.search(text)
+        if shape and (not cross or shape.start() < cross.start()):
+            return "t"
+        if cross:
+            return "four_leg"
+        some = some or bool(_JUNCTION.search(text))
+    return "some" if some else "none"
+
+
+def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
+    """Whether a vehicle comes on a ramp."""
+    return any(v.origin == "ramp" for v in vehicles) or any(r.kind == "ramp" and r.vehicles for r in roads)
+
+
+def _merging(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
+    text = " ".join(t.text for t in story)
+    return bool(re.search(r"\bmerg\w+|\bentrance ramp|\bon-?ramp|\bacceleration lane|\bexit ramp", text, re.I)) or any(
+        r.kind == "freeway" for r in roads
+    )
+
+
+_SIDE_ROAD = re.compile(
+    rf"\b(?:side|intersecting|secondary|minor|entrance|access|cross(?:ing)?|private|"
+    rf"residential)[ -](?:\w+ )?(?:street|road\w*|lane)\b"
+    rf"[^.;]{{0,30}}?\b(?:on|to|from|off) (?:the|its|his|her|their) (?:\w+ )?(?P<side>left|right|{DIRECTION})\b"
+    rf"(?!bound|-|/| ?lane| turn)|"
+    rf"\broad\w* (?:to|on) the (?P<to>{DIRECTION})(?! side of)\b|"
+    rf"\b(?:intersects?|branches|branching|joins?|meets?|enters)\b[^.;]{{0,40}}?\b(?:from|on|"
+    rf"to) the (?P<from>{DIRECTION})\b(?!bound|-|/)|"
+    rf"\b(?P<sided>{DIRECTION}) side (?:entrance|street|road|business|driveway)", re.I)  # fmt: skip
+_SIDE_STREET = re.compile(
+    r"\b(?:(?:left|right)(?:[ -]hand)?[ -]turn|turn\w* (?:left|right))\b[^.;]{0,20}? (?:on|in)to (?:an?|the) "
+    r"(?:\w+ )?(?:side|intersecting|cross|adjoining|residential|secondary|minor)[ -](?:\w+ )?(?:road\w*|street)", re.I)
+"""A turn that somebody makes, means or waits to make, into a road that needs a junction."""
+_ENDS = re.compile(
+    rf"\b(?P<dir>(?:{DIRECTION})bound)?[^.;]{{0,60}}?\b(?:dead[- ]?end\w*|terminat\w+|ends?|ended)\b (?:at|with|into|"
+    rf"in|here)", re.I)
+
+
+def _one_sided(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
+    """Whether a side road is told to lie on one side or to end."""
+    return any(_SIDE_ROAD.search(t.text) or (_ENDS.search(t.text) and _JUNCTION.search(t.text)) for t in story)
+
+
+def _crossing(vehicles: Sequence[VehicleFacts]) -> bool:
+    """Whether two of the moving vehicles come on different axes, both headings told."""
+    told = [v.heading for v in vehicles if v.heading and v.heading_stated and v.maneuver != "parked"][:2]
+    return len(told) == 2 and axis_of(told[0]) != axis_of(told[1])
+
+
+def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
+    return any(v.maneuver in ("turn_left", "turn_right") for v in vehicles)
+
+
+# ------------------------------------------------------------------ stem
+_OFF_ROAD = ("driveway", "parking_lot", "ramp", "side_road")
+
+
+def _stem(
+    kind: JunctionKind,
+    story: Sequence[Told],
+    vehicles: Sequence[VehicleFacts],
+    roads: Sequence[GatheredRoad],
+    halted: Sequence[Compass],
+) -> Compass | None:
+    """Where the side leg lies: as told, else on the side that the vehicles' paths need, else right of V1."""
+    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _OFF_ROAD), None)
+    main = next((r.axis for r in roads if r.axis and r.kind not in ("driveway", "ramp") and not r.cross), None)
+    told = _stem_told(story, vehicles, lead, only_compass=True)
+    if told and not _contradicted(told, vehicles):
+        return told
+    from_paths = _stem_of_paths(vehicles, halted, main if kind == "driveway" else None)
+    if from_paths:
+        return from_paths
+    said = _stem_told(story, vehicles, lead)
+    if said:
+        return said
+    meant = _stem_meant(story, vehicles)
+    if meant:
+        return meant
+    if len(halted) == 1:
+        return halted[0]
+    return turned(lead, 90) if lead else None
+
+
+def _stem_of_paths(
+    vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], main: Compass | None
+) -> Compass | None:
+    """The leg that one vehicle comes from or turns into while the others keep to the through road (`main`)."""
+    for v in vehicles:
+        if v.heading and v.origin in _OFF_ROAD and axis_of(v.heading) != main:
+            return turned(v.heading, 180)
+    known = [v for v in vehicles if v.heading and v.maneuver != "parked"]
+    axes = list(dict.fromkeys(axis_of(v.heading) for v in known if v.heading))
+    if len(axes) > 1:
+        return turned(_on_stem(known, halted).heading or "N", 180)
+    for v in known:
+        side = _TURNS.get(v.maneuver)
+        if side and v.heading:
+            return turned(v.heading, side)
+        if v.exit_heading and v.heading and between(v.heading, v.exit_heading) in (90, 270):
+            return v.exit_heading
+    return None
+
+
+_TURN_SIDE = re.compile(
+    r"\bturn(?:ed|ing|s)?(?: to the)? (?P<a>left|right)\b(?! lane)|\b(?P<b>left|"
+    r"right)(?:[ -]hand)?[ -]turn\b(?! lane|-lane| signal|ing lane)", re.I)
+
+
+def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Compass | None:
+    """The side that a vehicle waited, slowed or meant to turn to."""
+    for v in sorted(vehicles, key=lambda v: v.target is None):
+        for t in story:
+            turn = _TURN_SIDE.search(t.text)
+            mine = v.id in re.findall(r"\bV\d+\b", t.text[: turn.start()])[-1:] if turn else False
+            if turn and v.heading and (mine or (t.subject == v.id and not re.search(r"\bV\d", t.text[: turn.start()]))):
+                return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
+    return None
+
+
+def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> VehicleFacts:
+    """Of vehicles on two axes the one on the ending leg: it turns, or it has the sign."""
+
+    def likely(v: VehicleFacts) -> tuple[bool, bool, bool]:
+        turns = v.maneuver in ("turn_left", "turn_right")
+        return turns, bool(v.heading and turned(v.heading, 180) in halted), v.maneuver != "straight"
+
+    return max(known, key=likely)
+
+
+_TURNS: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
+
+
+def _contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
+    """Whether a vehicle is told to come from where, with that stem, there is no road."""
+    told = [v for v in vehicles if v.heading and v.heading_stated]
+    if any(v.heading == stem and v.maneuver not in ("turn_left", "turn_right") for v in told):
+        return True
+    leaving = [turned(v.heading, _TURNS[v.maneuver]) for v in told if v.heading and v.maneuver in _TURNS]
+    if turned(stem, 180) in leaving:
+        return True
+    turning = [axis_of(v.heading) for v in told if v.heading and v.maneuver in ("turn_left", "turn_right")]
+    return _crossing(told) and len(turning) == 1 and turning[0] != axis_of(stem)
+
+
+def _stem_told(
+    story: Sequence[Told], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
+) -> Compass | None:
+    for t in story:
+        ends = _ENDS.search(t.text)
+        way = compass_of(ends["dir"]) if ends and ends["dir"] and _JUNCTION.search(t.text) else None
+        if way:
+            return turned(way, 180)
+        place = _SIDE_ROAD.search(t.text) or _DRIVE_SIDE.search(t.text)
+        if place:
+            word = next(filter(None, place.groups()))
+            found = _bearing(word, t, vehicles, lead)
+            if found and not (only_compass and word.lower() in ("left", "right")):
+                return found
+    return None
+
+
+_DRIVE_SIDE = re.compile(
+    rf"\b(?:driveway|parking lot|entrance|alley|gas station|access road)\b[^.;]{{0,40}}?\b(?:on|to|off|from) (?:the|"
+    rf"its|his|her|their|V\d's) "
+    rf"(?:\w+ )?(?P<side>left|right|{DIRECTION})\b(?!bound|-|/| ?lane| turn)(?: side)?", re.I)  # fmt: skip
+
+
+def _bearing(word: str, told: Told, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
+    """A compass point as it stands; left and right as the sentence's vehicle (or the first) heads."""
+    if word.lower() not in ("left", "right"):
+        return compass_of(word)
+    own = next((v.heading for v in vehicles if v.id == told.subject and v.heading), lead)
+    return turned(own, -90 if word.lower() == "left" else 90) if own else None

@@ -1,0 +1,280 @@
+"""Lanes in a piece of road description: totals, lanes a direction, turn lanes, one-way, median, center lane.
+
+Reads normalized text (`sgcad_core.narrative.text`): "four-lane", "northbound", "V1". Knows the words for
+lanes only; which road the piece describes is the caller's business.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sgcad_core.narrative.median import divided_and_median
+from sgcad_core.narrative.text import NUMBERS
+from sgcad_core.specs import Compass, Median
+
+Side = Literal["left", "right"]
+DIRECTIONS: dict[str, Compass] = {
+    "north": "N", "south": "S", "east": "E", "west": "W",
+    "northeast": "NE", "northwest": "NW", "southeast": "SE", "southwest": "SW",
+}  # fmt: skip
+DIR = r"(?:north|south)(?:east|west)?(?:bound|erly|ern)?|(?:east|west)(?:bound|erly|ern)?"
+BOUND = r"(?:north|south)(?:east|west)?bound|(?:east|west)bound"
+NUM = rf"(?:\d{{1,2}}|{'|'.join(NUMBERS)}|a single|single)"
+
+
+def compass(word: str) -> Compass:
+    """The compass point of "north", "northbound", "northerly" or "Northern"."""
+    return DIRECTIONS[re.sub(r"(?:bound|erly|ern)$", "", word.lower())]
+
+
+def number(word: str) -> int:
+    """3 for "3" and "three"; 1 for "a", "the" and "single"."""
+    word = word.lower()
+    return int(word) if word.isdigit() else NUMBERS.get(word, 1)
+
+
+@dataclass(frozen=True)
+class LaneFacts:
+    """What one piece of text states of one road's lanes; None and empty mean not stated.
+
+    `total`: both directions, as the writer counts (with or without turn lanes). `each_way`: lanes in each
+    direction. `toward`: travel direction -> lanes, turn lanes counted. `turns`: travel direction (or "any", or
+    "each") -> turn lanes.
+    """
+
+    total: int | None = None
+    each_way: int | None = None
+    toward: dict[str, int] = field(default_factory=dict)
+    turns: dict[str, tuple[Side, ...]] = field(default_factory=dict)
+    one_way: bool | None = None
+    one_way_toward: Compass | None = None
+    center_turn_lane: bool = False
+    median: Median | None = None
+    divided: bool | None = None
+    own: int | None = None
+    """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing at all was found."""
+        return self == LaneFacts()
+
+
+# ------------------------------------------------------------------ whole-road words
+_TOTAL = re.compile(rf"(?<![#\w])({NUM})-lane(?:d|s)?\b(?! lines?\b)", re.I)
+_EACH = re.compile(
+    rf"\b({NUM})[ -]+(?:(?:through|travel|traffic|driving|main|marked|general|regular|full|standard)[ -]+)*"
+    r"(?:lanes? )?(?:of (?:travel|traffic) )?(?:traveling |running |going )?"
+    r"(?:in|for|on|per|to) (?:each|either|both|every)(?: (?:direction|side|way|approach)s?(?: of travel)?)"
+    rf"|\b({NUM})[ -]+(?:(?:through|travel|traffic)[ -]+)*lanes? (?:each way|per direction|each direction)",
+    re.I)  # fmt: skip
+_OWN = re.compile(
+    rf"\b(?:lane (?:\w+|#\d)|first|second|third|fourth|fifth|left|right|middle|center|\w+ lane|\dst|\dnd|\drd|"
+    rf"\dth)(?: lane)? of (?:the )?({NUM})"
+    rf"(?: (?:through|travel|traffic))? lanes?\b(?! (?:each|in each|{BOUND}))", re.I)  # fmt: skip
+_ONE_WAY = re.compile(r"\bone[ -]way\b", re.I)
+_TWO_WAY = re.compile(r"\btwo[ -]way\b(?![ -](?:left|turn|center|stop))|\bbi-?directional\b", re.I)
+_CENTER_TURN = re.compile(
+    r"\b(?:cent(?:er|re)|middle|shared)[ -]+(?:two[ -]way[ -]+)?(?:left[ -]?)?(?:hand[ -])?turn(?:ing)?(?:[ -]lane|"
+    r"(?! ?-?only))\b|"
+    r"\b(?:cent(?:er|re)|middle)[ -]+left[ -](?:turn )?lane|"
+    r"\btwo[ -]way[ -]+(?:center[ -]+)?(?:left[ -]+)?(?:hand )?turn(?:ing)?[ -]lane|\bTWLTL\b|"
+    r"\bturn lane (?:in|down|running down) the (?:center|middle)|\b(?:continuous|"
+    r"dual) left[ -]turn lane", re.I)  # fmt: skip
+
+# ------------------------------------------------------------------ lane items
+_MOD = (
+    rf"(?:{BOUND}|through|thru|travel|traffic|driving|traveling|passing|curb|left|right|turn(?:ing)?|only|center|"
+    r"designated|dedicated|separate|exclusive|additional|general|marked|main|inside|outside|merging|merge|exit|"
+    r"standard|full|short|straight|hand|total|and|or|lane|bound)"
+)
+_DIR_BEHIND = (
+    rf"(?:(?:,? (?:of (?:travel|traffic) )?(?:in|for|on|to|heading|going|traveling|running|serving|designated)"
+    rf"(?: (?:the|a|for))?)? (?P<BEHIND>{DIR})\b(?! of\b)"
+    r"(?:[ -](?:direction|traffic|side|lanes?|travel|approach|road(?:way)?))?)"
+)
+
+
+def _behind(group: int) -> str:
+    return _DIR_BEHIND.replace("BEHIND", f"behind{group}")
+
+
+_ACTS = ("make", "making", "made", "makes", "began", "begin", "initiated", "attempting", "negotiating")
+_NO_ACT = "".join(f"(?<!{act} )" for act in _ACTS)
+"""A left turn that somebody makes is no lane."""
+_ITEM = re.compile(
+    rf"\b(?P<count>{NUM}|an?|the)[ -]+(?P<mods>(?:{_MOD}(?:[ ,/-]+|"
+    rf"\b(?= ))){{0,6}}?)lanes?\b(?! lines?\b){_behind(1)}?|"
+    rf"{_NO_ACT}\b(?P<turncount>{NUM}|an?|the)[ -](?P<turn>left|right)[ -]turn(?! (?:at|in|into|on|onto|to|was|"
+    rf"from))"
+    rf"(?=[ ,);.](?!lane)){_behind(2)}?|"
+    rf"\b(?P<barecount>{NUM})[ -](?P<bare>{BOUND})\b(?! (?:lane|road|street|vehicle|car|truck|V\d))",
+    re.I)  # fmt: skip
+_SUBJECT = re.compile(
+    rf"\b(?P<dir>{BOUND}|(?:north|south|east|west)(?=[ -]side))(?:[ -](?:side|lanes?|road(?:way)?|approach|traffic|"
+    r"direction|leg|travel|portion|section|trafficway|highway|street|carriageway|through lanes?))*"
+    r"(?: of (?:the |this )?[\w /-]{1,40}?)?,? (?:(?:which|that) )?(?:had|has|have|having|consist(?:ed|s|ing)? of|"
+    r"contain(?:ed|s)|"
+    r"(?:is|was|are|were) (?:comprised|composed|made up) of|comprised|included|includes|was|is|were|are|with|"
+    r"there (?:were|are|is|was))\b",
+    re.I)  # fmt: skip
+_WITHIN = re.compile(r"(?:includ\w+|one (?:of which|being)|counting|, the \w+ being|which (?:was|is)|with one being|"
+                     r"consisting of|comprised of|:|—)[\w ]{0,14}$", re.I)  # fmt: skip
+_EACH_TURN = re.compile(
+    r"\b(left|right)[ -]turn lanes? (?:in|for|on) (?:(?:each|both|either|all|opposite|opposing) "
+    r"(?:direction|side|way|approach|of)|"
+    rf"(?:the )?(?:{BOUND}) and (?:the )?(?:{BOUND}))", re.I)  # fmt: skip
+_OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
+
+
+_CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
+
+
+@dataclass(frozen=True)
+class _Item:
+    count: int
+    toward: Compass | None
+    turn: tuple[Side, ...]
+    plain: bool
+    inside: bool
+    definite: bool
+    place: int
+
+
+def lane_facts(text: str) -> LaneFacts:
+    """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
+    marked = _CENTER_TURN.sub(" CENTERLANE ", text)
+    each = _EACH.search(marked)
+    own = _OWN.search(marked)
+    marked = _OWN.sub(" ", marked)
+    counted = _TOTAL.sub("N-lane", _EACH.sub("EACH", marked))
+    items = _counts(list(_items(counted)), _TOTAL.search(marked))
+    known = _directions(counted, items)
+    toward, turns = _sums(items, known)
+    each_turn = _EACH_TURN.search(counted)
+    turns |= {"each": ("left" if each_turn[1].lower() == "left" else "right",)} if each_turn else {}
+    total = _total(_EACH.sub("EACH", marked), counted, items, known)
+    one_way = bool(_ONE_WAY.search(text)) and not _TWO_WAY.search(text)
+    divided, median = divided_and_median(text)
+    return LaneFacts(
+        total=total, each_way=number(each[1] or each[2]) if each else None, toward=toward, turns=turns,
+        one_way=True if one_way else False if _TWO_WAY.search(text) else None,
+        one_way_toward=_one_way_toward(text) if one_way else None,
+        center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
+        own=number(own[1]) if own else None,
+    )  # fmt: skip
+
+
+def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None]) -> int | None:
+    """ "four-lane", else the one number of lanes that no direction claims ("consists of four lanes")."""
+    said = [number(n) for n in _TOTAL.findall(text)]
+    if said:
+        return said[0]
+    loose = [
+        item.count for item, way in zip(items, known, strict=True)
+        if way is None and item.plain and item.count > 1 and not _CROSSED.search(counted[: item.place])
+    ]  # fmt: skip
+    return loose[0] if len(loose) == 1 else None
+
+
+_FLOW = re.compile(
+    rf"\b({DIR})[ ,-]+(?:[\w-]+[ ,]+){{0,3}}one[ -]way|"
+    rf"one[ -]way[ ,-]+(?:[\w-]+[ ,]+){{0,5}}?({DIR})\b", re.I)  # fmt: skip
+
+
+def _one_way_toward(text: str) -> Compass | None:
+    near = _FLOW.search(text)
+    return compass(near[1] or near[2]) if near else None
+
+
+def _items(text: str) -> Iterator[_Item]:
+    """Lane counts in order: "two eastbound lanes", "a left turn lane", "one lane for northbound traffic"."""
+    for match in _ITEM.finditer(text):
+        mods, count = (match["mods"] or "").lower(), match["count"] or match["turncount"] or match["barecount"]
+        if _OFF_ROAD.search(mods):
+            continue
+        word = re.search(BOUND, mods, re.I)
+        behind = match["behind1"] or match["behind2"] or match["bare"] or (word[0] if word else None)
+        turn = _turn(mods, match["turn"])
+        sure = count.lower() not in ("a", "an", "the")
+        if not sure and not turn:
+            continue
+        plain = not turn and not re.search(r"through|thru|merg", mods)
+        if count.lower() == "the" and not match["turn"] and not behind:
+            continue
+        yield _Item(number(count), compass(behind) if behind else None, turn, plain,
+                    bool(_WITHIN.search(text[: match.start()])), count.lower() == "the", match.start())  # fmt: skip
+
+
+def _counts(items: list[_Item], total: re.Match[str] | None) -> list[_Item]:
+    """Without "the left-turn lane" where lanes are counted besides, or where no lane of the total is spare for it."""
+    sure = [i for i in items if not i.definite]
+    spare = total is None or number(total[1]) % 2 == 1
+    return sure or [i for i in items if i.toward and spare]
+
+
+def _turn(mods: str, bare: str | None) -> tuple[Side, ...]:
+    if bare:
+        return ("left",) if bare.lower() == "left" else ("right",)
+    if not re.search(r"\bturn", mods):
+        return ()
+    sides: list[Side] = []
+    if "left" in mods:
+        sides.append("left")
+    if "right" in mods:
+        sides.append("right")
+    return tuple(sides)
+
+
+def _directions(text: str, items: list[_Item]) -> list[Compass | None]:
+    """Each item's direction: its own, else its clause's subject's, else a neighbor's."""
+    known = [i.toward or _subject(text, i.place) for i in items]
+    total = _headline(known, items)
+    for index, own in enumerate(known):
+        if own is None and index and index != total and _same_clause(text, items[index - 1], items[index]):
+            known[index] = known[index - 1]
+    for index in range(len(items) - 2, -1, -1):
+        if known[index] is None and index != total and _same_clause(text, items[index], items[index + 1]):
+            known[index] = known[index + 1]
+    return known
+
+
+def _headline(known: list[Compass | None], items: list[_Item]) -> int | None:
+    """The index of "five lanes" where lanes of two directions follow: a total, no direction's share."""
+    first = next((k for k, item in enumerate(items) if known[k] is None and item.plain), None)
+    if first is None or len({way for way in known[first + 1 :] if way}) < 2:
+        return None
+    return first if items[first].count >= sum(i.count for i in items[first + 1 :] if not i.inside) - 1 else None
+
+
+def _subject(text: str, place: int) -> Compass | None:
+    """ "The southbound side had ..." in the clause before the item."""
+    clause = re.split(r"[;.]", text[:place])[-1]
+    found = list(_SUBJECT.finditer(clause))
+    return compass(found[-1]["dir"]) if found else None
+
+
+def _same_clause(text: str, first: _Item, second: _Item) -> bool:
+    between = text[first.place : second.place]
+    return ". " not in between and not re.search(r"\bV\d", between)
+
+
+def _sums(items: list[_Item], known: list[Compass | None]) -> tuple[dict[str, int], dict[str, tuple[Side, ...]]]:
+    turns: dict[str, tuple[Side, ...]] = {}
+    for item, way in zip(items, known, strict=True):
+        if item.turn:
+            turns[way or "any"] = turns.get(way or "any", ()) + item.turn * (1 if len(item.turn) > 1 else item.count)
+    ways = dict.fromkeys(way for way in known if way)
+    return {way: _count([i for i, w in zip(items, known, strict=True) if w == way]) for way in ways}, turns
+
+
+def _count(items: list[_Item]) -> int:
+    """Lanes of one direction. "three lanes, two through lanes and a turn lane" are three, not six."""
+    plain = sum(i.count for i in items if i.plain)
+    through = sum(i.count for i in items if not i.plain and not i.turn)
+    turning = sum(max(i.count, len(i.turn)) for i in items if i.turn)
+    beside = sum(max(i.count, len(i.turn)) for i in items if i.turn and not i.inside)
+    return max(plain, through + turning) if plain and through else max(plain + through + beside, turning)

@@ -1,0 +1,77 @@
+"""How each vehicle moved before the crash: heading, lane, speed, deeds, where it came from and meant to go.
+
+Reads segments (one subject each) and the critical-event sentences that many reports carry. What an
+interview says counts only where nothing else does. Knows no contact and infers nothing across vehicles.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from sgcad_core.narrative.clauses import Segment, Told
+from sgcad_core.narrative.critical_events import read_code
+from sgcad_core.narrative.deeds import read_deeds
+from sgcad_core.narrative.headings import note_bound, read_heading
+from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.roles import HIT, Role
+from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
+from sgcad_core.narrative.vehicles import Roster
+
+_WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
+                          "rest": 2}  # fmt: skip
+
+
+_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
+
+
+def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
+    """Motion of every vehicle of the roster."""
+    found = {v: Motion() for v in who.ids}
+    impact = min((t.number for t in told if t.role == "impact"), default=len(told))
+    for segment in cut:
+        if segment.role in _UNREAD:
+            continue
+        for vehicle in segment.subjects:
+            motion = found[vehicle]
+            late = segment.number > impact and bool(motion.headings or motion.deeds)
+            _read(motion, segment, vehicle, who, 2 if late else 4)
+    for t in told:
+        if t.role not in _UNREAD:
+            note_bound(found, t.text, _WEIGHT.get(t.role, 1))
+        if t.role in ("codes", "factors"):
+            read_code(found, t, who)
+    return found
+
+
+def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int) -> None:
+    """`most`: the highest weight; what is told again behind the impact is another witness."""
+    text = re.sub(r"\([^()]*\)", " ", segment.text)
+    weight = min(_WEIGHT.get(segment.role, 1), most)
+    before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
+    read_heading(motion, before_hit, weight)
+    read_deeds(motion, before_hit, weight, segment.number)
+    read_kin(motion, before_hit, weight, vehicle, who)
+    if segment.role != "rest":
+        read_lane(motion, before_hit)
+        read_access(motion, before_hit)
+    read_speed(motion, segment.text, weight)
+
+
+def _until_hit(text: str) -> str:
+    """The part before the blow: what follows it is the effect, not the approach."""
+    for m in HIT.finditer(text):
+        if not re.search(
+            r"\b(?:avoid\w*|prior to|before|to|without|about|of|prevent\w*)\s+(?:\w+ )?$", text[: m.start()]
+        ):
+            return text[: m.start()]
+    return text
+
+
+def _until_rest(text: str) -> str:
+    cut = re.search(
+        r"\b(?:cam?e to|final|rotat|after|following|spun|spin|impact|facing|rest\b|pushed|continued|"
+        r"rolled|roll)",
+        text,
+    )
+    return text[: cut.start()] if cut else text

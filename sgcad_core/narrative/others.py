@@ -1,0 +1,46 @@
+"""Road users and objects without a vehicle number: pedestrians, cyclists, poles, trees.
+
+Only what a vehicle of the report hits becomes an actor; non-contact cars, buses and police officers do not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from sgcad_core.narrative.contact import Blow
+from sgcad_core.specs import ActorKind
+
+
+@dataclass(frozen=True)
+class OtherFacts:
+    """A pedestrian (P1), cyclist (B1) or object (O1): the word is the report's own."""
+
+    id: str
+    kind: ActorKind
+    word: str
+
+
+_KINDS: tuple[tuple[str, ActorKind, re.Pattern[str]], ...] = (
+    ("P", "pedestrian", re.compile(r"pedestrian|walker|jogger", re.I)),
+    ("B", "bicycle", re.compile(r"bicycl|cyclist|bike", re.I)),
+)
+
+
+def others(blows: Iterable[Blow], vehicles: tuple[str, ...]) -> tuple[OtherFacts, ...]:
+    """Everybody and everything that is hit and has no number, each word once, in order."""
+    words: list[str] = []
+    for blow in blows:
+        if blow.other not in vehicles and blow.other not in words and blow.role not in ("interview", "injury"):
+            words.append(blow.other)
+    found: list[OtherFacts] = []
+    for word in words:
+        letter, kind = _kind(word)
+        number = sum(f.id.startswith(letter) for f in found) + 1
+        found.append(OtherFacts(f"{letter}{number}", kind, word))
+    return tuple(found)
+
+
+def _kind(word: str) -> tuple[str, ActorKind]:
+    return next(((letter, kind) for letter, kind, pattern in _KINDS if pattern.search(word)), ("O", "object"))

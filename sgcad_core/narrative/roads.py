@@ -1,0 +1,174 @@
+"""The roads of a crash as its narrative tells them: `road_facts` is the one entry.
+
+Roads with lanes as stated, their junction, limits and curves, and who is on them. What the text leaves open
+stays None here; `sgcad_core.narrative.layout_facts` fills it. Knows no road network format.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from sgcad_core.narrative.clauses import Told, tell
+from sgcad_core.narrative.compass import between, compass_of, turned
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.junction import JunctionFacts, junction_of
+from sgcad_core.narrative.lanes import BOUND, LaneFacts
+from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
+from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
+from sgcad_core.narrative.road_merge import GatheredRoad, gather
+from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.text import sentences
+from sgcad_core.narrative.vehicles import roster
+from sgcad_core.specs import Compass
+
+
+@dataclass(frozen=True)
+class RoadFact:
+    """One road. `axis` N, NE, E or SE (N runs north and south); `cross`: told as the intersecting road."""
+
+    axis: Compass | None
+    kind: Kind
+    lanes: LaneFacts
+    vehicles: tuple[str, ...]
+    cross: bool = False
+    speed_limit_mph: int | None = None
+    curve: tuple[tuple[Compass, Literal["left", "right"]], ...] = ()
+    """(travel direction, side) of each bend told."""
+    rural: bool = False
+
+
+@dataclass(frozen=True)
+class RoadFacts:
+    """All roads of a crash, the streets first; `crash`: the vehicles that the roads must carry.
+
+    Where no heading is told, the headings in `crash` are turned to fit the roads (`crash_facts` alone cannot);
+    a told lane ("in the eastbound lanes") then makes them `oriented`.
+    """
+
+    roads: tuple[RoadFact, ...]
+    junction: JunctionFacts
+    crash: CrashFacts
+    notes: tuple[str, ...] = field(default=())
+    merge_lane: bool = False
+    """Whether a lane for merging (acceleration lane) is told."""
+
+    @property
+    def streets(self) -> tuple[RoadFact, ...]:
+        """Roads that are neither driveway nor ramp."""
+        return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
+
+
+def road_facts(narrative: str, crash: CrashFacts | None = None) -> RoadFacts:
+    """Read the roads off a report. Never raises; a text without roads gives none. `crash` saves reading twice."""
+    crash = crash or crash_facts(narrative)
+    found = sentences(narrative)
+    who = roster(s.text for s in found)
+    told = tell(found, who)
+    mentions = road_mentions(_telling(told), who.ids)
+    crash = _oriented(crash, mentions, told)
+    headings = {v.id: v.heading for v in crash.vehicles if v.heading}
+    gathered = gather(mentions, headings)
+    junction = junction_of(told, crash.vehicles, gathered)
+    limits, bends = speed_limits(told, headings), curves(told, headings)
+    rural = any(t.role in CRASH_ROLES and _RURAL.search(t.text) for t in told)
+    roads = tuple(replace(_road(r, gathered, limits, bends, headings), rural=rural) for r in gathered)
+    roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
+    merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
+    return RoadFacts(roads, junction, crash, _open_ends(roads, junction, crash), merge_lane)
+
+
+def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
+    """A two-lane road has no center turn lane where the other road has one: somebody only turned into that."""
+    others = any(r.lanes.center_turn_lane and r.lanes.total != 2 for r in roads if r is not road)
+    if not (others and road.lanes.center_turn_lane and road.lanes.total == 2):
+        return road
+    return replace(road, lanes=replace(road.lanes, center_turn_lane=False))
+
+
+_MERGE_LANE = re.compile(r"\b(?:merg(?:e|ing)|acceleration|auxiliary)(?: \w+)? lane\b", re.I)
+_RURAL = re.compile(r"\brural\b|\bcountry (?:road|highway|lane)", re.I)
+_PLACE = re.compile(rf"\b(?:in|into|on) (?:the )?(?:\w+ )?({BOUND})(?: \w+)? lanes?\b", re.I)
+
+
+def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Told, ...]) -> CrashFacts:
+    """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
+    streets = [m for m in mentions if m.axis and m.kind not in ("driveway", "ramp")]
+    joined = [m for m in streets if m.relation == "other"] if any(m.kind == "ramp" for m in mentions) else []
+    axis = next((m.axis for m in joined + streets), None)
+    lead = next((v for v in crash.vehicles if v.heading and v.origin not in ("driveway", "parking_lot", "ramp")), None)
+    place = next((m for t in told if t.role in ("opening", "impact", "road") and (m := _PLACE.search(t.text))), None)
+    told_way = compass_of(place[1]) if place else None
+    told_way = told_way if told_way and axis in (None, axis_of(told_way)) else None
+    way = told_way or axis
+    if crash.oriented or not way or not lead or not lead.heading or (not place and axis_of(lead.heading) == axis):
+        return crash
+    turn = between(lead.heading, way)
+    return replace(crash, vehicles=tuple(_turned(v, turn) for v in crash.vehicles), oriented=told_way is not None)
+
+
+def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
+    heading = turned(v.heading, clockwise_deg) if v.heading else None
+    return replace(v, heading=heading, exit_heading=turned(v.exit_heading, clockwise_deg) if v.exit_heading else None)
+
+
+def _telling(told: tuple[Told, ...]) -> list[Told]:
+    """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
+    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
+
+
+def _road(
+    road: GatheredRoad,
+    all_roads: list[GatheredRoad],
+    limits: tuple[SpeedLimit, ...],
+    bends: tuple[Curve, ...],
+    headings: dict[str, Compass],
+) -> RoadFact:
+    streets = [r for r in all_roads if r.kind not in ("driveway", "ramp")]
+    along = [h for h in headings.values() if axis_of(h) == road.axis]
+    lead = (along[0] if along else road.axis) if streets and road is streets[0] else None
+    return RoadFact(
+        road.axis, road.kind, road.lanes, tuple(road.vehicles), road.cross,
+        _limit(road, limits) if road.kind != "driveway" else None, _bends(road, lead, bends),
+    )  # fmt: skip
+
+
+def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> int | None:
+    """The road's own limit, else one that holds for all."""
+    own = [limit.mph for limit in limits if limit.axis and limit.axis == road.axis]
+    cross = [limit.mph for limit in limits if limit.cross and not limit.axis and road.cross]
+    everywhere = [limit.mph for limit in limits if not limit.axis and not limit.cross]
+    return next(iter(own + cross + everywhere), None)
+
+
+def _bends(
+    road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]
+) -> tuple[tuple[Compass, Literal["left", "right"]], ...]:
+    """Bends of the road's own directions; one without belongs to the main road as its first vehicle drives (`lead`)."""
+    found: dict[Compass, Literal["left", "right"]] = {}
+    for bend in bends:
+        if bend.toward and road.axis and axis_of(bend.toward) == road.axis:
+            found.setdefault(bend.toward, bend.side)
+    return tuple(found.items()) or tuple(
+        (lead, bend.side) for bend in bends[:1] if lead and bend.toward is None
+    )
+
+
+_AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "southeast-northwest"}
+
+
+def _open_ends(roads: tuple[RoadFact, ...], junction: JunctionFacts, crash: CrashFacts) -> tuple[str, ...]:
+    """What a layout has to assume because the text does not say it."""
+    streets = [r for r in roads if r.kind not in ("driveway", "ramp")]
+    notes = [
+        f"the {_AXIS_WORDS[r.axis or 'N']} road's lanes are not stated"
+        for r in streets
+        if not (r.lanes.total or r.lanes.each_way or r.lanes.toward or r.lanes.one_way)
+    ]
+    notes += ["no road is described"] if not streets else []
+    notes += ["no direction of travel is stated"] if not crash.oriented else []
+    if junction.kind in ("t", "four_leg") and not junction.stated:
+        notes.append("the kind of junction is not stated")
+    return tuple(notes)

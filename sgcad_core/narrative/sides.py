@@ -1,0 +1,95 @@
+"""The contacts with all their sides: corners decided, open sides completed from headings and maneuvers."""
+
+from __future__ import annotations
+
+from sgcad_core.narrative.compass import between
+from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.draft import TURN_DEG, Draft, Joined, Settled, apart, end_of, side_hit
+from sgcad_core.specs import Area
+
+_SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
+_BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
+
+
+def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]:
+    if not pairs and len(draft.who.ids) >= 2:
+        a, b = draft.who.ids[:2]
+        return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
+    return [_join(draft, out, blow) for blow in pairs]
+
+
+def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
+    """Striker first: the one that hits with its front where the other does not."""
+    told = all(zone is not None and "/" not in zone for zone in (blow.actor_area, blow.other_area))
+    a, b = blow.actor, blow.other
+    area_a, area_b = _corners(draft, out, blow)
+    if area_a is None and area_b is None and blow.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap")):
+        area_a, area_b = _sideswiped(out, a, b)
+    if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
+        a, b = b, a
+    area_a, area_b = complete_areas(out, a, b, area_a, area_b)
+    if area_b == "front" and area_a != "front":
+        a, b, area_a, area_b = b, a, area_b, area_a
+    return Joined(a, b, area_a, area_b, told, True)
+
+
+def _less_of_a_striker(out: Settled, a: str, b: str) -> bool:
+    """Whether b rather than a hits with its front: a turns or stands and b goes straight; else the higher number."""
+    bent_a, bent_b = (out.maneuvers[v] in _BENT or _standing(out, v) for v in (a, b))
+    return (bent_a and not bent_b) or (bent_a == bent_b and int(a[1:]) > int(b[1:]))
+
+
+def _sideswiped(out: Settled, a: str, b: str) -> tuple[Area, Area]:
+    """Flank to flank: left to left of oncoming vehicles, else by the lane change, else a on the left."""
+    if apart(between(out.headings[a], out.headings[b]), 180) <= 45:
+        return "left", "left"
+    a_goes_left = out.maneuvers[a] == "lane_change_left" or out.maneuvers[b] == "lane_change_right"
+    return ("left", "right") if a_goes_left else ("right", "left")
+
+
+def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area | None]:
+    """Each corner as its end or its flank: the flank where the paths cross and the other hits with its front."""
+    turn = between(out.headings[blow.actor], out.headings[blow.other])
+    pair = (blow.actor, blow.other)
+    skidding = any(draft.motions[v].did("lost_control", 3) for v in pair) and turn == 0
+    bent = skidding or turn % 180 != 0 or any(out.maneuvers[v] in _BENT for v in pair)
+    zones = {blow.actor: blow.actor_area, blow.other: blow.other_area}
+    areas: dict[str, Area | None] = {}
+    for me, you in ((blow.actor, blow.other), (blow.other, blow.actor)):
+        mine, yours = zones[me], zones[you]
+        flank = (
+            bent
+            and mine
+            and "/" in mine
+            and yours in ("front", None)
+            and out.maneuvers[me] not in ("stopped", "parked")
+        )
+        areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
+    return areas[blow.actor], areas[blow.other]
+
+
+def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Area | None) -> tuple[Area, Area]:
+    """Sides that the text leaves open, from headings and maneuvers; a is the grammatical striker."""
+    if area_a and area_b:
+        return area_a, area_b
+    turn = between(out.headings.get(a, "N"), out.headings.get(b, "N")) if a in out.headings and b in out.headings else 0
+    at_contact = (turn + TURN_DEG.get(out.maneuvers[b], 0.0) - TURN_DEG.get(out.maneuvers[a], 0.0)) % 360
+    if area_a is None and area_b is None:
+        if _standing(out, a) and not _standing(out, b):
+            return side_hit(-at_contact), "front"
+        return "front", side_hit(-at_contact)
+    if area_a is None:
+        if (
+            {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING)
+            and area_b in ("left", "right")
+            and apart(turn, 0) <= 45
+        ):
+            return ("right" if area_b == "left" else "left"), area_b
+        return ("front", area_b) if area_b != "front" else (side_hit(at_contact), area_b)  # type: ignore[return-value]
+    if {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING) and area_a in ("left", "right") and apart(turn, 0) <= 45:
+        return area_a, "right" if area_a == "left" else "left"
+    return (area_a, side_hit(-at_contact)) if area_a == "front" else (area_a, "front")
+
+
+def _standing(out: Settled, vehicle: str) -> bool:
+    return out.maneuvers[vehicle] in ("stopped", "parked")

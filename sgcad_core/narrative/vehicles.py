@@ -1,0 +1,257 @@
+"""Who is in the report: numbered vehicles, their make, model and kind, and every way they are mentioned.
+
+`roster` reads the descriptions; `Roster.resolve` rewrites a sentence so that each vehicle is just "V<n>":
+descriptions behind a mention go, "the Ford" becomes the number. Knows no motion and no contact.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.specs import ActorKind
+
+MENTION = re.compile(r"\bV\d+\b")
+_NO_MODEL = re.compile(r"(?<!Volvo )\bV\d+\b")
+_YEAR = r"(?:19|20)\d\d"
+_COLOR = "|".join(COLORS)
+_MAKE = "|".join(sorted(map(re.escape, MAKES), key=len, reverse=True))
+_BODY = "|".join(sorted(map(re.escape, BODY_WORDS), key=len, reverse=True))
+_STOP = re.compile(
+    r"(?:was|were|is|are|had|has|that|which|who|while|when|as|traveling|stopped|driven|operated|occupied|pulling|"
+    r"towing|proceeding|"
+    r"heading|headed|approaching|exiting|entering|entered|facing|parked|turning|making|attempting|attempted|went|"
+    r"going|struck|"
+    r"impacted|contacted|slowed|began|pulled|driving|moving|waiting|hauling|carrying|in|on|at|with|behind|ahead|"
+    r"directly|by|from|"
+    r"initially|also|intending|negotiating|and|but|did|came|to|into|(?:north|south|east|west)(?:east|"
+    r"west)?(?:bound)?|"
+    r"crossed|crossing|turned|made|drifted|lost|collided|hit|slowing|merging|starting|failed|steered|braked|"
+    r"departed|continued|"
+    r"following|being|ran|left the|coming|backing|passing|then|just|sideswiped|rear-ended|changed|changing|"
+    r"swerved|veered|"
+    r"equipped|decelerating|accelerating|preparing|returning|belonging|registered|loaded|registered|first|for|of|"
+    r"who's|whose)\b", re.I)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Identity:
+    """A vehicle as described: words are lower case except make and model; kind falls back to car."""
+
+    id: str
+    year: int | None = None
+    make: str | None = None
+    model: str | None = None
+    color: str | None = None
+    kind: ActorKind = "car"
+    kind_stated: bool = False
+    trailer: bool = False
+
+
+@dataclass(frozen=True)
+class Roster:
+    """Every vehicle of the report by number, and how to find it in a sentence."""
+
+    vehicles: tuple[Identity, ...]
+    aliases: dict[str, str] = field(default_factory=dict)
+    """Lower-case word or phrase -> id, only where it names one vehicle."""
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The numbers in order."""
+        return tuple(v.id for v in self.vehicles)
+
+    def other(self, vehicle: str) -> str | None:
+        """The other one of two vehicles."""
+        rest = [v for v in self.ids if v != vehicle]
+        return rest[0] if len(rest) == 1 else None
+
+    def resolve(self, sentence: str) -> str:
+        """The sentence with every description or name of a vehicle replaced by its number."""
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), sentence)
+        text = self._named.sub(self._number, text) if self._named else text
+        text = re.sub(r"\s*\((V\d+)[^()]*\)(?=\s|,|\.|'|$)", r" \1", text)
+        text = re.sub(r"\b(V\d+)((?:,? )\1\b)+", r"\1", text)
+        text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
+        return re.sub(r"\s+", " ", text).strip()
+
+    @cached_property
+    def _named(self) -> re.Pattern[str] | None:
+        if not self.aliases:
+            return None
+        names = "|".join(sorted(map(re.escape, self.aliases), key=len, reverse=True))
+        return re.compile(
+            rf"\b(?:the|this)\s+(?:(?:{_COLOR}|case|struck|striking)\s+)?(?:{_YEAR}\s+)?(?:(?:{_MAKE})\s+)?({names})"
+            rf"(?:[ -](?:{_BODY}|{names}))*(?:\s*\((V\d+)[^()]*\))?(?![\w-])(?!\s+(?:lane|lanes|dealer\w*|stop|"
+            rf"station))",
+            re.I,
+        )
+
+    def _number(self, match: re.Match[str]) -> str:
+        return match.group(2) or self.aliases[match.group(1).lower()]
+
+
+_OCCUPIED = re.compile(
+    r"\b(V\d+)(?:,? (?:with|carrying|containing|occupied by) (?:\w+ ){1,3}?(?:occupants?|passengers?|person|people|"
+    r"children)\b(?: \w+board)?,?)+\s",
+    re.I,
+)
+_BRACKETED = re.compile(
+    r"\b(?:the|an?|this)\s+((?:(?!(?:of|driver|operator|passenger|was|were|is|that|which|front|rear|left|right|"
+    r"side|in|on|by|to)\b)"
+    r"[\w/.'&-]+,?\s+){1,8}?)\((V\d+)(?:,[^()]*)?\)", re.I)  # fmt: skip
+
+
+def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
+    return match.group(2) if match.group(2) in ids else match.group(0)
+
+
+def roster(sentences: Iterable[str]) -> Roster:
+    """The vehicles that normalized sentences number, with what is said of them."""
+    told = list(sentences)
+    found = tuple(_identity(vehicle, told) for vehicle in _numbers(told))
+    return Roster(found, _aliases(found))
+
+
+def _numbers(told: list[str]) -> list[str]:
+    """The ids in order; a number far beyond the others is a model (Volvo V70), not a vehicle."""
+    kept: list[int] = []
+    for n in sorted({int(m[1:]) for text in told for m in _NO_MODEL.findall(text) if int(m[1:]) < 100}):
+        if 1 <= n <= (kept[-1] if kept else 1) + 2:
+            kept.append(n)
+    return [f"V{n}" for n in kept]
+
+
+def _identity(vehicle: str, told: list[str]) -> Identity:
+    words = " ".join(d for text in told for d in descriptions(text, vehicle))
+    year = re.search(rf"\b{_YEAR}\b", words)
+    make = re.search(rf"\b(?:{_MAKE})\b", words, re.I)
+    color = re.search(rf"\b(?:{_COLOR})\b", words, re.I)
+    model = _model(words, make.end()) if make else None
+    kind, stated = kind_of(words, model)
+    trailer = bool(re.search(r"\b(?:semi-?trailer|trailer|tractor-trailer)\b", words, re.I)) or _tows(vehicle, told)
+    return Identity(
+        vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
+        color.group().lower() if color else None, kind, stated, trailer,
+    )  # fmt: skip
+
+
+def _model(words: str, start: int) -> str | None:
+    """The one or two words behind the make that are neither body nor verb."""
+    found: list[str] = []
+    for word in re.findall(r"[\w.'/-]+|[,;()]", words[start:])[:3]:
+        if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or re.fullmatch(_YEAR, word):
+            break
+        if re.match(r"\d-door", word) or word.lower() in COLORS or word.lower() in MAKES:
+            break
+        found.append(word.rstrip(".,"))
+    return " ".join(found[:2]) or None
+
+
+def _tows(vehicle: str, told: list[str]) -> bool:
+    pattern = (
+        rf"\b{vehicle}\b[^.;]{{0,120}}?\b(?:pulling|towing|hauling)\b|\b{vehicle}'s (?:\w+ )?trailer|"
+        rf"trailer of {vehicle}\b"
+    )
+    return any(re.search(pattern, text) and _tow_owner(text) == vehicle for text in told)
+
+
+def _tow_owner(text: str) -> str | None:
+    """The vehicle named last before (or in) the words that tell of the trailer."""
+    verb = re.search(
+        r"\b(?:pulling|towing|hauling) (?:an?|one|two|its|the)\b|(?<='s )(?:\w+ )?trailer|trailer of (?=V\d)", text
+    )
+    if not verb:
+        return None
+    before = MENTION.findall(text[: verb.start()]) or MENTION.findall(text)
+    return before[-1] if before else None
+
+
+# ------------------------------------------------------------------ descriptions
+def descriptions(text: str, vehicle: str) -> list[str]:
+    """Noun phrases that describe a vehicle: behind "V1," or "V1 was a", or before "(V1)"."""
+    found = [m.group(1) for m in _BRACKETED.finditer(text) if m.group(2) == vehicle]
+    for mention in re.finditer(rf"\b{vehicle}\b", text):
+        end = _description_end(text, mention.end())
+        if end > mention.end():
+            found.append(text[mention.end() : end])
+    return found
+
+
+_LEAD = re.compile(
+    rf"\s*(?:,|\(|-|:)?\s*(?:(?:was|is|were)\s+)?(?:an?\s+|the\s+)?(?:(?:driven|operated)\s+)?"
+    rf"(?=(?:[\w-]+,?\s+){{0,3}}?(?:{_YEAR}\b|(?:{_MAKE})\b)|(?<=an )(?:[\w-]+\s){{0,2}}?(?:{_BODY})\b|"
+    rf"(?<=a )(?:[\w-]+\s){{0,2}}?"
+    rf"(?:{_BODY})\b)", re.I)  # fmt: skip
+
+
+def _description_end(text: str, start: int) -> int:
+    """Where the description that begins at `start` ends; `start` itself if there is none."""
+    lead = _LEAD.match(text, start)
+    if not lead or _STOP.match(text, lead.end()):
+        return start
+    at = lead.end()
+    for _ in range(16):
+        token = re.compile(r"[\s,()]*([^\s,;()]+)").match(text, at)
+        if not token or _STOP.match(text, token.start(1)) or MENTION.match(text, token.start(1)):
+            break
+        at = token.end()
+        if text[at - 1] in ".:" or text[at : at + 1] == ";":
+            break
+    return at
+
+
+def _drop_descriptions(text: str) -> str:
+    """ "V1, a 2001 Ford Focus, was" -> "V1 was"; "V1 was a 2001 Ford Focus that stopped" -> "V1 stopped"."""
+    out, at = "", 0
+    for mention in MENTION.finditer(text):
+        if mention.start() < at:
+            continue
+        end = _description_end(text, mention.end())
+        out += text[at : mention.end()]
+        at = mention.end()
+        if end > at:
+            out, at = _join(out, text, at, end)
+    return out + text[at:]
+
+
+def _join(out: str, text: str, start: int, end: int) -> tuple[str, int]:
+    """Glue what follows a dropped description to its mention."""
+    dropped = text[start:end]
+    was = re.match(r"\s*(was|is|were)\b", dropped)
+    tail = re.match(r"[\s,)]*(?:(?:that|which|who)\s+)?", text[end:])
+    skip = tail.end() if tail else 0
+    rest = text[end + skip :]
+    if was and re.match(r"(?:\w+ing|stopped|parked|driven|facing|northbound|southbound|eastbound|westbound)\b", rest):
+        return f"{out} {was.group(1)} ", end + skip
+    if dropped.endswith("."):
+        return f"{out}.", end
+    return f"{out} ", end + skip
+
+
+# ------------------------------------------------------------------ names
+def _aliases(vehicles: tuple[Identity, ...]) -> dict[str, str]:
+    """Words that name exactly one vehicle: make, model, first word of the model, kind of vehicle."""
+    claims: dict[str, set[str]] = {}
+    for v in vehicles:
+        for name in _names(v):
+            claims.setdefault(name, set()).add(v.id)
+    return {name: next(iter(ids)) for name, ids in claims.items() if len(ids) == 1}
+
+
+def _names(v: Identity) -> set[str]:
+    names: set[str] = set()
+    if v.make:
+        names |= {word for word, make in MAKES.items() if make == v.make}
+    if v.model:
+        first = v.model.split()[0].lower()
+        names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
+    if v.kind_stated:
+        names |= {
+            word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
+        }
+        names |= {"truck"} if v.kind in ("truck", "pickup") else set()
+    return names

@@ -1,0 +1,218 @@
+"""The line that an actor follows over its route, and what a driver would see from it.
+
+Chooses lanes, joins them through the junctions and measures the room to either side. Knows no time and no
+other actor.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.formats.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
+from sgcad_core.geometry import Floats, arc_lengths, resample
+from sgcad_core.planner.path import Path, bezier, draw, end_heading
+from sgcad_core.planner.route import Route, Way, find_route
+from sgcad_core.specs import Actor
+
+_MADE_UP_RADIUS_M = 7.0
+_MADE_UP_RUN_M = 25.0
+
+
+class Passage(NamedTuple):
+    """A node on the way: stations where its area begins and ends, and whether roads really meet there."""
+
+    node: str
+    entry_m: float
+    exit_m: float
+    is_junction: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """An actor's undisturbed line with its landmarks; metres, stations on `path`."""
+
+    path: Path
+    start_m: float
+    """Where the actor's own road begins."""
+    end_m: float
+    """Where the last road of the route ends."""
+    passages: tuple[Passage, ...]
+    turn: Passage | None
+    """Where it turns off, if it does."""
+    lane_width_m: float
+    opposite_m: float
+    """To the center of the nearest lane of the other direction (left of the own lane)."""
+    left_edge_m: float
+    right_edge_m: float
+    limit_mps: float
+    roads: tuple[tuple[str, float, float], ...]
+    """Road ids with the stations between which they are driven."""
+    notes: tuple[str, ...] = ()
+
+    def on_road(self, road: str) -> tuple[float, float] | None:
+        """Stations between which a road is driven."""
+        return next(((a, b) for name, a, b in self.roads if name == road), None)
+
+    def reversed(self) -> Course:
+        """The course of one who backs along his own lane: against its direction, from its end."""
+        passages = tuple(Passage(p.node, -p.exit_m, -p.entry_m, p.is_junction) for p in reversed(self.passages))
+        roads = tuple((road, -b, -a) for road, a, b in reversed(self.roads))
+        return replace(
+            self, path=self.path.reversed(), start_m=-self.end_m, end_m=-self.start_m, passages=passages, turn=None,
+            roads=roads, left_edge_m=self.right_edge_m, right_edge_m=self.left_edge_m,
+        )  # fmt: skip
+
+
+class _Piece(NamedTuple):
+    points: Floats
+    way: int
+    is_crossing: bool
+
+
+def find_course(graph: LaneGraph, actor: Actor) -> Course:
+    """The line of one actor. Raises InvalidOutput for a road id that the network does not have."""
+    route = find_route(graph, actor)
+    notes = list(route.notes)
+    lanes, links = _lane_chain(graph, route, actor, notes)
+    pieces = _pieces(route, lanes, links)
+    if route.made_up_turn_rad:
+        notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
+        pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
+    return _measured(graph, route, lanes[route.start], pieces, tuple(notes))
+
+
+# ------------------------------------------------------------------ lanes
+def _lane_chain(
+    graph: LaneGraph, route: Route, actor: Actor, notes: list[str]
+) -> tuple[list[Lane], list[Connection | None]]:
+    """A lane for every way and the connection (or None) between each two."""
+    lanes: list[Lane] = [route.ways[0].lanes[0]] * len(route.ways)
+    links: list[Connection | None] = [None] * (len(route.ways) - 1)
+    lanes[route.start] = _first_lane(graph, route, actor, notes)
+    for i in range(route.start, len(links)):
+        links[i], lanes[i + 1] = _next_lane(graph, route.ways[i], lanes[i], route.ways[i + 1])
+    for i in range(route.start - 1, -1, -1):
+        links[i], lanes[i] = _previous_lane(graph, route.ways[i], route.ways[i + 1], lanes[i + 1])
+    return lanes, links
+
+
+def _first_lane(graph: LaneGraph, route: Route, actor: Actor, notes: list[str]) -> Lane:
+    way = route.ways[route.start]
+    if actor.lane is not None:
+        if actor.lane > len(way.lanes):
+            notes.append(f"{actor.id}: lane {actor.lane} of {way.road} taken as {len(way.lanes)}, its leftmost")
+        return way.lanes[min(actor.lane, len(way.lanes)) - 1]
+    linked = list(way.lanes)
+    if route.start + 1 < len(route.ways):
+        onward = {c.from_lane for c in graph.leaving(way.id) if c.to_edge == route.ways[route.start + 1].id}
+        linked = [lane for lane in way.lanes if lane.index in onward] or linked
+    leftmost = actor.maneuver in ("turn_left", "u_turn", "crossing_centerline", "departing_road_left", "overtaking")
+    return linked[-1 if leftmost or actor.maneuver == "lane_change_right" else 0]
+
+
+def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
+    between = [c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id]
+    by_index = {other.index: other for other in onward.lanes}
+    between = [c for c in between if c.to_lane in by_index]
+    if between and not way.wrong_way:
+        side = _from_right(way, lane)
+        best = min(between, key=lambda c: abs(_from_right(onward, by_index[c.to_lane]) - side))
+        return best, by_index[best.to_lane]
+    return None, onward.lanes[min(_from_right(way, lane), len(onward.lanes) - 1)]
+
+
+def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple[Connection | None, Lane]:
+    by_index = {other.index: other for other in way.lanes}
+    into = [c for c in graph.leaving(way.id) if (c.to_edge, c.to_lane) == (onward.id, lane.index)]
+    into = [c for c in into if c.from_lane in by_index]
+    if into and not onward.wrong_way:
+        return into[0], by_index[into[0].from_lane]
+    return None, way.lanes[min(_from_right(onward, lane), len(way.lanes) - 1)]
+
+
+def _from_right(way: Way, lane: Lane) -> int:
+    return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), 0)
+
+
+# ------------------------------------------------------------------ line
+def _pieces(route: Route, lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
+    pieces = []
+    for i, lane in enumerate(lanes):
+        pieces.append(_Piece(lane.shape, i, False))
+        if i < len(links):
+            link = links[i]
+            across = link.via_shape if link is not None else _bridge(lane.shape, lanes[i + 1].shape)
+            pieces.append(_Piece(across, i, True))
+    return pieces
+
+
+def _bridge(first: Floats, second: Floats) -> Floats:
+    """A made-up way from the end of one lane to the start of the next."""
+    return bezier(first[-1], end_heading(first, at_end=True), second[0], end_heading(second, at_end=False))
+
+
+def _made_up(before: Floats, turn_rad: float) -> Floats:
+    """An arc off the end of the last lane and a straight run behind it."""
+    heading = end_heading(before, at_end=True)
+    side = math.copysign(1.0, turn_rad)
+    sweep = np.linspace(0, turn_rad, 16) + heading - side * math.pi / 2
+    circle = np.column_stack((np.cos(sweep), np.sin(sweep)))
+    arc = before[-1] + _MADE_UP_RADIUS_M * (circle - circle[0])
+    away = heading + turn_rad
+    return np.vstack((arc, arc[-1] + _MADE_UP_RUN_M * np.array([math.cos(away), math.sin(away)])))
+
+
+def _measured(graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], notes: tuple[str, ...]) -> Course:
+    stations = np.concatenate(([0.0], np.cumsum([arc_lengths(p.points)[-1] for p in pieces])))
+    path = draw(_joined([p.points for p in pieces]))
+    passages, turn, roads = [], None, []
+    for piece, a, b in zip(pieces, stations, stations[1:], strict=False):
+        way = route.ways[min(piece.way, len(route.ways) - 1)]
+        if not piece.is_crossing:
+            roads.append((way.road, float(a), float(b)))
+            continue
+        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3))
+        turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
+    own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
+    opposite, left, right = _room(graph, route.ways[route.start], lane)
+    return Course(
+        path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
+        lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
+        limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes,
+    )  # fmt: skip
+
+
+def _joined(parts: list[Floats]) -> Floats:
+    points = np.vstack(parts)
+    keep = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
+    kept: Floats = points[keep]
+    return kept
+
+
+def _degree(graph: LaneGraph, node: str) -> int:
+    return len({road_of(e.id)[0] for e in graph.edges.values() if node in (e.from_node, e.to_node)})
+
+
+def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float]:
+    """To the nearest opposing lane center, the left edge and the right edge of the road, metres."""
+    side = _from_right(way, lane)
+    right = lane.width_m / 2 + sum(other.width_m for other in way.lanes[:side])
+    left = lane.width_m / 2 + sum(other.width_m for other in way.lanes[side + 1 :])
+    road, direction = road_of(way.id)
+    back = graph.edges.get(edge_id(road, "backward" if direction == "forward" else "forward"))
+    if back is None or way.wrong_way:
+        return left + lane.width_m / 2, left, right
+    facing = (back.car_lanes or back.lanes)[-1]
+    gap = _distance(lane.shape, facing.shape)
+    return gap, gap - facing.width_m / 2 + sum(other.width_m for other in back.lanes), right
+
+
+def _distance(first: Floats, second: Floats) -> float:
+    """From the middle of one line to the nearest point of another, metres."""
+    middle = resample(first, arc_lengths(first)[-1] / 2)[0]
+    dense = resample(second, np.linspace(0, arc_lengths(second)[-1], 60))
+    return float(np.hypot(*(dense - middle).T).min())

@@ -1,0 +1,175 @@
+"""When and where two motions first touch, over all shifts of their clocks.
+
+Both motions are sampled on one time grid; a shift of the clocks is a diagonal of the matrix of their pairs
+of poses (a column where one of them only enumerates places to stand at). Pure search on arrays; knows
+neither roads nor maneuvers.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sgcad_core.geometry import SIDES, Floats, box_gaps, overlap_centers, sides_at
+from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
+from sgcad_core.specs import Area
+
+Ints = NDArray[np.int_]
+
+_BACK = np.array([0.85, 0.7, 0.55, 0.4, 0.25, 0.12])
+"""Fractions of a step before the first overlap on the grid at which the touch is looked for."""
+_AFTER = np.array([0.12, 0.45, 0.8])
+"""Fractions of a step behind the touch at which the next sample of the common clock may fall.
+
+The touch is told up to 0.15 too late: a larger fraction might let the sample before overlap as well.
+"""
+_MOST_SHIFTS = 64
+_LEAST_MARGIN = 0.02
+"""Nearer to a diagonal of the box a side is a matter of millimetres."""
+
+
+class Meeting(NamedTuple):
+    """One contact: own times of both motions at the first common sample at which they overlap."""
+
+    cost: float
+    first: Motion
+    second: Motion
+    first_s: float
+    second_s: float
+    sides: tuple[Area, Area]
+    margin: float
+    """How clearly both sides are told, 0 to 1."""
+    since_touch_s: float
+
+
+class _Touches(NamedTuple):
+    """First overlaps, one a shift: grid indices (fractional) of both motions at the touch."""
+
+    key: Ints
+    first: Floats
+    second: Floats
+
+
+def meet(first: Motion, second: Motion, wanted: tuple[Area, Area] | None) -> Meeting | None:
+    """The best contact of two motions on the wanted sides (any sides where None), or None."""
+    touches = _touches(first, second)
+    if touches is None:
+        return None
+    moving = (float(not first.standing), float(not second.standing))
+    i = touches.first[:, None] + moving[0] * _AFTER
+    j = touches.second[:, None] + moving[1] * _AFTER
+    sides, margins, depth = _judge(first, second, i.ravel(), j.ravel())
+    good = np.ones(i.size, dtype=bool)
+    if wanted is not None:
+        good = (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
+    good &= depth > 0.004
+    good &= margins > _LEAST_MARGIN
+    if not good.any():
+        return None
+    cost = _cost(first, second, i.ravel(), j.ravel(), margins) + _edge_cost(touches.key, good.reshape(i.shape)).ravel()
+    best = int(np.argmin(np.where(good, cost, np.inf)))
+    named = (_side(sides[0][best]), _side(sides[1][best]))
+    after = float(_AFTER[best % len(_AFTER)] * STEP_S)
+    first_s, second_s = (float(_own_s(k.ravel()[best])) for k in (i, j))
+    return Meeting(float(cost[best]), first, second, first_s, second_s, named, float(margins[best]), after)
+
+
+def _side(code: int) -> Area:
+    names: tuple[Area, ...] = ("front", "left", "back", "right")
+    return names[int(code)]
+
+
+def _touches(first: Motion, second: Motion) -> _Touches | None:
+    """The first touch for every shift of the clocks that has one."""
+    if first.standing and second.standing:
+        return None
+    p, q = first.window_poses, second.window_poses
+    i, j = _near(p, q, (math.hypot(*first.size) + math.hypot(*second.size)) / 2)
+    if not len(i):
+        return None
+    key = j if second.standing else i if first.standing else j - i
+    low = int(key.min())
+    some = (key - low) % max(1, math.ceil((int(key.max()) - low) / _MOST_SHIFTS)) == 0
+    i, j, key = i[some], j[some], key[some]
+    hit = box_gaps(p[i], first.size, q[j], second.size) <= 0
+    i, j = i[hit], j[hit]
+    kept, at = np.unique(key[hit], return_index=True)
+    inside = (i[at] > 0) & (j[at] > 0)
+    kept, at = kept[inside], at[inside]
+    if not len(at):
+        return None
+    return _refined(first, second, kept, i[at].astype(float), j[at].astype(float))
+
+
+def _near(p: Floats, q: Floats, reach_m: float) -> tuple[Ints, Ints]:
+    """Index pairs of poses whose centers lie within reach, ordered by the first index."""
+    rows, columns = np.arange(len(p)), np.arange(len(q))
+    for _ in range(2):
+        rows = rows[_about(p[rows], q[columns], reach_m)]
+        columns = columns[_about(q[columns], p[rows], reach_m)]
+    dx, dy = p[rows, None, 0] - q[None, columns, 0], p[rows, None, 1] - q[None, columns, 1]
+    i, j = np.nonzero(dx * dx + dy * dy < reach_m * reach_m)
+    return rows[i], columns[j]
+
+
+def _about(points: Floats, others: Floats, reach_m: float) -> NDArray[np.bool_]:
+    """Which points lie in the others' bounding box, widened by reach."""
+    if not len(others):
+        return np.zeros(len(points), dtype=bool)
+    low, high = others[:, :2].min(axis=0) - reach_m, others[:, :2].max(axis=0) + reach_m
+    inside: NDArray[np.bool_] = ((points[:, :2] >= low) & (points[:, :2] <= high)).all(axis=1)
+    return inside
+
+
+def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> _Touches:
+    """Touches told to about 6 ms, from overlaps told to a grid step."""
+    back_i = i[:, None] - _BACK * (not first.standing)
+    back_j = j[:, None] - _BACK * (not second.standing)
+    gap = box_gaps(_between(first, back_i.ravel()), first.size, _between(second, back_j.ravel()), second.size)
+    apart = gap.reshape(back_i.shape) > 0
+    earliest = np.where(apart.all(axis=1), len(_BACK) - 1, np.argmin(apart, axis=1) - 1)
+    back = np.where(earliest >= 0, _BACK[np.maximum(earliest, 0)], 0.97)
+    return _Touches(key, i - back * (not first.standing), j - back * (not second.standing))
+
+
+def _between(motion: Motion, index: Floats) -> Floats:
+    """Poses at fractional indices of the window's grid."""
+    low = np.clip(index.astype(int), 0, len(motion.window_poses) - 2)
+    part = (index - low)[:, None]
+    poses: Floats = motion.window_poses[low] * (1 - part) + motion.window_poses[low + 1] * part
+    return poses
+
+
+def _own_s(index: Floats) -> Floats:
+    """Own times at fractional indices of the window's grid."""
+    return index * STEP_S + WINDOW_S[0]
+
+
+def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[Ints, Ints], Floats, Floats]:
+    """Side codes of both, the smaller of both margins, and the depth of the overlap."""
+    p, q = first.poses(_own_s(i)), second.poses(_own_s(j))
+    center = overlap_centers(p, first.size, q, second.size)
+    (side_p, clear_p), (side_q, clear_q) = sides_at(p, first.size, center), sides_at(q, second.size, center)
+    return (side_p, side_q), np.minimum(clear_p, clear_q), -box_gaps(p, first.size, q, second.size)
+
+
+def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
+    """Unclear sides and places that fit ill; small ones decide between shifts only."""
+    ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
+    unclear: Floats = 3.0 * np.maximum(0.08 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
+    return ill + unclear
+
+
+def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:
+    """Contacts near the end of their good interval: a little change of timing would spoil them."""
+    rank = np.arange(len(key))[:, None]
+    bad = ~good
+    before = np.maximum.accumulate(np.where(bad, rank, -1), axis=0)
+    after = np.minimum.accumulate(np.where(bad, rank, len(key))[::-1], axis=0)[::-1]
+    room = np.minimum(rank - before, after - rank)
+    run = np.maximum(after - before, 1)
+    off_middle: Floats = 0.15 * (1 - 2 * room / run) + 0.15 * (room < 2)
+    return off_middle

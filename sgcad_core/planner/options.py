@@ -1,0 +1,235 @@
+"""The ways in which an actor may carry out its maneuver, the most ordinary first.
+
+An option is a motion with the cost of its oddity: lines within the lane, stated speeds and usual turns cost
+nothing, swerves, other speeds and skids cost more. Knows one actor, its course and its meeting place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from sgcad_core.geometry import Floats
+from sgcad_core.planner.choices import (
+    aiming,
+    any_angle,
+    askew,
+    beside_the_way,
+    drifts,
+    homing,
+    pacings,
+    skids,
+    spins,
+    stand_offs,
+    steps_aside,
+)
+from sgcad_core.planner.motion import Motion, Pace, drive, stand
+from sgcad_core.planner.path import Path, ramp
+from sgcad_core.planner.place import STOP_LINE_M, TURNING
+from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
+from sgcad_core.specs import Area
+
+_ZONE_M = 12.0
+_UNDER_WAY_M = 2.5
+"""Who starts from a stop is moving only this far on."""
+_DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
+             "departing_road_left", "departing_road_right"}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Option:
+    """One way to drive; its motion is made when it is asked for."""
+
+    role: Role
+    drift: Drift
+    pacing: Pacing
+    twist: Twist
+    extra_cost: float = 0.0
+
+    @property
+    def cost(self) -> float:
+        """The oddity of this way."""
+        return self.drift.cost + self.pacing.cost + self.twist.cost + self.extra_cost
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was changed about the stated maneuver, in words."""
+        said = (self.drift.note, self.pacing.note, self.twist.note)
+        return tuple(f"{self.role.actor.id} {words}" for words in said if words)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The motion itself."""
+        return standing(self) if is_standing(self.role) else driving(self)
+
+    def motion_with(self, other: Option) -> Motion:
+        """The motion in an encounter with another option: an object stands in the other's way."""
+        return in_the_way(self, other) if self.role.actor.kind == "object" else self.motion
+
+
+def options(role: Role) -> list[Option]:
+    """All ways of an actor, cheapest first."""
+    parts: Iterable[tuple[Drift, Pacing, Twist]]
+    if role.actor.kind == "object":
+        parts = product(beside_the_way(role), (Pacing(0.0),), any_angle(role))
+    elif is_standing(role):
+        parts = product(stand_offs(role), (Pacing(0.0),), askew(role))
+    elif role.actor.kind == "pedestrian":
+        parts = product(steps_aside(), pacings(role), (Twist(0.0),))
+    else:
+        parts = product(drifts(role), pacings(role), skids(role))
+    return _sorted(role, parts)
+
+
+def aimed(role: Role) -> list[Option]:
+    """The ways that turn the wanted side to where the other one comes from; all ways where it faces there."""
+    angles = aiming(role)
+    if not angles:
+        return options(role)
+    if is_standing(role):
+        return _sorted(role, product(stand_offs(role), (Pacing(0.0),), angles))
+    return _sorted(role, product(drifts(role, fine=False), pacings(role), angles))
+
+
+def forced(role: Role) -> list[Option]:
+    """A few ways that lead through the very meeting place with the wanted side ahead, however odd."""
+    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+        return aimed(role)
+    return _sorted(role, product(homing(role), pacings(role)[:2], aiming(role)[-1:] or [Twist(0.0)]))
+
+
+def spun(role: Role) -> list[Option]:
+    """Its line with the box at any angle: what remains where no driving explains the sides."""
+    if role.actor.kind in ("object", "pedestrian"):
+        return options(role)
+    lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
+    return _sorted(role, product(lines, (Pacing(0.0),), spins(role)))
+
+
+def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:
+    return sorted((Option(role, *part) for part in parts), key=lambda option: option.cost)
+
+
+# ------------------------------------------------------------------ making a motion
+def driving(option: Option) -> Motion:
+    """A motion along the road with the option's changes."""
+    role, place = option.role, option.role.place.station_m
+    drift = option.drift
+    base = role.course.path
+    path = _line_of(base, drift, place)
+    pace = _pace(role, option.pacing)
+    time, station = drive(path, pace, place, base)
+    path = _skidding(path, option.twist, place)
+    if role.actor.maneuver == "backing":
+        path = path.turned(math.pi)
+    begins = _begins(role, drift)
+    penalty = _misfit(role, path, drift, begins)
+    if pace.starts_at_m is not None:
+        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
+    return Motion(path, time, station, role.size, penalty, begins)
+
+
+def standing(option: Option) -> Motion:
+    """A "motion" that enumerates places to stand at."""
+    role, base = option.role, option.role.course.path
+    path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
+    time, station = stand(path, role.place.station_m)
+    penalty = _outside(path.s_m, *_waiting_zone(role), 0.03)
+    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
+
+
+def in_the_way(option: Option, other: Option) -> Motion:
+    """Places for an object along the line that another actor takes, `left_m` beside it."""
+    base = other.motion.path
+    return _object_on(option, base, *stand(base, other.role.place.station_m))
+
+
+def in_path_of(option: Option, other: Motion, side: Area) -> Motion:
+    """Places for an object at one side of another motion's box, enumerated by that motion's own time."""
+    out = other.path.heading_rad + facing(side)
+    reach = (other.size[1] if is_beside(side) else other.size[0]) / 2 + 0.3 * option.role.size[0]
+    beside = other.path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
+    beside = replace(beside, heading_rad=out)
+    return _object_on(option, beside, other.time_s, other.station_m)
+
+
+def _object_on(option: Option, base: Path, time_s: Floats, station_m: Floats) -> Motion:
+    path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
+    free = np.zeros(len(path.s_m))
+    return Motion(path, time_s, station_m, option.role.size, free, -math.inf, standing=True, fixed=True)
+
+
+def _line_of(base: Path, drift: Drift, place_m: float) -> Path:
+    if drift.ahead_m:
+        heading = float(base.poses([place_m])[0, 2])
+        c, s = math.cos(heading), math.sin(heading)
+        by = np.array([drift.ahead_m * c - drift.left_m * s, drift.ahead_m * s + drift.left_m * c])
+        return base.displaced(ramp(base.s_m, drift.end_m - drift.length_m, drift.length_m)[:, None] * by)
+    return base.moved(_profile(base.s_m, drift)) if drift.left_m or drift.before_m else base
+
+
+def _profile(s_m: Floats, drift: Drift) -> Floats:
+    rise = ramp(s_m, drift.end_m - drift.length_m, drift.length_m)
+    if drift.back:
+        rise = rise - ramp(s_m, drift.end_m, drift.length_m)
+    profile: Floats = drift.before_m + drift.left_m * rise
+    return profile
+
+
+def _skidding(path: Path, twist: Twist, place_m: float) -> Path:
+    """The box turns over about 20 m and keeps its angle from just before the meeting place."""
+    if not twist.angle_rad:
+        return path
+    length = 12.0 + 8.0 * abs(twist.angle_rad)
+    return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))
+
+
+def _begins(role: Role, drift: Drift) -> float:
+    """Station at which the maneuver begins to show."""
+    turn = role.course.turn
+    shown = [turn.entry_m - 2.0] if turn is not None else []
+    shown += [drift.end_m - drift.length_m] if drift.left_m and drift.end_m > 0 else []
+    return min(shown, default=role.place.station_m - (3.0 if role.actor.kind == "pedestrian" else 10.0))
+
+
+def _pace(role: Role, pacing: Pacing) -> Pace:
+    speed = usual_speed(role) * pacing.factor
+    curve = (6.5 if role.actor.maneuver != "u_turn" else 4.5) * pacing.factor
+    starts = None
+    if pacing.from_stop and role.course.turn is not None:
+        starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
+    elif pacing.from_stop:
+        starts = min(line_m(role), role.place.station_m - 6.0)
+    if role.actor.maneuver == "slowing":
+        return Pace(speed, curve, starts, role.place.station_m - 3.0, max(0.35 * speed, 1.5))
+    return Pace(speed, max(curve, 3.0), starts)
+
+
+# ------------------------------------------------------------------ how ill a place fits
+def _misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
+    place = role.place.station_m
+    penalty = _outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
+    turned = path.heading_rad - np.interp(begins_m - 5.0, path.s_m, path.heading_rad)
+    maneuver = role.actor.maneuver
+    if maneuver in TURNING:
+        way = -1.0 if maneuver == "turn_right" else 1.0
+        penalty = penalty + 2.0 * (way * turned < math.radians(16))
+    elif maneuver == "straight":
+        penalty = penalty + 2.0 * (np.abs(turned) > math.radians(28))
+    if maneuver in _DRIFTING and drift.left_m:
+        penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
+    return penalty
+
+
+def _outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
+    return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
+
+
+def _waiting_zone(role: Role) -> tuple[float, float]:
+    line, place = line_m(role), role.place.station_m
+    return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

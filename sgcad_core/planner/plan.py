@@ -1,0 +1,250 @@
+"""From a behavior and a road network to timed motions in which the declared contact comes first.
+
+The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
+lane, with a swerve or a skid; what was changed stands in the plan's notes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+from sgcad_core.formats.lane_graph import LaneGraph
+from sgcad_core.planner.bystanders import stand_clear, strike_later
+from sgcad_core.planner.course import Course, find_course
+from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.options import Option, aimed, forced, options, spun
+from sgcad_core.planner.pairing import Encounter, Ways, search
+from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
+from sgcad_core.planner.role import Role, speed_there
+from sgcad_core.planner.scene import AFTER_S, Scene
+from sgcad_core.planner.towing import ahead_of, drag, spacing_m, tractors
+from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
+from sgcad_core.records import ObservedContact, Record, Trajectory
+from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
+
+LEAD_S = (4.2, 8.0)
+"""Shortest and longest approach before the first contact."""
+_LATER_S = 1.2
+"""A later contact is looked for around where its partner is this long after the first."""
+_TRIES = (16, 26, 24, 45)
+"""Combinations of options tried in each stage of the search."""
+_LANELESS = ("pedestrian", "object")
+_STILL_S = 1.0
+"""Time on the undisturbed course before a maneuver begins."""
+
+
+class Plan(Record):
+    """Trajectories of all actors, in the order of the behavior, on one clock.
+
+    `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the
+    declared areas (where no contact is declared: nobody touches). `notes` say what was changed.
+    """
+
+    trajectories: tuple[Trajectory, ...]
+    contact: ObservedContact | None
+    realised: bool
+    notes: tuple[str, ...] = ()
+
+
+def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
+    """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have."""
+    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior))
+    contacts = cast.usable_contacts()
+    first = contacts[0] if contacts else None
+    scene = cast.encounter(first) if first else None
+    if scene is None:
+        scene = Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
+    for contact in contacts[1:]:
+        cast.later(scene, contact)
+    cast.rest(scene)
+    observed = scene.first_contact()
+    order = tuple(a.id for a in behavior.actors)
+    return Plan(
+        trajectories=scene.trajectories(order), contact=observed,
+        realised=_is_declared(observed, behavior.contacts[0] if behavior.contacts else None),
+        notes=tuple(dict.fromkeys(cast.notes)),
+    )  # fmt: skip
+
+
+def _course(graph: LaneGraph, actor: Actor) -> Course:
+    course = find_course(graph, actor)
+    if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
+        return course.reversed()
+    keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
+    return at_the_edge(course) if keeps_right else course
+
+
+def _facing(role: Role, other: Role) -> Role:
+    return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
+
+
+def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool:
+    if seen is None or declared is None:
+        return seen is None and declared is None
+    sides = {seen.actor: seen.actor_area, seen.other: seen.other_area}
+    return sides == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+
+
+@dataclass
+class _Cast:
+    """The actors with their courses, and what happened to their stated behavior on the way."""
+
+    behavior: BehaviorSpec
+    courses: dict[str, Course]
+    tractors: dict[str, str]
+    notes: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.actors = {a.id: a for a in self.behavior.actors}
+        for course in self.courses.values():
+            self.notes += course.notes
+
+    def usable_contacts(self) -> list[Contact]:
+        """Declared contacts between two different actors of the behavior."""
+        found = []
+        for c in self.behavior.contacts:
+            known = c.striker in self.actors and c.struck in self.actors and c.striker != c.struck
+            if known and self.tractors.get(c.striker) != c.struck and self.tractors.get(c.struck) != c.striker:
+                found.append(c)
+            else:
+                self.notes.append(f"contact of {c.striker} and {c.struck} left out: they cannot meet")
+        return found
+
+    # -------------------------------------------------------------- the first contact
+    def encounter(self, contact: Contact) -> Scene | None:
+        """The scene with the declared pair in contact; None where they cannot be brought together."""
+        a, b = self._roles(contact)
+        found = search(self._stages(a, b), (contact.striker_area, contact.struck_area))
+        if found is None:
+            self.notes.append(f"{contact.striker} and {contact.struck} cannot touch as declared")
+            found = search([((self._options(a, b, forced), self._options(b, a, forced)), _TRIES[0])], None)
+        return None if found is None else self._staged(found)
+
+    def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
+        """Ordinary driving, then with the wanted sides turned to each other, then by force."""
+        for ways, tries in zip((options, aimed, forced, spun), _TRIES, strict=True):
+            yield (self._options(a, b, ways), self._options(b, a, ways)), tries
+
+    def _roles(self, contact: Contact) -> tuple[Role, Role]:
+        a, b = self.actors[contact.striker], self.actors[contact.struck]
+        if a.maneuver in ("stopped", "parked") and b.maneuver in ("stopped", "parked"):
+            a = self._set_rolling(a, b)
+        places = self._places(a, b)
+        pair = [
+            Role(actor, self.courses[actor.id], size_m(actor), place, side)
+            for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
+        ]
+        first, second = pair
+        return (
+            _facing(first, second),
+            _facing(second, first),
+        )
+
+    def _set_rolling(self, a: Actor, b: Actor) -> Actor:
+        mover = b if a.kind == "object" else a
+        self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
+        rolling = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
+        self.actors[mover.id] = rolling
+        return self.actors[a.id]
+
+    def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:
+        for one, other in ((a, b), (b, a)):
+            if one.kind in _LANELESS and other.kind not in _LANELESS:
+                here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
+                return here, here
+        pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
+        return meeting_places(pair[0], pair[1])
+
+    def _station_for(self, one: Actor, driver: Actor) -> float:
+        """Where on a driver's course a pedestrian or an object is met."""
+        course, length = self.courses[driver.id], size_m(driver)[0]
+        if one.kind == "pedestrian":
+            return crosswalk_station(driver, course, length, one)
+        return preferred_station(driver, course, length)
+
+    def _options(self, role: Role, other: Role, ways: Callable[[Role], list[Option]]) -> list[Option]:
+        if role.actor.kind != "pedestrian" or other.actor.kind in _LANELESS:
+            return ways(role)
+        found = []
+        for cost, course, place in walking_courses(other.course, other.place.station_m, role.side):
+            walk = replace(role, course=course, place=place)
+            found += [replace(option, extra_cost=cost) for option in ways(walk)]
+        return sorted(found, key=lambda option: option.cost)
+
+    def _staged(self, found: Encounter) -> Scene:
+        """Both actors on the world clock, with what they tow, colliding."""
+        meeting = found.meeting
+        pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
+        lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
+        contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
+        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again())
+        for option, motion, own in pair:
+            self.notes += option.notes
+            scene.add(option.role.actor.id, option.role.actor.kind, motion, own, brakes=False)
+        for option, _, own in pair:
+            self._couple(scene, option.role.actor.id, own)
+        scene.impact(found.first.role.actor.id, found.second.role.actor.id, contact)
+        self._drag(scene)
+        return scene
+
+    def _struck_again(self) -> frozenset[str]:
+        return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
+
+    # -------------------------------------------------------------- the others
+    def _couple(self, scene: Scene, actor: str, own_s: float) -> None:
+        """Add the trailer behind a tractor, or the tractor before a trailer; apart where they would touch first."""
+        track = scene.tracks[actor]
+        for trailer, tractor in list(self.tractors.items()):
+            other = self.actors[tractor if actor == trailer else trailer]
+            if actor not in (trailer, tractor) or other.id in scene.tracks:
+                continue
+            gap = spacing_m(track.size, size_m(other)) * (1 if actor == trailer else -1)
+            coupled = ahead_of(track.motion, gap, size_m(other))
+            brakes = other.id == tractor or not self._in_contact(actor)
+            if scene.clear_until(scene.poses(coupled, own_s, brakes=brakes), coupled.size, 0.0) <= scene.contact:
+                self.notes.append(f"{trailer} is not towed by {tractor}: it would touch somebody first")
+                del self.tractors[trailer]
+                continue
+            scene.add(other.id, other.kind, coupled, own_s, brakes=brakes)
+
+    def _in_contact(self, actor: str) -> bool:
+        """Whether an actor has part in the first declared contact."""
+        return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
+
+    def _drag(self, scene: Scene) -> None:
+        for trailer, tractor in self.tractors.items():
+            if trailer in scene.tracks and tractor in scene.tracks:
+                drag(scene, scene.tracks[trailer], scene.tracks[tractor])
+
+    def later(self, scene: Scene, contact: Contact) -> None:
+        """A further declared contact, where one of the two is not placed yet; best effort."""
+        placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
+        if len(placed) != 1:
+            return
+        partner = placed[0]
+        new = contact.struck if partner == contact.striker else contact.striker
+        sides: tuple[Area, Area] = (contact.striker_area, contact.struck_area)
+        own = sides if partner == contact.striker else sides[::-1]
+        role = self._own_role(new)
+        target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
+        role = replace(role, place=place_near(role.course, target), side=own[1], other_side=own[0])
+        if not strike_later(scene, role, partner, own):
+            self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
+
+    def rest(self, scene: Scene) -> None:
+        """Everybody who is not placed yet, clear of the others."""
+        for actor in self.behavior.actors:
+            if actor.id in scene.tracks or self.tractors.get(actor.id):
+                continue
+            note = stand_clear(scene, self._own_role(actor.id))
+            self.notes += [note] if note else []
+            track = scene.tracks[actor.id]
+            own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
+            self._couple(scene, actor.id, own)
+
+    def _own_role(self, name: str) -> Role:
+        actor, course = self.actors[name], self.courses[name]
+        place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
+        return Role(actor, course, size_m(actor), place)

@@ -1,0 +1,139 @@
+"""What one actor brings into the planning of an encounter, and what its usual driving is.
+
+Knows one actor, its course and its meeting place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sgcad_core.geometry import SIDES, Size
+from sgcad_core.planner.course import Course
+from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
+from sgcad_core.specs import Actor, Area
+
+MPH = 0.44704
+_STEEP_DEG = 60.0
+"""Bearing of a vehicle alongside that is to be hit with the front."""
+
+
+@dataclass(frozen=True)
+class Role:
+    """What one actor brings into the planning of an encounter."""
+
+    actor: Actor
+    course: Course
+    size: Size
+    place: Place
+    side: Area | None = None
+    """The side on which it is to be touched."""
+    other_mps: float = 0.0
+    """How fast the other one comes."""
+    other_width_m: float = 1.8
+    other_side: Area | None = None
+
+
+class Drift(NamedTuple):
+    """A change of line: to the left by `left_m` over `length_m`, ending at a station; `back`: and back again."""
+
+    cost: float
+    left_m: float = 0.0
+    length_m: float = 30.0
+    end_m: float = 0.0
+    back: bool = False
+    before_m: float = 0.0
+    """Beside its lane already before the change (a lane that it comes from), metres to the left."""
+    ahead_m: float = 0.0
+    """Displaced along the heading at the meeting place as well (a course bent towards the other one's)."""
+    note: str = ""
+
+
+class Pacing(NamedTuple):
+    """A choice of speed: factor on the usual one, or from a standing start."""
+
+    cost: float
+    factor: float = 1.0
+    from_stop: bool = False
+    note: str = ""
+
+
+class Twist(NamedTuple):
+    """A box turned against its line before contact: a skid, or a car that stands askew."""
+
+    cost: float
+    angle_rad: float = 0.0
+    note: str = ""
+
+
+def is_standing(role: Role) -> bool:
+    """Whether the actor does not move before contact."""
+    return role.actor.maneuver in STANDING or role.actor.kind == "object"
+
+
+def usual_speed(role: Role) -> float:
+    """Stated speed, else the limit as far as the kind of actor goes, m/s."""
+    actor = role.actor
+    top = {"pedestrian": 1.5, "bicycle": 5.5}.get(actor.kind, min(role.course.limit_mps, 26.0))
+    if actor.speed_mph:
+        return max(actor.speed_mph * MPH, 1.0)
+    if actor.maneuver == "backing":
+        return 2.5
+    return min(top, 11.0) if actor.maneuver in TURNING else top
+
+
+def speed_there(role: Role) -> float:
+    """Usual speed at the meeting place: turning traffic has slowed down."""
+    if is_standing(role):
+        return 0.0
+    return min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+
+
+def mismatch(role: Role) -> float:
+    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi].
+
+    Seen in the actor's own frame as both pass the meeting place at their usual speeds.
+    """
+    if role.side is None or role.actor.kind == "object":
+        return 0.0
+    bearing = _bearing_along(role) if along_with(role) else _bearing_across(role)
+    return 0.0 if bearing is None else math.remainder(bearing - facing(role.side), 2 * math.pi)
+
+
+def along_with(role: Role) -> bool:
+    """Whether both drive the same way, so that the choice of speeds decides who comes from where."""
+    return abs(role.place.angle_rad) < 0.6 and not is_standing(role) and role.other_mps > 0
+
+
+def is_beside(side: Area | None) -> bool:
+    """Whether a side is left or right."""
+    return side in ("left", "right")
+
+
+def _bearing_along(role: Role) -> float | None:
+    """Ahead of the one behind, behind the one ahead; None where they run side by side."""
+    own, other = role.side, role.other_side
+    if own == "front" and is_beside(other):
+        return math.radians(-_STEEP_DEG if other == "left" else _STEEP_DEG)
+    if "back" not in (own, other) or own == other:
+        return None
+    return math.pi if own == "back" else 0.0
+
+
+def _bearing_across(role: Role) -> float | None:
+    own = speed_there(role)
+    angle, other = role.place.angle_rad, role.other_mps
+    ahead, left = own - other * math.cos(angle), -other * math.sin(angle)
+    return None if math.hypot(ahead, left) < 3.0 else math.atan2(left, ahead)
+
+
+def facing(side: Area) -> float:
+    """Bearing of a side as seen from its box, radians left of ahead."""
+    return SIDES.index(side) * math.pi / 2
+
+
+def line_m(role: Role) -> float:
+    """Where it would stand at the last stop line before the meeting place."""
+    entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
+    return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2

@@ -1,0 +1,230 @@
+"""From an actor's road, direction, exit and maneuver to the chain of lanes that it drives.
+
+Knows the lane graph and the specs; no time, no other actor. Where the network offers no way (an illegal
+turn, a driveway that was not drawn, a road without this direction), a way is made up and noted.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import count
+from typing import NamedTuple
+
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
+from sgcad_core.planner.path import end_heading
+from sgcad_core.records import Finding
+from sgcad_core.specs import Actor
+
+AHEAD_M = 120.0
+BEHIND_M = 160.0
+_FITTING = math.radians(25)
+_INTO = 0.9
+TURN_RAD = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2, "u_turn": math.pi}
+
+
+class Way(NamedTuple):
+    """One direction of a road as an actor drives it; lanes for cars from right to left."""
+
+    id: str
+    from_node: str
+    to_node: str
+    lanes: tuple[Lane, ...]
+    wrong_way: bool = False
+
+    @property
+    def road(self) -> str:
+        """The road's id in the spec."""
+        return road_of(self.id)[0]
+
+    @property
+    def length_m(self) -> float:
+        """Length of its first lane."""
+        return self.lanes[0].length_m
+
+
+class Route(NamedTuple):
+    """Ways in driving order; `start` is the index of the actor's own road, `turn` of the way before its turn."""
+
+    ways: tuple[Way, ...]
+    start: int
+    turn: int | None
+    made_up_turn_rad: float = 0.0
+    """A turn behind the last way that the network does not have; 0: none."""
+    notes: tuple[str, ...] = ()
+
+
+def find_route(graph: LaneGraph, actor: Actor) -> Route:
+    """The chain of ways of one actor. Raises InvalidOutput for a road id that the network does not have."""
+    start = start_way(graph, actor)
+    notes = [f"{actor.id} drives {start.road} against its only direction"] if start.wrong_way else []
+    ways, turn, made_up = _onward(graph, start, actor, notes)
+    before = _upstream(graph, start)
+    shifted = None if turn is None else turn + len(before)
+    return Route((*before, *ways), len(before), shifted, made_up, tuple(notes))
+
+
+def start_way(graph: LaneGraph, actor: Actor) -> Way:
+    """The way on which an actor starts; a direction that the road lacks is driven the wrong way."""
+    check_road(graph, actor.road, f"actor {actor.id}, road")
+    if actor.exit_road is not None:
+        check_road(graph, actor.exit_road, f"actor {actor.id}, exit_road")
+    return _way(graph, edge_id(actor.road, actor.direction))
+
+
+def check_road(graph: LaneGraph, road: str, where: str) -> None:
+    """Raises InvalidOutput, listing the known ids, unless the network has the road."""
+    if road in graph.edges or f"-{road}" in graph.edges:
+        return
+    known = ", ".join(sorted({road_of(edge)[0] for edge in graph.edges}))
+    finding = Finding(source="planner", what="no such road", where=where, value=road, remedy=f"use one of: {known}")
+    raise InvalidOutput(finding.line(), [finding])
+
+
+def turn_angle(first: Way, second: Way) -> float:
+    """Heading change from one way to the next, radians, left positive."""
+    a, b = first.lanes[0].shape, second.lanes[0].shape
+    return math.remainder(end_heading(b, at_end=False) - end_heading(a, at_end=True), 2 * math.pi)
+
+
+def has_connection(graph: LaneGraph, first: Way, second: Way) -> bool:
+    """Whether the network lets traffic from one way to the other."""
+    return any(c.to_edge == second.id for c in graph.leaving(first.id))
+
+
+# ------------------------------------------------------------------ ways
+def _way(graph: LaneGraph, edge: str) -> Way:
+    if edge in graph.edges:
+        found = graph.edges[edge]
+        return Way(edge, found.from_node, found.to_node, _driven(found))
+    road, direction = road_of(edge)
+    other = graph.edges[edge_id(road, "forward" if direction == "backward" else "backward")]
+    lanes = tuple(replace(lane, shape=lane.shape[::-1]) for lane in reversed(_driven(other)))
+    return Way(edge, other.to_node, other.from_node, lanes, wrong_way=True)
+
+
+def _driven(edge: Edge) -> tuple[Lane, ...]:
+    return edge.car_lanes or edge.lanes
+
+
+def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:
+    """Ways out of the node at the end of a way, in the network's order; its own reverse only if `back`."""
+    ids = [e.id for e in graph.edges.values() if e.from_node == way.to_node]
+    return [_way(graph, e) for e in ids if back or road_of(e)[0] != way.road]
+
+
+def _reverse(graph: LaneGraph, way: Way) -> Way:
+    return _way(graph, way.id[1:] if way.id.startswith("-") else f"-{way.id}")
+
+
+def _straightest(graph: LaneGraph, way: Way, limit_rad: float = math.radians(50)) -> Way | None:
+    """Where a driver goes who does not turn: the least heading change, connected ways first."""
+    fitting = [w for w in _leaving(graph, way) if abs(turn_angle(way, w)) < limit_rad]
+    return min(fitting, key=lambda w: _bend(graph, way, w), default=None)
+
+
+# ------------------------------------------------------------------ onward
+def _onward(graph: LaneGraph, start: Way, actor: Actor, notes: list[str]) -> tuple[list[Way], int | None, float]:
+    if actor.maneuver == "u_turn":
+        return _turned_back(graph, start, actor)
+    if actor.exit_road not in (None, actor.road):
+        found = _to_road(graph, start, str(actor.exit_road))
+        if found is not None:
+            return _extended(graph, found), len(found) - 2, 0.0
+        notes.append(f"no way from {actor.road} to {actor.exit_road} for {actor.id}; its maneuver decides")
+    wanted = TURN_RAD.get(actor.maneuver)
+    return _straight(graph, start) if wanted is None else _turning(graph, start, wanted)
+
+
+def _straight(graph: LaneGraph, start: Way) -> tuple[list[Way], int | None, float]:
+    return _extended(graph, [start]), None, 0.0
+
+
+def _extended(graph: LaneGraph, ways: list[Way]) -> list[Way]:
+    """Ways continued straight on until AHEAD_M lie behind the last given one."""
+    ways, length = list(ways), 0.0
+    while length < AHEAD_M and (onward := _straightest(graph, ways[-1])) and onward.id not in _ids(ways):
+        ways.append(onward)
+        length += onward.length_m
+    return ways
+
+
+def _turning(graph: LaneGraph, start: Way, wanted: float) -> tuple[list[Way], int | None, float]:
+    """The first fitting turn on the way straight on; a made-up one where there is none."""
+    ways = [start]
+    while True:
+        exits = {w: turn_angle(ways[-1], w) for w in _leaving(graph, ways[-1])}
+        fitting = {w: abs(abs(angle) - math.pi / 2) for w, angle in exits.items() if _fits(angle, wanted)}
+        if fitting:
+            chosen = min(fitting, key=lambda w: fitting[w])
+            return _extended(graph, [*ways, chosen]), len(ways) - 1, 0.0
+        onward = _straightest(graph, ways[-1])
+        if onward is None or onward.id in _ids(ways) or len(ways) > 6:
+            return [start], 0, wanted
+        ways.append(onward)
+
+
+def _ids(ways: list[Way]) -> set[str]:
+    return {way.id for way in ways}
+
+
+def _fits(angle: float, wanted: float) -> bool:
+    return _FITTING < math.copysign(1.0, wanted) * angle < math.radians(165)
+
+
+def _turned_back(graph: LaneGraph, start: Way, actor: Actor) -> tuple[list[Way], int | None, float]:
+    back = _reverse(graph, start)
+    if actor.exit_road not in (None, actor.road):
+        reachable = [w for w in _leaving(graph, start) if w.road == actor.exit_road]
+        back = reachable[0] if reachable else back
+    return _extended(graph, [start, back]), 0, 0.0
+
+
+def _to_road(graph: LaneGraph, start: Way, road: str) -> list[Way] | None:
+    """Cheapest chain from a way onto a road: few ways, connected ones, little turning."""
+    order = count()
+    queue: list[tuple[float, int, list[Way]]] = [(0.0, next(order), [start])]
+    done: set[str] = set()
+    while queue:
+        cost, _, chain = heapq.heappop(queue)
+        last = chain[-1]
+        if last.road == road:
+            return chain
+        if last.id in done:
+            continue
+        done.add(last.id)
+        for onward in _candidates(graph, last, road):
+            step = 1.0 + 2.0 * (not has_connection(graph, last, onward)) + abs(turn_angle(last, onward)) / 4
+            heapq.heappush(queue, (cost + step + 4.0 * onward.wrong_way, next(order), [*chain, onward]))
+    return None
+
+
+def _candidates(graph: LaneGraph, last: Way, road: str) -> Iterator[Way]:
+    yield from _leaving(graph, last)
+    for edge in (road, f"-{road}"):
+        if edge not in graph.edges:
+            way = _way(graph, edge)
+            if way.from_node == last.to_node:
+                yield way
+
+
+def _upstream(graph: LaneGraph, start: Way) -> list[Way]:
+    """Ways that lead straight into the first one, up to BEHIND_M in all."""
+    ways, length = [start], 0.0
+    while length < BEHIND_M and len(ways) < 8:
+        into = [_way(graph, e.id) for e in graph.edges.values() if e.to_node == ways[0].from_node]
+        bend = {w.id: _bend(graph, w, ways[0]) for w in into}
+        into = [w for w in into if w.road != ways[0].road and w.id not in _ids(ways) and bend[w.id] < _INTO]
+        if not into:
+            break
+        ways.insert(0, min(into, key=lambda w: bend[w.id]))
+        length += ways[0].length_m
+    return ways[:-1]
+
+
+def _bend(graph: LaneGraph, first: Way, second: Way) -> float:
+    """Heading change from way to way, radians; more where no connection leads across."""
+    return abs(turn_angle(first, second)) + 0.35 * (not has_connection(graph, first, second))

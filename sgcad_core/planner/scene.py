@@ -1,0 +1,161 @@
+"""All actors on one world clock: tracks, their contacts, and what happens to them afterwards.
+
+A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and impacts, no maneuvers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sgcad_core.geometry import SIDES, Box, Floats, Size, box_gaps, contact_area, overlap_centers, sides_at
+from sgcad_core.planner.impact import ROLLING_MPS2, SLIDING_MPS2, Body, collide, contact_normal, mass_kg, slide
+from sgcad_core.planner.motion import STEP_S, Motion, clock
+from sgcad_core.planner.path import Path
+from sgcad_core.records import ObservedContact, Trajectory
+from sgcad_core.specs import ActorKind, Area
+
+AFTER_S = 4.0
+_REACTION_S = 0.5
+_BRAKING_MPS2 = 5.0
+CLEAR_M = 0.25
+"""Actors that do not touch pass each other at least this far apart where that can be had."""
+
+
+@dataclass
+class Track:
+    """One actor's poses on the world clock."""
+
+    actor: str
+    kind: ActorKind
+    size: Size
+    poses: Floats
+    motion: Motion
+    own_s: float
+    """The motion's own time at world time 0 (its place where it is standing)."""
+    hit: int | None = None
+    """Index of its last impact."""
+
+
+@dataclass
+class Scene:
+    """Tracks by actor, in the order of placing; `contact` is the index of the first contact."""
+
+    count: int
+    contact: int
+    rolling: frozenset[str] = frozenset()
+    """Actors that have a further contact before them."""
+    tracks: dict[str, Track] = field(default_factory=dict)
+
+    def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
+        """Place an actor so that its own clock shows the given time at the first contact."""
+        own = own_at_contact_s if motion.standing else own_at_contact_s - self.contact * STEP_S
+        track = Track(actor, kind, motion.size, self.poses(motion, own_at_contact_s, brakes=brakes), motion, own)
+        self.tracks[actor] = track
+        return track
+
+    def poses(self, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Floats:
+        """(count, 3) poses of a motion; `brakes`: it comes to a stop behind the first contact."""
+        if motion.standing:
+            return np.repeat(motion.poses([own_at_contact_s]), self.count, axis=0)
+        own = own_at_contact_s + clock(-self.contact, self.count - self.contact)
+        if brakes:
+            own = _braked(motion, own, self.contact + round(_REACTION_S / STEP_S))
+        return motion.poses(own)
+
+    def clear_until(self, poses: Floats, size: Size, margin_m: float, *, but: frozenset[str] = frozenset()) -> int:
+        """Index of the first sample at which a box comes nearer than a margin to any track; count if never."""
+        first = self.count
+        for name, track in self.tracks.items():
+            if name not in but:
+                near = np.flatnonzero(box_gaps(poses, size, track.poses, track.size) <= margin_m)
+                first = min(first, int(near[0]) if len(near) else self.count)
+        return first
+
+    def impact(self, first: str, second: str, k: int) -> None:
+        """Let two tracks collide at sample k; both slide to rest behind it."""
+        a, b = self.tracks[first], self.tracks[second]
+        p, q = a.poses[k : k + 1], b.poses[k : k + 1]
+        point = overlap_centers(p, a.size, q, b.size)[0]
+        if np.isnan(point).any():
+            return
+        sides = [SIDES[int(sides_at(x, t.size, point[None])[0][0])] for x, t in ((p, a), (q, b))]
+        normal = contact_normal(p[0], _area(sides[0]), q[0], _area(sides[1]))
+        after = collide(_body(a, k), _body(b, k), point, normal)
+        for track, body in zip((a, b), after, strict=True):
+            braking = ROLLING_MPS2 if track.actor in self.rolling else SLIDING_MPS2
+            after_it = slide(body, clock(1, self.count - k), braking)
+            track.poses = np.vstack((track.poses[: k + 1], after_it))
+            track.hit = k
+
+    def first_contact(self) -> ObservedContact | None:
+        """The first overlap of any two actors, as any observer of the trajectories sees it."""
+        names = sorted(self.tracks)
+        found: tuple[int, str, str] | None = None
+        for i, a in enumerate(names):
+            for b in names[i + 1 :]:
+                one, two = self.tracks[a], self.tracks[b]
+                hits = np.flatnonzero(box_gaps(one.poses, one.size, two.poses, two.size) <= 0)
+                if len(hits) and (found is None or hits[0] < found[0]):
+                    found = (int(hits[0]), a, b)
+        return None if found is None else self._observed(*found)
+
+    def _observed(self, k: int, a: str, b: str) -> ObservedContact:
+        p, q = self._box(a, k), self._box(b, k)
+        sides = _area(contact_area(p, q)), _area(contact_area(q, p))
+        return ObservedContact(actor=a, other=b, actor_area=sides[0], other_area=sides[1], t_s=round(k * STEP_S, 3))
+
+    def _box(self, name: str, k: int) -> Box:
+        track = self.tracks[name]
+        x, y, heading = (float(v) for v in track.poses[k])
+        return Box(x, y, heading, *track.size)
+
+    def replay(self, name: str, from_s: float, to_s: float) -> Motion:
+        """An actor's track as a motion whose own time 0 is the first contact; to be met in a span of time."""
+        track = self.tracks[name]
+        times = clock(-self.contact, self.count - self.contact)
+        path = Path(track.poses[:, :2], times, track.poses[:, 2])
+        outside = np.where((times < from_s) | (times > to_s), 50.0, 0.0)
+        return Motion(path, times, times, track.size, outside, 0.0)
+
+    def trajectories(self, order: tuple[str, ...]) -> tuple[Trajectory, ...]:
+        """All tracks as records, in the given order."""
+        return tuple(_trajectory(self.tracks[name]) for name in order)
+
+
+def _trajectory(track: Track) -> Trajectory:
+    """Speeds are those of the positions, taken apart before and behind an impact."""
+    poses = track.poses
+    step = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
+    speed = np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
+    if track.hit is not None and 0 < track.hit < len(step):
+        speed[track.hit] = step[track.hit - 1]
+    t = np.round(np.arange(len(poses)) * STEP_S, 3)
+    return Trajectory(
+        actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
+        heading_rad=poses[:, 2].copy(), speed_mps=speed,
+    )  # fmt: skip
+
+
+def _body(track: Track, k: int) -> Body:
+    before = track.poses[max(k - 1, 0)]
+    velocity = (track.poses[k, :2] - before[:2]) / STEP_S
+    mass = 1e9 if track.motion.fixed else mass_kg(track.kind, track.size)
+    return Body(track.poses[k], velocity, float(track.poses[k, 2] - before[2]) / STEP_S, track.size, mass)
+
+
+def _area(name: str) -> Area:
+    names: tuple[Area, ...] = ("front", "left", "back", "right")
+    return names[SIDES.index(name)]
+
+
+def _braked(motion: Motion, own: Floats, start: int) -> Floats:
+    """Own times that run slower and slower from sample `start` on, so that the motion stops."""
+    if start >= len(own):
+        return own
+    speed = abs(float(np.diff(motion.stations(own[start] + np.array([0.0, STEP_S])))[0])) / STEP_S
+    lasts = max(speed / _BRAKING_MPS2, STEP_S)
+    since = np.minimum(np.maximum(np.arange(len(own)) - start, 0) * STEP_S, lasts)
+    slowed: Floats = np.where(np.arange(len(own)) <= start, own, own[start] + since - since**2 / (2 * lasts))
+    return slowed

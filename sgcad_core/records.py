@@ -1,0 +1,234 @@
+"""The frozen records that one case hands from stage to stage.
+
+Knows specs and numpy; no file format, no plugin, no Prefect. Units are SI; angles in radians,
+counter-clockwise from east; the point of an actor is the centre of its bounding box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, RoadLayout, RoadSpec
+
+Floats = NDArray[np.float64]
+Stage = Literal["road", "scenario"]
+
+
+class Record(BaseModel):
+    """Frozen, closed, compared by value."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+
+# ------------------------------------------------------------------ evidence
+class Diagram(Record):
+    """A crash diagram, always re-encoded as RGB PNG by the reader, so that later stages trust it."""
+
+    png: bytes = Field(repr=False)
+    width_px: int
+    height_px: int
+
+
+class CrashReport(Record):
+    """What is known of one crash. `coded` is None unless the config sets use_coded_fields."""
+
+    case: str
+    narrative: str
+    diagrams: tuple[Diagram, ...] = ()
+    coded: Mapping[str, Any] | None = None
+    notes: tuple[str, ...] = ()
+    """What the reader changed or left out, for result.json and the log."""
+
+
+class Context(Record):
+    """CAD's c: the crash evidence, which the context-free row does not see."""
+
+    narrative: str
+    diagrams: tuple[Diagram, ...] = ()
+
+
+class Passage(Record):
+    """A retrieved piece of knowledge; stands in the query, so in both rows."""
+
+    id: str
+    kind: str
+    text: str
+    score: float = 0.0
+
+
+class Query(Record):
+    """CAD's x: everything but the evidence.
+
+    Prompt order, made for prefix reuse: task, passages | evidence (context) | repair.
+    """
+
+    task: str
+    passages: tuple[Passage, ...] = ()
+    answer_schema: Mapping[str, Any] | None = None
+    """JSON schema of the answer; a backbone with a grammar cannot answer otherwise."""
+    repair: str = ""
+    """The previous answer and its findings, empty on the first attempt: stands last."""
+    attempt: int = 1
+    case: str = ""
+    stage: Stage | None = None
+    """Labels for logs and scripted answers; never part of a prompt."""
+
+
+class Token(Record):
+    """One answer token; `forced` marks tokens that the grammar left no choice about."""
+
+    text: str
+    logp_with_context: float
+    logp_without_context: float | None = None
+    forced: bool = False
+
+
+class Generation(Record):
+    """A model's answer and what it cost."""
+
+    text: str
+    tokens: tuple[Token, ...] = ()
+    finish: Literal["stop", "length", "refused"] = "stop"
+    grounding: Mapping[str, float] = {}
+    """JSON path of an answer field -> log p(y|c,x) - log p(y|x) summed over its tokens, nats."""
+    prompt_tokens: int = 0
+    model_calls: int = 0
+    seconds: float = 0.0
+    notes: tuple[str, ...] = ()
+
+
+# ------------------------------------------------------------------ road
+class PlainXml(Record):
+    """SUMO plain XML: the three inputs of netconvert (connections may be empty)."""
+
+    nodes: str
+    edges: str
+    connections: str = ""
+
+
+class RoadNetwork(Record):
+    """A road network in both formats. A writer whose XML does not compile leaves net_xml and xodr None."""
+
+    plain: PlainXml | None = None
+    spec: RoadSpec | None = None
+    layout: RoadLayout | None = None
+    """The layout that `spec` was drawn from, where the writer answered one."""
+    net_xml: str | None = Field(None, repr=False)
+    xodr: str | None = Field(None, repr=False)
+    log: str = ""
+    """netconvert's own words."""
+    returncode: int = 0
+
+
+# ------------------------------------------------------------------ scenario and its execution
+class ActorInfo(Record):
+    """An actor as result.json names it."""
+
+    id: str
+    type: ActorKind
+    length_m: float
+    width_m: float
+    maneuver: Maneuver
+
+
+class Trajectory(Record):
+    """One actor's motion on the common clock; five equally long arrays, t_s[k] = 0.05 k."""
+
+    actor: str
+    t_s: Floats
+    x_m: Floats
+    y_m: Floats
+    heading_rad: Floats
+    speed_mps: Floats
+
+
+class ObservedContact(Record):
+    """The first overlap of two boxes; areas as `sgcad_core.geometry.contact_area` tells them."""
+
+    actor: str
+    other: str
+    actor_area: Area
+    other_area: Area
+    t_s: float
+
+
+class Scenario(Record):
+    """An executable scenario. Exactly one of xosc and routes_xml is written."""
+
+    xosc: str | None = Field(None, repr=False)
+    routes_xml: str | None = Field(None, repr=False)
+    actors: tuple[ActorInfo, ...]
+    behavior: BehaviorSpec | None = None
+    declared: Contact | None = None
+    planned: tuple[Trajectory, ...] = Field((), repr=False)
+    notes: tuple[str, ...] = ()
+
+
+class Execution(Record):
+    """What a simulator saw."""
+
+    simulator: str
+    trajectories: tuple[Trajectory, ...] = Field(repr=False)
+    contact: ObservedContact | None = None
+    """First contact between any two actors that move or are struck; None if nothing touched."""
+    log: str = ""
+
+
+# ------------------------------------------------------------------ judgement
+class Finding(Record):
+    """What is wrong, written so that a model (or a person) can act on it.
+
+    severity repair: asked again; refuse: ends the stage as refused; note: kept, nothing happens.
+    """
+
+    source: str
+    severity: Literal["repair", "refuse", "note"] = "repair"
+    what: str
+    where: str = ""
+    value: str = ""
+    remedy: str = ""
+
+    def line(self) -> str:
+        """One line for prompts and logs."""
+        parts = [f"[{self.source}] {self.what}"]
+        parts += [f"at {self.where}"] if self.where else []
+        parts += [f"(found {self.value})"] if self.value else []
+        parts += [f"-> {self.remedy}"] if self.remedy else []
+        return " ".join(parts)
+
+
+class Evidence(Record):
+    """What a validator may compare an artifact with."""
+
+    report: CrashReport
+    network: RoadNetwork | None = None
+    """The written network while the scenario stage is judged."""
+    generation: Generation | None = None
+
+
+class Attempt(Record):
+    """One turn of the refinement loop, kept in attempts/<stage>-<nn>/."""
+
+    stage: Stage
+    number: int
+    prompt: str = ""
+    answer: str = ""
+    findings: tuple[Finding, ...] = ()
+    generation: Generation | None = None
+    seconds: float = 0.0
+
+
+class StageOutcome(Record):
+    """How a stage ended: all three ends are results and are counted."""
+
+    stage: Stage
+    status: Literal["written", "refused", "exhausted"]
+    artifact: RoadNetwork | Scenario | None = None
+    attempts: tuple[Attempt, ...] = ()
+    reason: str = ""
+    missing: tuple[str, ...] = ()

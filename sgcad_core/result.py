@@ -1,0 +1,148 @@
+"""result.json: what one case came to, in the stable form that scripts rely on.
+
+Pure functions on records; knows the .net.xml reader for counting roads. Writes no file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from sgcad_core.formats.lane_graph import network_figures, segments
+from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.records import (
+    ActorInfo,
+    Execution,
+    ObservedContact,
+    RoadNetwork,
+    Scenario,
+    StageOutcome,
+)
+from sgcad_core.specs import Contact
+
+Status = Literal["generated", "refused", "exhausted", "failed"]
+STATUSES: tuple[Status, ...] = ("generated", "refused", "exhausted", "failed")
+STAGES = ("road", "scenario")
+
+
+@dataclass(frozen=True)
+class CaseRecord:
+    """Everything known of one case when it ends, however it ends.
+
+    `failure` is the reason of a case that neither generated nor was declined. `seconds` maps steps (read,
+    retrieve, road, scenario, simulate, measure, draw) to wall time.
+    """
+
+    case: str
+    config: str
+    outcomes: Mapping[str, StageOutcome] = field(default_factory=dict)
+    execution: Execution | None = None
+    failure: str = ""
+    notes: tuple[str, ...] = ()
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def network(self) -> RoadNetwork | None:
+        """The written network (not the best attempt of an exhausted stage)."""
+        artifact = self._written("road")
+        return artifact if isinstance(artifact, RoadNetwork) else None
+
+    @property
+    def scenario(self) -> Scenario | None:
+        """The written scenario."""
+        artifact = self._written("scenario")
+        return artifact if isinstance(artifact, Scenario) else None
+
+    def _written(self, stage: str) -> RoadNetwork | Scenario | None:
+        outcome = self.outcomes.get(stage)
+        return outcome.artifact if outcome is not None and outcome.status == "written" else None
+
+
+def result_of(record: CaseRecord) -> dict[str, Any]:
+    """The content of result.json, JSON-able."""
+    status, reason, missing = _end(record)
+    return {
+        "case": record.case,
+        "config": record.config,
+        "status": status,
+        "reason": reason,
+        "missing": list(missing),
+        "attempts": {s: len(record.outcomes[s].attempts) if s in record.outcomes else 0 for s in STAGES},
+        "network": _network(record.network),
+        "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
+        "collision": _collision(record.scenario, record.execution),
+        "grounding": _grounding(record.outcomes),
+        "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
+        "notes": [*record.notes, *_stage_notes(record)],
+    }
+
+
+def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
+    """Whether the first contact is the declared pair with the declared areas, in either order."""
+    if declared is None or observed is None:
+        return False
+    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
+    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+
+
+def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
+    if record.failure:
+        return "failed", record.failure, ()
+    for stage in STAGES:
+        outcome = record.outcomes.get(stage)
+        if outcome is None:
+            return "failed", f"the {stage} stage never ran", ()
+        if outcome.status == "refused" or outcome.status == "exhausted":
+            return outcome.status, f"{stage}: {outcome.reason}", outcome.missing
+    if record.execution is None:
+        return "failed", "the scenario was never executed", ()
+    return "generated", "", ()
+
+
+def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
+    if network is None or network.net_xml is None:
+        return None
+    graph = parse_net(network.net_xml)
+    figures = network_figures(graph)
+    return {
+        "intersections": figures.intersections,
+        "components": figures.components,
+        "mean_lanes": round(figures.mean_lanes, 4),
+        "segments": segments(graph),
+    }
+
+
+def _actor(actor: ActorInfo) -> dict[str, Any]:
+    return {
+        "id": actor.id,
+        "type": actor.type,
+        "length_m": actor.length_m,
+        "width_m": actor.width_m,
+        "maneuver": actor.maneuver,
+    }
+
+
+def _collision(scenario: Scenario | None, execution: Execution | None) -> dict[str, Any]:
+    declared = scenario.declared if scenario else None
+    observed = execution.contact if execution else None
+    return {
+        "declared": declared.model_dump() if declared else None,
+        "realised": realised(declared, observed),
+        "observed": observed.model_dump() if observed else None,
+    }
+
+
+def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
+    """Grounding of the last attempt's answer fields, nats; keys are "<stage>.<path>"."""
+    found: dict[str, float] = {}
+    for stage, outcome in outcomes.items():
+        generation = outcome.attempts[-1].generation if outcome.attempts else None
+        found |= {f"{stage}.{path}": round(v, 4) for path, v in generation.grounding.items()} if generation else {}
+    return found
+
+
+def _stage_notes(record: CaseRecord) -> list[str]:
+    last = [outcome.attempts[-1] for outcome in record.outcomes.values() if outcome.attempts]
+    notes = [f.line() for attempt in last for f in attempt.findings if f.severity == "note"]
+    return notes + list(record.scenario.notes if record.scenario else ())

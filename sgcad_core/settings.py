@@ -1,0 +1,81 @@
+"""Where things lie and what the environment says; the only module that reads or writes os.environ.
+
+`quiet_libraries()` must run before prefect, mlflow or transformers is imported.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import tomllib
+from pathlib import Path
+
+from sgcad_core.errors import MissingTool
+
+ROOT = Path(__file__).resolve().parent.parent
+CONFIGS = ROOT / "configs"
+PROMPTS = CONFIGS / "prompts"
+
+_QUIET = {
+    "PREFECT_LOGGING_LEVEL": "WARNING",
+    "PREFECT_SERVER_LOGGING_LEVEL": "CRITICAL",
+    "PREFECT_SERVER_ANALYTICS_ENABLED": "false",
+    "DO_NOT_TRACK": "1",
+    "MLFLOW_DISABLE_TELEMETRY": "true",
+    "TOKENIZERS_PARALLELISM": "false",
+}
+
+
+def quiet_libraries() -> None:
+    """Set the libraries' switches that the user has not set."""
+    for name, value in _QUIET.items():
+        os.environ.setdefault(name, value)
+
+
+def environment(name: str) -> str:
+    """A variable that a config names, such as an API key's; empty if it is not set."""
+    return os.environ.get(name, "")
+
+
+def prefect_url() -> str:
+    """The Prefect server that the user has named, by variable or active profile; empty if none is."""
+    if url := environment("PREFECT_API_URL"):
+        return url
+    home = Path(environment("PREFECT_HOME") or Path.home() / ".prefect")
+    try:
+        profiles = tomllib.loads(Path(environment("PREFECT_PROFILES_PATH") or home / "profiles.toml").read_text())
+    except (OSError, ValueError):
+        return ""
+    active = profiles.get("profiles", {}).get(environment("PREFECT_PROFILE") or profiles.get("active", ""), {})
+    return str(active.get("PREFECT_API_URL", ""))
+
+
+def use_prefect_url(url: str) -> None:
+    """Name the server for everything started from here; before prefect is imported. Empty: name none."""
+    if url:
+        os.environ["PREFECT_API_URL"] = url
+    else:
+        os.environ.pop("PREFECT_API_URL", None)
+
+
+def sumo_home() -> Path:
+    """Root of the SUMO that the eclipse-sumo wheel brings (or of SUMO_HOME)."""
+    spec = importlib.util.find_spec("sumo")
+    if spec and spec.submodule_search_locations:
+        return Path(next(iter(spec.submodule_search_locations)))
+    if home := os.environ.get("SUMO_HOME"):
+        return Path(home)
+    raise MissingTool("SUMO is not installed: `pip install eclipse-sumo libsumo`, or set SUMO_HOME")
+
+
+def netconvert() -> Path:
+    """SUMO's network compiler; the binary itself, since the console script costs 0.2 s more."""
+    binary = sumo_home() / "bin" / "netconvert"
+    if not binary.exists():
+        raise MissingTool(f"{binary} does not exist: `pip install --force-reinstall eclipse-sumo`")
+    return binary
+
+
+def subprocess_environment() -> dict[str, str]:
+    """The environment for SUMO's programs."""
+    return {**os.environ, "SUMO_HOME": str(sumo_home())}

@@ -1,0 +1,179 @@
+"""What a writer says about a crash before any file format: layout, roads, behavior.
+
+These pydantic classes are also the JSON schemas that a model answers in, so field order is answer
+order and every description is prompt text. Knows no SUMO, OpenDRIVE or OpenSCENARIO.
+
+Frames: x east, y north, metres. Speeds stand in mph because reports state them so and a model should
+copy rather than compute; everything behind the specs is SI.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
+ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTO][0-9]{1,2}$")]
+Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
+NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
+Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
+Median = Literal["none", "painted", "raised", "grass", "barrier"]
+RoadKind = Literal["road", "driveway", "ramp"]
+ActorKind = Literal[
+    "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
+]
+Area = Literal["front", "back", "left", "right"]
+Maneuver = Literal[
+    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
+    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
+    "departing_road_left", "departing_road_right", "backing", "other",
+]  # fmt: skip
+Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
+Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
+Surface = Literal["dry", "wet", "snow", "ice"]
+SpeedMph = Annotated[int, Field(ge=0, le=120)]
+SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
+Lanes = Annotated[int, Field(ge=0, le=8)]
+
+
+class Spec(BaseModel):
+    """A frozen answer: unknown keys are faults."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+# ------------------------------------------------------------------ road, in full
+class Point(Spec):
+    """A place on the ground, metres; x east, y north."""
+
+    x_m: Annotated[float, Field(ge=-3000, le=3000)]
+    y_m: Annotated[float, Field(ge=-3000, le=3000)]
+
+
+class Node(Point):
+    """A place where roads meet or end."""
+
+    id: Id
+    control: NodeControl = Field("none", description="stop / yield: the minor roads stop / yield")
+
+
+class Road(Spec):
+    """A road between two nodes; forward is from from_node to to_node, traffic keeps to the right."""
+
+    id: Id
+    from_node: Id
+    to_node: Id
+    lanes_forward: Lanes = Field(description="lanes at the widest section, turn lanes counted; 0 = no such direction")
+    lanes_backward: Lanes
+    turns_forward: tuple[Turn, ...] = Field((), description="use of each lane at to_node, from the right curb")
+    turns_backward: tuple[Turn, ...] = Field((), description="use of each lane at from_node, from the right curb")
+    center_turn_lane: bool = Field(False, description="two-way left-turn lane; not counted in the lanes")
+    median: Median = "none"
+    via: tuple[Point, ...] = Field((), description="inner points of a curved road, in order")
+    kind: RoadKind = "road"
+    minor: bool = Field(False, description="has the stop or yield sign where it meets a node so controlled")
+    speed_limit_mph: SpeedLimitMph | None = None
+
+
+class RoadSpec(Spec):
+    """A road network, any shape: several junctions, merges, ramps, one-way and divided roads."""
+
+    nodes: Annotated[tuple[Node, ...], Field(min_length=2, max_length=40)]
+    roads: Annotated[tuple[Road, ...], Field(min_length=1, max_length=60)]
+
+
+# ------------------------------------------------------------------ road, as a small model or a template says it
+class Leg(Spec):
+    """A road that ends at the hub. Ids are bearings, so a layout has at most one leg a bearing."""
+
+    bearing: Compass = Field(description="where the leg lies, seen from the hub")
+    lanes_in: Lanes = Field(description="lanes towards the hub, turn lanes counted")
+    lanes_out: Lanes
+    turns_in: tuple[Turn, ...] = Field((), description="use of each lane towards the hub, from the right curb")
+    center_turn_lane: bool = False
+    median: Median = "none"
+    kind: RoadKind = "road"
+    control: Literal["none", "signal", "flashing", "stop", "yield"] = "none"
+    curve: Literal["none", "left", "right"] = Field("none", description="as one drives towards the hub")
+    speed_limit_mph: SpeedLimitMph | None = None
+
+
+class Access(Spec):
+    """A driveway or side road that joins a leg away from the hub: a junction of its own."""
+
+    leg: Compass
+    side: Literal["left", "right", "both"] = Field(description="as one drives towards the hub")
+    distance_m: Annotated[float, Field(ge=15, le=150)] = 40.0
+    kind: RoadKind = "driveway"
+    lanes_in: Lanes = 1
+    lanes_out: Lanes = 1
+    control: Literal["none", "signal", "stop", "yield"] = "none"
+
+
+class RoadLayout(Spec):
+    """One hub and its legs: three or more legs make a junction, two a plain (or curved) road.
+
+    `sgcad_core.layout.road_spec` compiles it. Road ids there: the leg's bearing ("N"; forward runs towards
+    the hub), behind an access the outer piece "N_outer", the access itself "N_access_left|right"
+    (forward towards the leg), node ids "hub", "N_end", "N_joint", "N_access_left_end".
+    """
+
+    legs: Annotated[tuple[Leg, ...], Field(min_length=2, max_length=8)]
+    accesses: Annotated[tuple[Access, ...], Field(max_length=4)] = ()
+
+
+# ------------------------------------------------------------------ behavior
+class Actor(Spec):
+    """A road user or object and its pre-crash motion."""
+
+    id: ActorId = Field(description="V<n> as the report numbers it, P pedestrian, B cyclist, T trailer, O object")
+    kind: ActorKind
+    road: Id = Field(description="road on which it starts")
+    direction: Literal["forward", "backward"] = Field(description="forward: from the road's from_node to its to_node")
+    lane: Annotated[int, Field(ge=1, le=8)] | None = Field(None, description="1 = at the right curb")
+    exit_road: Id | None = Field(None, description="road it takes, or means to take, behind the junction")
+    maneuver: Maneuver
+    speed_mph: SpeedMph | None = None
+    length_m: Annotated[float, Field(gt=0.1, le=30)] | None = None
+    width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
+
+
+class Contact(Spec):
+    """One collision: striker hits struck; areas are the sides of each that touch."""
+
+    striker: ActorId
+    struck: ActorId
+    striker_area: Area
+    struck_area: Area
+
+
+class BehaviorSpec(Spec):
+    """Who moves where and who strikes whom, contacts in order: the first is the first harmful event."""
+
+    actors: Annotated[tuple[Actor, ...], Field(min_length=1, max_length=12)]
+    contacts: Annotated[tuple[Contact, ...], Field(max_length=8)] = ()
+    light: Light | None = None
+    weather: Weather | None = None
+    surface: Surface | None = None
+
+
+class Refusal(Spec):
+    """The answer of a writer that finds the evidence too thin or contradictory."""
+
+    refuse: Annotated[str, StringConstraints(min_length=1, max_length=400)]
+    missing: Annotated[tuple[str, ...], Field(max_length=12)] = ()
+
+
+SIZE_M: dict[str, tuple[float, float]] = {
+    "car": (4.7, 1.8), "suv": (4.8, 1.9), "pickup": (5.6, 2.0), "van": (5.2, 2.0), "truck": (9.0, 2.5),
+    "bus": (11.5, 2.55), "motorcycle": (2.2, 0.8), "bicycle": (1.8, 0.6), "pedestrian": (0.5, 0.6),
+    "trailer": (12.0, 2.5), "object": (0.5, 0.5),
+}  # fmt: skip
+"""Length and width of an actor whose size the report does not give, metres (typical U.S. fleet of 1990-2007)."""
+
+
+def size_m(actor: Actor) -> tuple[float, float]:
+    """Length and width of an actor's box in metres: as stated, else typical of its kind."""
+    length, width = SIZE_M[actor.kind]
+    return actor.length_m or length, actor.width_m or width
