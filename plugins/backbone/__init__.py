@@ -1,0 +1,1 @@
+"""Prompt -> tokens: owns the model, the token loop and its caches. One file per choice."""

@@ -1,0 +1,102 @@
+"""The start-up self-check: does a batch give the logits of separate forwards?
+
+transformers lets an architecture be batched and quietly compute something else (Mllama's row without a
+picture was off by most of its range). So before the first report, rows of both kinds are prefilled apart,
+stepped together and compared with one plain forward each, without cache. Knows no report and no decoder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from plugins.backbone.engine.families import Beside, Family, raw_inputs
+from plugins.backbone.engine.records import Picture, Prompt, WrongBatch
+from plugins.backbone.engine.runner import Runner
+
+_BEHIND = (3, 1, 1)
+"""Tokens fed at each step of the check: a chunk, then single ones."""
+
+
+def batching(model: Any, family: Family, picture: Picture | None) -> bool:
+    """Whether rows with and without pictures must be kept apart. Raises WrongBatch if neither way is right."""
+    prompts = check_prompts(family, picture)
+    faults = []
+    for apart in (False, True):
+        error = batch_error(model, family, apart, prompts)
+        if error <= tolerance(model):
+            return apart
+        faults.append(f"{'two caches' if apart else 'one batch'}: {error:.3g}")
+    raise WrongBatch(
+        f"{type(model).__name__} gives other logits in a batch than alone (error over spread, {'; '.join(faults)}, "
+        f"limit {tolerance(model):g}); use another model, or attn_implementation eager"
+    )
+
+
+def tolerance(model: Any) -> float:
+    """Root mean square error over the logits' own spread: rounding is far below, a wrong mask far above."""
+    return 1e-3 if model.dtype == torch.float32 else 0.05
+
+
+@torch.inference_mode()
+def batch_error(model: Any, family: Family, apart: bool, prompts: Sequence[Prompt]) -> float:
+    """The worst row's root mean square difference to the reference, over the reference's standard deviation."""
+    runner = Runner(model, family, apart)
+    behind = [_tokens(family, sum(_BEHIND), seed) for seed in range(len(prompts))]
+    rows = [runner.open(prompt) for prompt in prompts]
+    said: list[list[Tensor]] = [[] for _ in rows]
+    at = 0
+    for count in (0, *_BEHIND[:-1]):
+        pairs = zip(prompts, behind, strict=True)
+        fed = [more[at : at + count] if count else [prompt.ids[-1]] for prompt, more in pairs]
+        for row, logits, kept in zip(rows, runner.step(list(zip(rows, fed, strict=True))), said, strict=True):
+            row.length += len(logits)
+            kept.append(logits.float())
+        at += count
+    errors = []
+    for prompt, more, parts in zip(prompts, behind, said, strict=True):
+        expected = reference(model, family, prompt, more[:at]).float()
+        errors.append(float((torch.cat(parts) - expected).pow(2).mean().sqrt() / expected.std()))
+    return max(errors)
+
+
+@torch.inference_mode()
+def reference(model: Any, family: Family, prompt: Prompt, behind: Sequence[int] = ()) -> Tensor:
+    """Logits (1 + behind, vocabulary) from the prompt's last token on: one forward, no cache, its own positions."""
+    ids = torch.tensor([[*prompt.ids, *behind]], device=model.device)
+    inputs = family.moved(raw_inputs(prompt.pictures))
+    if prompt.pictures and family.dimensions > 1:
+        inputs["mm_token_type_ids"] = ids.eq(family.image_token or 0).int()
+    if prompt.pictures and isinstance(family, Beside):
+        whole = Prompt(ids[0].tolist(), prompt.pictures)
+        inputs["cross_attention_mask"] = family.visible(whole)[None].to(model.device)
+    _forget_positions(model)
+    logits: Tensor = model(input_ids=ids, use_cache=False, **inputs).logits[0, len(prompt.ids) - 1 :]
+    _forget_positions(model)
+    return logits
+
+
+def check_prompts(family: Family, picture: Picture | None) -> list[Prompt]:
+    """Short prompts of different lengths, one with the picture in its middle if there is one."""
+    prompts = [Prompt(_tokens(family, 9, 1)), Prompt(_tokens(family, 5, 2))]
+    if picture is not None:
+        inner = [int(family.image_token or 0)] * family.tokens_of(picture)
+        prompts.insert(0, Prompt([*_tokens(family, 4, 3), *inner, *_tokens(family, 6, 4)], [picture]))
+    return prompts
+
+
+def _tokens(family: Family, count: int, seed: int) -> list[int]:
+    """Ordinary tokens: any but the picture's."""
+    size = family.model.get_input_embeddings().weight.shape[0]
+    found = torch.randint(min(8, size // 2), min(size, 400), (count,), generator=torch.Generator().manual_seed(seed))
+    return [int(t) if t != family.image_token else int(t) - 1 for t in found]
+
+
+def _forget_positions(model: Any) -> None:
+    """The model keeps one batch's rope_deltas for the next: nobody may read another's."""
+    core = getattr(model, "model", model)
+    if hasattr(core, "rope_deltas"):
+        core.rope_deltas = None

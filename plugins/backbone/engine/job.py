@@ -1,0 +1,201 @@
+"""One report while it is being answered: its rows, its place in the grammar, its tokens so far.
+
+A job turns what was decided into the next chunk to feed, and what the model said of the chunk into tokens.
+Knows no model and no batch.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+
+from plugins.backbone.engine.draft import Draft
+from plugins.backbone.engine.grammar import Mask, Track
+from plugins.backbone.engine.records import Answer, DoesNotFit, Request
+from plugins.backbone.engine.runner import Row
+from plugins.backbone.fields import open_path
+
+
+@dataclass
+class Said:
+    """What the model said of one chunk; position i is about the token behind chunk[i].
+
+    Of the first `known` positions the token behind is in the chunk; then come the scored ones.
+    """
+
+    known_with: list[float]
+    known_without: list[float]
+    picked: list[int]
+    picked_with: list[float]
+    picked_without: list[float]
+
+
+@dataclass(eq=False)
+class Job:
+    """A request and its state."""
+
+    request: Request
+    future: Future[Answer] = field(default_factory=Future)
+    answer: Answer = field(default_factory=Answer)
+    rows: list[Row] = field(default_factory=list)
+    """With context, then without, if that row is run."""
+    pending: list[int] = field(default_factory=list)
+    """Decided tokens that the rows have not been fed: the last of the prompt, or a picked one and forced ones."""
+    guesses: list[int] = field(default_factory=list)
+    free: list[int] = field(default_factory=list)
+    """Which of the scored positions the grammar leaves a choice about."""
+    closing: bool = False
+    """The answer is complete; its forced end is fed once more for its log-probabilities."""
+    started: float = field(default_factory=time.perf_counter)
+    track: Track | None = None
+    draft: Draft = field(init=False)
+    generator: torch.Generator | None = None
+    begun: bool = False
+
+    def __post_init__(self) -> None:
+        self.draft = Draft(self.request.draft)
+
+    # ------------------------------------------------------------------ before the step
+    def begin(self) -> None:
+        """Start (or, after memory ran out, go on): the last known token is what the first step feeds."""
+        if not self.begun:
+            self.begun = True
+            self.track = self.request.grammar.track() if self.request.grammar else None
+            self.pending = [self.request.with_context.ids[-1]]
+            self._force()
+        else:
+            first = len(self.answer.with_context)
+            before = self.answer.ids[first - 1] if first else self.request.with_context.ids[-1]
+            self.pending = [before, *self.answer.ids[first:]]
+
+    def generator_on(self, device: torch.device) -> torch.Generator:
+        """The report's own random numbers, seeded once, on the device of its scores."""
+        if self.generator is None:
+            self.generator = torch.Generator(device=device).manual_seed(self.request.seed)
+        return self.generator
+
+    def fed(self) -> list[int]:
+        """Answer tokens that the rows hold when the job (re)starts, the last of them to be fed again."""
+        return self.answer.ids[: len(self.answer.with_context)]
+
+    def chunk(self, guess_limit: int) -> list[int]:
+        """What to feed now: decided tokens, then guesses. A closing job's last token says nothing more."""
+        if self.closing:
+            return self.pending[:-1]
+        room = self.request.max_new_tokens - len(self.answer.ids) - 1
+        self.guesses = self.draft.guess(min(guess_limit, room)) if self.request.draft else []
+        return [*self.pending, *self.guesses]
+
+    def masks(self, words: int) -> Mask | None:
+        """Masks of the scored positions, cutting off guesses that the grammar forbids; None without a grammar."""
+        if self.track is None or self.closing:
+            return None
+        rows = np.zeros((len(self.guesses) + 1, max(words, self.track.words)), np.int32)
+        self.track.fill(rows[0])
+        for i, token in enumerate(self.guesses):
+            if not self.track.take(token):
+                self.guesses = self.guesses[:i]
+                break
+            if self.track.done:
+                self.track.back(1)
+                self.guesses = self.guesses[:i]
+                break
+            self.track.fill(rows[i + 1])
+        return rows[: len(self.guesses) + 1]
+
+    def forget_guesses(self) -> None:
+        """Take the guesses out of the grammar again."""
+        if self.track:
+            self.track.back(len(self.guesses))
+        self.guesses = []
+
+    # ------------------------------------------------------------------ after the step
+    def hear(self, said: Said, choices: Sequence[int]) -> None:
+        """Take the model's word for a chunk: note log-probabilities, accept tokens, force the next ones.
+
+        `choices` is how many tokens the grammar left at each scored position, empty without one. Raises
+        DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
+        """
+        self._note(said.known_with, said.known_without)
+        if self.closing:
+            return self._finish()
+        guesses = self.guesses
+        right = next((i for i, (g, p) in enumerate(zip(guesses, said.picked, strict=False)) if g != p), len(guesses))
+        fed = len(self.pending) + right
+        if self.track:
+            self.track.back(len(guesses) - right)
+        self.guesses = []
+        self.draft.judge(len(guesses), right)
+        self.pending = []
+        for i in range(right + 1):
+            if choices and choices[i] == 0:
+                raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
+            self._accept(said.picked[i], bool(choices) and choices[i] == 1)
+            self._note(said.picked_with[i : i + 1], said.picked_without[i : i + 1])
+            if i == right and not self._take(said.picked[i]):
+                raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
+        for row in self.rows:
+            row.length += fed
+        self.pending = [said.picked[right]]
+        return self._go_on()
+
+    def text(self) -> str:
+        """The answer so far; empty without a grammar, which alone knows the spelling."""
+        return self.request.grammar.text(self.answer.ids) if self.request.grammar else ""
+
+    def path(self) -> str:
+        """JSON path of the field being written."""
+        return open_path(self.text())
+
+    @property
+    def finished(self) -> bool:
+        """The answer is complete."""
+        return self.answer.seconds > 0.0
+
+    def _take(self, token: int) -> bool:
+        return token in self.request.eos or self.track is None or self.track.take(token)
+
+    def _go_on(self) -> None:
+        """Force what follows, or end."""
+        if self.answer.ids and self.answer.ids[-1] in self.request.eos:
+            if self.track and not self.track.complete:
+                raise DoesNotFit("the text that must follow is an end token of this tokenizer", self.path())
+            for kept in (self.answer.ids, self.answer.with_context, self.answer.without_context, self.answer.forced):
+                del kept[-1:]
+            return self._finish()
+        self._force()
+        if self.track and self.track.done:
+            self.closing = len(self.pending) > 1
+            return None if self.closing else self._finish()
+        if len(self.answer.ids) >= self.request.max_new_tokens:
+            if self.track:
+                limit = self.request.max_new_tokens
+                raise DoesNotFit(f"the answer is not finished after {limit} tokens", self.path())
+            self._finish(complete=False)
+        return None
+
+    def _force(self) -> None:
+        if self.track and self.request.jump_forward and not self.track.done:
+            for token in self.track.forced():
+                self._accept(token, forced=True)
+                self.pending.append(token)
+
+    def _accept(self, token: int, forced: bool) -> None:
+        self.answer.ids.append(token)
+        self.answer.forced.append(forced)
+        self.draft.note(token)
+
+    def _note(self, with_context: Sequence[float], without_context: Sequence[float]) -> None:
+        self.answer.with_context += with_context
+        self.answer.without_context += without_context
+
+    def _finish(self, complete: bool = True) -> None:
+        self.answer.finished = complete
+        self.answer.prompt_tokens = sum(len(row.prompt.ids) for row in self.rows)
+        self.answer.reused_tokens = sum(row.reused for row in self.rows)
+        self.answer.seconds = max(time.perf_counter() - self.started, 1e-9)

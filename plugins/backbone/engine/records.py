@@ -1,0 +1,117 @@
+"""What goes into the token loop and what comes out; the loop's own errors.
+
+    EngineFault
+    ├── DoesNotFit    no valid answer within the limits: the field's path, so that it can be asked again
+    ├── BadLogits     the model gave NaN or inf at a step: this report stops, the others go on
+    ├── TooLong       prompt and answer exceed the model's window
+    ├── TooBig        one report alone does not fit in memory
+    └── WrongBatch    the start-up self-check found no way to run this model right
+
+Knows tensors only: no tokenizer, no prompt format, no pydantic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from plugins.backbone.engine.grammar import Grammar
+
+
+class EngineFault(Exception):
+    """Root of the tree; never raised itself."""
+
+
+class DoesNotFit(EngineFault):
+    """No valid answer can be finished; `path` is the JSON path of the field at fault ("$" = the whole)."""
+
+    def __init__(self, message: str, path: str = "$") -> None:
+        super().__init__(message)
+        self.path = path
+
+
+class BadLogits(EngineFault):
+    """NaN or inf in a row's logits."""
+
+
+class TooLong(EngineFault):
+    """The prompt and the longest answer do not fit in the model's window."""
+
+
+class TooBig(EngineFault):
+    """Memory ran out for a single report."""
+
+
+class WrongBatch(EngineFault):
+    """Neither one batch nor two caches give the logits of separate forwards."""
+
+
+class Policy(Protocol):
+    """A decoder, as the loop sees it: `sgcad_core.interfaces.Decoder` is one."""
+
+    def scores(self, with_context: Any, without_context: Any | None) -> Any:
+        """Combine logits (rows, vocabulary); -inf excludes."""
+
+    def draw(self, scores: Any, generator: Any) -> Any:
+        """Pick one token a row, (rows,)."""
+
+    def reads_prior(self) -> bool:
+        """True if `scores` needs the row without context."""
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """One picture, prepared by the model's image processor: tensors by the model's argument names."""
+
+    digest: str
+    inputs: Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Prompt:
+    """Token ids with every placeholder of a picture in place, and the pictures in their order.
+
+    The last id must not belong to a picture: the answer starts behind it.
+    """
+
+    ids: Sequence[int]
+    pictures: Sequence[Picture] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """One report. `without_context` None: one row is run, and neither contrast nor grounding is possible."""
+
+    with_context: Prompt
+    without_context: Prompt | None
+    policy: Policy
+    grammar: Grammar | None = None
+    seed: int = 0
+    max_new_tokens: int = 1024
+    eos: frozenset[int] = frozenset()
+    """Tokens that end an answer where no grammar says when."""
+    draft: Sequence[int] = ()
+    """The tokens of an earlier answer that this one may largely repeat; changes the speed, never the answer."""
+    jump_forward: bool = True
+
+
+@dataclass
+class Answer:
+    """Tokens of an answer, end-of-text left out; log-probabilities of the bare rows, in nats."""
+
+    ids: list[int] = field(default_factory=list)
+    with_context: list[float] = field(default_factory=list)
+    without_context: list[float] = field(default_factory=list)
+    """Empty if the row without context was not run."""
+    forced: list[bool] = field(default_factory=list)
+    finished: bool = False
+    """False: max_new_tokens was reached, which only happens without a grammar."""
+    prompt_tokens: int = 0
+    """Tokens of both prompts."""
+    reused_tokens: int = 0
+    """How many of them came from earlier calls."""
+    model_calls: int = 0
+    """Forward passes that this report took part in, its prefills included."""
+    seconds: float = 0.0

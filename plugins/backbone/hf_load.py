@@ -1,0 +1,163 @@
+"""Loads a model of transformers with its tokenizer and image processor, and says what to mend if it cannot.
+
+Pictures go through the PIL image processors alone: torchvision is never needed, so the joint processors,
+which ask for it on behalf of videos, are not used. Knows no prompt and no decoder.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+import transformers as tf
+from PIL import Image
+
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError, MissingTool
+
+Prepare = Callable[[Image.Image], Mapping[str, Any]]
+"""A picture to the tensors of the model's arguments, and what else the processor says of it."""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A model ready to run. `prepare` is None for a model that sees no pictures."""
+
+    model: Any
+    tokenizer: Any
+    template: str | None
+    prepare: Prepare | None
+
+
+def load(name: str, revision: str | None, options: Mapping[str, Any], device: str, quantization: str) -> Loaded:
+    """Load from a folder (relative ones also from the project's root) or by id.
+
+    `options` go to from_pretrained. Raises ConfigError or MissingTool saying what to do.
+    """
+    tf.utils.logging.disable_progress_bar()
+    place = _place(name)
+    tokenizer = _tokenizer(place, revision)
+    model = _model(place, revision, dict(options), quantization)
+    if not options.get("device_map") and quantization == "none":
+        model = model.to(_device(device))
+    model.eval()
+    sees = hasattr(model.config, "vision_config")
+    prepare = _prepare(place, revision) if sees else None
+    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare)
+
+
+def _place(name: str) -> str:
+    own = settings.ROOT / name
+    return str(own) if own.is_dir() and not Path(name).is_dir() else name
+
+
+def _device(name: str) -> torch.device:
+    if name == "auto":
+        name = "cuda" if torch.cuda.is_available() else "cpu"
+    try:
+        return torch.device(name)
+    except RuntimeError as fault:
+        raise ConfigError(f"backbone.device {name!r} is unknown to torch: {fault}; use auto, cpu or cuda:0") from fault
+
+
+def _tokenizer(place: str, revision: str | None) -> Any:
+    try:
+        found = tf.AutoTokenizer.from_pretrained(place, revision=revision)
+    except (OSError, ValueError, ImportError) as fault:
+        raise _not_loaded(place, fault) from fault
+    if not getattr(found, "is_fast", False):
+        raise ConfigError(
+            f"backbone.model {place}: its tokenizer {type(found).__name__} is no fast tokenizer, which the grammar "
+            "needs; use a model that has tokenizer.json"
+        )
+    return found
+
+
+def _model(place: str, revision: str | None, options: dict[str, Any], quantization: str) -> Any:
+    if quantization != "none":
+        options |= {"quantization_config": _quantization(quantization)}
+    if options.get("device_map"):
+        _need("accelerate", "backbone.device_map")
+    try:
+        config = tf.AutoConfig.from_pretrained(place, revision=revision)
+        kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
+        return kind.from_pretrained(place, revision=revision, **options)
+    except (OSError, ValueError, ImportError, KeyError) as fault:
+        raise _not_loaded(place, fault) from fault
+
+
+def _quantization(name: str) -> Any:
+    _need("bitsandbytes", "backbone.quantization")
+    if name == "int8":
+        return tf.BitsAndBytesConfig(load_in_8bit=True)
+    return tf.BitsAndBytesConfig(load_in_4bit=True, bnb_4bit_compute_dtype=torch.bfloat16, bnb_4bit_quant_type="nf4")
+
+
+def _need(package: str, field: str) -> None:
+    from importlib.util import find_spec
+
+    if find_spec(package) is None:
+        raise MissingTool(f"{field} needs the package {package!r}: pip install 'sg-cadvlm[gpu]', or leave {field} out")
+
+
+def _not_loaded(place: str, fault: Exception) -> ConfigError:
+    said = " ".join(str(fault).split())[:400]
+    return ConfigError(
+        f"backbone.model {place} cannot be loaded: {said}; give a folder with config.json, weights and tokenizer, "
+        "or an id that `hf download` has fetched"
+    )
+
+
+# ------------------------------------------------------------------ pictures and chat template
+def _prepare(place: str, revision: str | None) -> Prepare:
+    if _own_kind(place) == "MiniImageProcessor":
+        return _mini
+    try:
+        processor = tf.AutoImageProcessor.from_pretrained(place, revision=revision, backend="pil")
+    except ImportError as fault:
+        raise ConfigError(
+            f"backbone.model {place}: its image processor has no version without torchvision ({fault}); use Qwen-VL, "
+            "Llama-Vision, Idefics3, SmolVLM or LLaVA"
+        ) from fault
+    except (OSError, ValueError) as fault:
+        raise _not_loaded(place, fault) from fault
+    if type(processor).__name__.startswith(("Idefics3", "SmolVLM")):
+        return lambda picture: processor([[picture]], return_tensors="pt", return_row_col_info=True)
+    return lambda picture: processor([picture], return_tensors="pt")
+
+
+def _own_kind(place: str) -> str:
+    file = Path(place) / "preprocessor_config.json"
+    if not file.is_file():
+        return ""
+    try:
+        return str(json.loads(file.read_text(encoding="utf-8")).get("image_processor_type", ""))
+    except ValueError as fault:
+        raise ConfigError(f"{file}: is no JSON: {fault}") from fault
+
+
+def _mini(picture: Image.Image) -> Mapping[str, Any]:
+    """The embedded model's own pictures: five channels, place among them."""
+    from mini.picture import look, patches
+
+    channels, grid = look(picture)
+    return {
+        "pixel_values": torch.from_numpy(patches(channels, grid)).float(),
+        "image_grid_thw": torch.tensor([[1, *grid]]),
+    }
+
+
+def _template(tokenizer: Any, place: str, revision: str | None) -> str | None:
+    """The chat template: the tokenizer's, or that of a processor saved with one of its own."""
+    if tokenizer.chat_template:
+        return str(tokenizer.chat_template)
+    try:
+        known, _ = tf.ProcessorMixin.get_processor_dict(place, revision=revision)
+    except (OSError, ValueError):
+        return None
+    found = known.get("chat_template")
+    return str(found) if found else None

@@ -1,0 +1,204 @@
+"""From the parts of a prompt to token ids with every picture's placeholders in place.
+
+Uses the model's chat template if it has one, else a plain text. Special tokens written in a report are taken
+apart, so that no narrative can end its own message. Knows no model but its family's picture sizes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import threading
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import torch
+from PIL import Image
+
+from plugins.backbone.engine.families import Family
+from plugins.backbone.engine.records import Picture, Prompt
+from plugins.backbone.hf_load import Loaded
+from plugins.backbone.prompt import Parts
+from sgcad_core.errors import ConfigError
+from sgcad_core.records import Diagram
+
+_KEPT_PICTURES = 64
+_GAP = "\n\n"
+Turn = tuple[str, list[str | None]]
+"""Who speaks, and texts and (None) pictures in their order."""
+
+
+class Prompter:
+    """Writes prompts for one loaded model."""
+
+    def __init__(self, loaded: Loaded, family: Family, pictures_first: bool = True) -> None:
+        self.loaded = loaded
+        self.family = family
+        self.pictures_first = pictures_first
+        self.tokenizer = loaded.tokenizer
+        self.specials = sorted(
+            {t.content for t in self.tokenizer.added_tokens_decoder.values() if t.special}, key=len, reverse=True
+        )
+        self.image_text = self.tokenizer.convert_ids_to_tokens(family.image_token) if loaded.prepare else None
+        self.kept: OrderedDict[str, Picture] = OrderedDict()
+        self.lock, self.spelling = threading.Lock(), threading.Lock()
+        self.layouts: dict[str, tuple[int, int]] = {}
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader of a result should know of these prompts."""
+        found = [] if self.loaded.template else ["the model has no chat template: its prompt is plain text"]
+        found += [] if self.loaded.prepare else ["the model sees no pictures: diagrams are left out"]
+        return tuple(found)
+
+    def prompt(self, parts: Parts) -> Prompt:
+        """Token ids and pictures. Raises ConfigError if the template drops a picture."""
+        pictures = [self.picture(diagram) for diagram in parts.diagrams] if self.loaded.prepare else []
+        text = self._templated(parts, len(pictures)) if self.loaded.template else self._plain(parts, len(pictures))
+        ids = self._ids(text)
+        shown = ids.count(self.family.image_token) if self.family.image_token is not None else 0
+        if shown != len(pictures):
+            raise ConfigError(
+                f"the chat template shows {shown} of {len(pictures)} pictures (placeholder {self.image_text!r}); "
+                "use a model whose template knows content of type image"
+            )
+        return Prompt(self._expanded(ids, pictures), pictures)
+
+    # ------------------------------------------------------------------ text
+    def _blocks(self, parts: Parts, pictures: int) -> list[str | None]:
+        """Texts and, as None, pictures in the prompt's order; a gap behind every text but the last."""
+        shared = [parts.task, *map(self._defused, parts.passages)]
+        narrative: list[str | None] = [self._defused(parts.narrative)] if parts.narrative else []
+        shown: list[str | None] = [None] * pictures
+        evidence = shown + narrative if self.pictures_first else narrative + shown
+        repair: list[str | None] = [self._defused(parts.repair)] if parts.repair else []
+        found = [_GAP.join(text for text in shared if text) or None, *evidence, *repair]
+        if found[0] is None:
+            found = found[1:]
+        last = max((i for i, block in enumerate(found) if block is not None), default=-1)
+        return [block + _GAP if block is not None and i != last else block for i, block in enumerate(found)]
+
+    def _templated(self, parts: Parts, pictures: int) -> str:
+        if parts.previous and (text := self._in_turns(parts, pictures)):
+            return text
+        return self._rendered([("user", self._blocks(parts, pictures))])
+
+    def _in_turns(self, parts: Parts, pictures: int) -> str | None:
+        """The first question, its answer, then the findings: everything up to them was read before.
+
+        None where the template does not keep the first question as it was (the embedded model's, for one).
+        """
+        asked: Turn = ("user", self._blocks(replace(parts, repair=""), pictures))
+        findings = self._defused(parts.repair.replace(parts.previous, "(the answer above)", 1))
+        first = self._rendered([asked])
+        whole = self._rendered([asked, ("assistant", [self._defused(parts.previous)]), ("user", [findings])])
+        return whole if whole.startswith(first + self._defused(parts.previous)) else None
+
+    def _rendered(self, turns: Sequence[Turn]) -> str:
+        try:
+            text = self._applied([{"role": role, "content": _content(blocks)} for role, blocks in turns])
+            if "{'type':" not in text:
+                return text
+        except TypeError:  # a template for texts only joins contents as strings
+            pass
+        return self._applied([{"role": role, "content": self._joined(blocks)} for role, blocks in turns])
+
+    def _applied(self, messages: list[dict[str, Any]]) -> str:
+        text: str = self.tokenizer.apply_chat_template(
+            messages,
+            chat_template=self.loaded.template,
+            tokenize=False,
+            add_generation_prompt=True,
+        )
+        return text
+
+    def _joined(self, blocks: list[str | None]) -> str:
+        return "".join(self.image_text or "" if block is None else block for block in blocks)
+
+    def _plain(self, parts: Parts, pictures: int) -> str:
+        return f"{self._joined(self._blocks(parts, pictures)).rstrip()}{_GAP}Answer:\n"
+
+    def _defused(self, text: str) -> str:
+        """Break up special tokens that stand in evidence."""
+        for special in self.specials:
+            if len(special) > 1:
+                text = text.replace(special, f"{special[0]} {special[1:]}")
+        return text
+
+    def _ids(self, text: str) -> list[int]:
+        begins = bool(self.tokenizer.bos_token) and text.startswith(self.tokenizer.bos_token)
+        return self._tokenized(text, add=not begins and not self._closes())
+
+    def _closes(self) -> bool:
+        """True if the tokenizer puts something behind a text (an end token): then nothing may be added."""
+        probe = self._tokenized("a", add=True)
+        return bool(probe) and probe[-1] == self.tokenizer.eos_token_id
+
+    def _tokenized(self, text: str, add: bool) -> list[int]:
+        """A fast tokenizer is one mutable object behind its face, so threads take turns."""
+        with self.spelling:
+            found: list[int] = self.tokenizer(text, add_special_tokens=add)["input_ids"]
+        return found
+
+    # ------------------------------------------------------------------ pictures
+    def picture(self, diagram: Diagram) -> Picture:
+        """A diagram as the model takes it; prepared once."""
+        digest = hashlib.sha256(diagram.png).hexdigest()
+        with self.lock:
+            if digest not in self.kept:
+                self.kept[digest] = self._prepared(diagram, digest)
+                if len(self.kept) > _KEPT_PICTURES:
+                    self.kept.popitem(last=False)
+            return self.kept[digest]
+
+    def _prepared(self, diagram: Diagram, digest: str) -> Picture:
+        assert self.loaded.prepare is not None  # noqa: S101 -- asked by the caller
+        with Image.open(io.BytesIO(diagram.png)) as opened:
+            found = dict(self.loaded.prepare(opened.convert("RGB")))
+        if "rows" in found:
+            self.layouts[digest] = (int(found["rows"][0][0]), int(found["cols"][0][0]))
+        layout = ("rows", "cols", "num_tiles")
+        tensors = {k: v for k, v in found.items() if isinstance(v, torch.Tensor) and k not in layout}
+        return Picture(digest, tensors)
+
+    def _expanded(self, ids: list[int], pictures: list[Picture]) -> list[int]:
+        """Each placeholder as many times as its picture has features, or as its grid of tiles is spelled."""
+        found: list[int] = []
+        left = iter(pictures)
+        for token in ids:
+            found += self._placeholders(next(left)) if token == self.family.image_token and pictures else [token]
+        return found
+
+    def _placeholders(self, picture: Picture) -> list[int]:
+        count = self.family.tokens_of(picture)
+        if picture.digest not in self.layouts:
+            return [int(self.family.image_token or 0)] * count
+        rows, columns = self.layouts[picture.digest]
+        text = tiled(rows, columns, str(self.image_text) * (count // (rows * columns + 1)))
+        return self._tokenized(text, add=False)
+
+
+def _content(blocks: Sequence[str | None]) -> list[dict[str, str]]:
+    return [{"type": "image"} if block is None else {"type": "text", "text": block} for block in blocks]
+
+
+def tiled(rows: int, columns: int, tile: str) -> str:
+    """Idefics3's and SmolVLM's spelling of a picture cut into tiles, the whole picture last."""
+    fence = "<fake_token_around_image>"
+    parts = "".join(
+        "".join(f"{fence}<row_{r + 1}_col_{c + 1}>{tile}" for c in range(columns)) + "\n" for r in range(rows)
+    )
+    return f"{parts}{chr(10) if rows else ''}{fence}<global-img>{tile}{fence}"
+
+
+def check_diagram() -> Diagram:
+    """A small drawing for the start-up self-check: two crossing roads."""
+    picture = Image.new("RGB", (96, 96), "white")
+    for i in range(96):
+        for place in ((i, 44), (i, 52), (44, i), (52, i)):
+            picture.putpixel(place, (0, 0, 0))
+    out = io.BytesIO()
+    picture.save(out, format="PNG")
+    return Diagram(png=out.getvalue(), width_px=96, height_px=96)

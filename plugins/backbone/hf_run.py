@@ -1,0 +1,193 @@
+"""A loaded model at work: prompts in, Generations out, the loop's faults as the project's errors.
+
+Kept apart from the plugin class so that naming `hf_vision` in a YAML loads no torch. Knows no file.
+"""
+
+from __future__ import annotations
+
+import codecs
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+from plugins.backbone.fields import grounding, is_refusal
+from plugins.backbone.prompt import Parts
+from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
+from sgcad_core.records import Finding, Generation, Token
+
+if TYPE_CHECKING:
+    from plugins.backbone.engine.grammar import Grammar, GrammarMaker
+    from plugins.backbone.engine.loop import Engine
+    from plugins.backbone.engine.records import Answer, Policy, Prompt
+    from plugins.backbone.hf_prompt import Prompter
+
+
+@dataclass(frozen=True)
+class Call:
+    """One question as the loop needs it; `without_context` None = that row is not run."""
+
+    with_context: Parts
+    without_context: Parts | None
+    schema: Mapping[str, Any] | None
+    policy: Policy
+    seed: int
+    max_new_tokens: int
+    draft: Sequence[int]
+    truncate: bool
+
+
+@dataclass(frozen=True)
+class Running:
+    """One model, its loop and what writes its prompts."""
+
+    engine: Engine
+    prompter: Prompter
+    maker: GrammarMaker
+    eos: frozenset[int]
+    name: str
+
+    def answer(self, call: Call) -> tuple[Generation, tuple[int, ...]]:
+        """The generation and its token ids. Raises the project's errors, see `HfVision.generate`."""
+        from plugins.backbone.engine import records
+
+        try:
+            grammar = self._grammar(call.schema)
+            with_context, note = self._fitted(call.with_context, call)
+            without = self.prompter.prompt(call.without_context) if call.without_context else None
+            request = records.Request(
+                with_context, without, call.policy, grammar, call.seed, call.max_new_tokens, self.eos, call.draft
+            )
+            found = self.engine.generate(request)
+        except records.DoesNotFit as fault:
+            finding = Finding(
+                source="backbone", what=str(fault), where=fault.path, remedy="answer shorter, or raise max_new_tokens"
+            )
+            raise InvalidOutput(f"{fault} (at {fault.path})", [finding]) from fault
+        except records.BadLogits as fault:
+            raise InvalidOutput(f"{self.name}: {fault}; try dtype bfloat16 or float32") from fault
+        except records.TooLong as fault:
+            raise BadInput(f"{self.name}: {fault}; set backbone.truncate, or lower backbone.max_new_tokens") from fault
+        except records.TooBig as fault:
+            raise ConfigError(f"{self.name}: {fault}; use quantization, device_map or a smaller model") from fault
+        except records.EngineFault as fault:
+            raise ConfigError(f"{self.name}: {fault}") from fault
+        return self._generation(found, [*self.prompter.notes, *note]), tuple(found.ids)
+
+    def _grammar(self, schema: Mapping[str, Any] | None) -> Grammar | None:
+        from plugins.backbone.engine.grammar import collisions
+
+        if schema is None:
+            return None
+        if wrong := collisions(self.prompter.specials, schema):
+            raise ConfigError(
+                f"{self.name}: the tokenizer's special tokens {wrong[:5]} are text that the answer must contain, so no "
+                "grammar can spell it; rename the fields, or add those tokens as ordinary ones"
+            )
+        return self.maker.grammar(schema)
+
+    def _fitted(self, parts: Parts, call: Call) -> tuple[Prompt, list[str]]:
+        """The prompt, its narrative cut to the window if the config allows it, and a note if it was cut."""
+        room = self.engine.window - call.max_new_tokens
+        prompt = self.prompter.prompt(parts)
+        whole = len(parts.narrative)
+        kept = whole
+        while len(prompt.ids) > room and call.truncate and kept > 0:
+            over = (len(prompt.ids) - room) / max(1, len(prompt.ids))
+            kept = max(0, min(kept - 1, int(kept * (1 - over) * 0.98)))
+            prompt = self.prompter.prompt(dataclasses.replace(parts, narrative=parts.narrative[:kept]))
+        if kept == whole:
+            return prompt, []
+        return prompt, [f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"]
+
+    def _generation(self, found: Answer, notes: list[str]) -> Generation:
+        parts = [bytes(self.maker.tokens.decode_bytes([token])) for token in found.ids]
+        text = b"".join(parts)
+        ground = {}
+        if found.without_context:
+            ends = list(accumulate(len(part) for part in parts))
+            ground = grounding(text.decode("latin-1"), ends, found.with_context, found.without_context)
+        answer = text.decode("utf-8", errors="replace")
+        finish = "length" if not found.finished else "refused" if is_refusal(answer) else "stop"
+        return Generation.model_validate(
+            {
+                "text": answer,
+                "tokens": self._tokens(parts, found),
+                "finish": finish,
+                "grounding": ground,
+                "prompt_tokens": found.prompt_tokens,
+                "model_calls": found.model_calls,
+                "seconds": found.seconds,
+                "notes": tuple(notes),
+            }
+        )
+
+    def _tokens(self, parts: list[bytes], found: Answer) -> tuple[Token, ...]:
+        """Token records; a character that several tokens spell counts to the last of them."""
+        without: Sequence[float | None] = found.without_context or [None] * len(parts)
+        spell = codecs.getincrementaldecoder("utf-8")(errors="replace")
+        return tuple(
+            Token(
+                text=spell.decode(part),
+                logp_with_context=with_context,
+                logp_without_context=prior,
+                forced=forced,
+            )
+            for part, with_context, prior, forced in zip(parts, found.with_context, without, found.forced, strict=True)
+        )
+
+
+def options(dtype: str, attention: str, device_map: str | dict[str, int | str] | None) -> dict[str, Any]:
+    """Arguments of from_pretrained."""
+    import torch
+
+    found: dict[str, Any] = {"dtype": dtype if dtype == "auto" else getattr(torch, dtype)}
+    found["attn_implementation"] = attention
+    return found | ({"device_map": device_map} if device_map is not None else {})
+
+
+def start(
+    name: str,
+    revision: str | None,
+    settings: Mapping[str, Any],
+    *,
+    device: str,
+    quantization: str,
+    reports_at_once: int,
+    prefix_bytes: int,
+    pictures_first: bool,
+) -> Running:
+    """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
+    from plugins.backbone.engine.check import batching
+    from plugins.backbone.engine.families import family_of
+    from plugins.backbone.engine.grammar import GrammarMaker
+    from plugins.backbone.engine.loop import Engine
+    from plugins.backbone.engine.records import EngineFault
+    from plugins.backbone.hf_load import load
+    from plugins.backbone.hf_prompt import Prompter, check_diagram
+
+    loaded = load(name, revision, settings, device, quantization)
+    try:
+        family = family_of(loaded.model)
+        prompter = Prompter(loaded, family, pictures_first)
+        apart = batching(loaded.model, family, prompter.picture(check_diagram()) if loaded.prepare else None)
+    except EngineFault as fault:
+        raise ConfigError(f"backbone.model {name}: {fault}") from fault
+    eos = _end_tokens(loaded.model, loaded.tokenizer)
+    vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
+    maker = GrammarMaker(loaded.tokenizer, vocabulary, sorted(eos))
+    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes)
+    return Running(engine, prompter, maker, frozenset(eos), name)
+
+
+def _end_tokens(model: Any, tokenizer: Any) -> set[int]:
+    found = {tokenizer.eos_token_id}
+    told = getattr(model.generation_config, "eos_token_id", None)
+    found |= set(told) if isinstance(told, list) else {told}
+    kept = {int(token) for token in found if token is not None}
+    if not kept:
+        raise ConfigError(
+            f"{type(model).__name__}: neither tokenizer nor generation_config names an end token; set eos_token"
+        )
+    return kept

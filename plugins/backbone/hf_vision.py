@@ -1,0 +1,90 @@
+"""Any image-text-to-text model of transformers: Qwen2.5-VL, Qwen3-VL, Llama-3.2-Vision, LLaVA, Idefics3, ...
+
+Loads at the first question, then answers many threads through one token loop (`plugins.backbone.engine`).
+Text models work too; they see no diagrams. Needs no torchvision.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from typing import ClassVar, Literal
+
+from pydantic import Field, PrivateAttr
+
+from plugins.backbone import hf_run
+from plugins.backbone.prompt import Parts, parts, subject, with_previous
+from sgcad_core.interfaces import Backbone, Decoder
+from sgcad_core.records import Context, Generation, Query
+
+_KEPT_ANSWERS = 256
+
+
+class HfVision(Backbone):
+    """A local model with logits, so every decoder may be paired with it."""
+
+    gives_logits: ClassVar[bool] = True
+    model: str = Field(min_length=1, description="folder (also from the project's root) or id")
+    revision: str | None = None
+    device: str = Field("auto", description="auto, cpu, cuda:0, ...; device_map goes first")
+    device_map: str | dict[str, int | str] | None = Field(None, description="spread over devices; needs accelerate")
+    dtype: Literal["auto", "float32", "bfloat16", "float16"] = "auto"
+    quantization: Literal["none", "int8", "int4"] = "none"
+    attn_implementation: Literal["sdpa", "eager"] = "sdpa"
+    max_new_tokens: int = Field(2048, ge=1)
+    reports_at_once: int = Field(8, ge=1, le=256, description="reports in one batch; halved when memory runs out")
+    prefix_cache_mb: int = Field(1024, ge=0, description="kept beginnings of prompts; 0 = none")
+    truncate: bool = Field(False, description="cut a narrative that does not fit in the model's window")
+    pictures_first: bool = Field(True, description="diagrams before the narrative")
+    always_ground: bool = Field(False, description="run the row without context for decoders that do not need it too")
+
+    _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
+    _running: hf_run.Running | None = PrivateAttr(default=None)
+    _answers: OrderedDict[str, tuple[str, tuple[int, ...]]] = PrivateAttr(default_factory=OrderedDict)
+
+    def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
+        """Answer a query; blocks until the loop has it.
+
+        Raises InvalidOutput (nothing valid fits, or the model gave NaN), BadInput (the prompt exceeds the
+        window), ConfigError or MissingTool (the model cannot be loaded or batched).
+        """
+        running = self._loaded()
+        about = subject(context, query)
+        before, ids = self._answers.get(about, ("", ())) if query.repair else ("", ())
+        prior = self._contrasted(context, query, decoder)
+        call = hf_run.Call(
+            with_context=with_previous(parts(context, query), before),
+            without_context=with_previous(prior, before) if prior else None,
+            schema=query.answer_schema,
+            policy=decoder,
+            seed=seed,
+            max_new_tokens=self.max_new_tokens,
+            draft=ids,
+            truncate=self.truncate,
+        )
+        generation, ids = running.answer(call)
+        with self._lock:
+            self._answers[about] = generation.text, ids
+            if len(self._answers) > _KEPT_ANSWERS:
+                self._answers.popitem(last=False)
+        return generation
+
+    def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:
+        if not (decoder.reads_prior() or self.always_ground):
+            return None
+        return parts(decoder.contrast_context(context), query)
+
+    def _loaded(self) -> hf_run.Running:
+        with self._lock:
+            if self._running is None:
+                self._running = hf_run.start(
+                    self.model,
+                    self.revision,
+                    hf_run.options(self.dtype, self.attn_implementation, self.device_map),
+                    device=self.device,
+                    quantization=self.quantization,
+                    reports_at_once=self.reports_at_once,
+                    prefix_bytes=self.prefix_cache_mb << 20,
+                    pictures_first=self.pictures_first,
+                )
+            return self._running

@@ -1,0 +1,1 @@
+"""Logit rows -> the row to pick from: pure functions. One file per choice."""

@@ -1,0 +1,61 @@
+"""What the decoders share: sampling fields, the plausibility mask and the contrast of two rows.
+
+Knows tensors by their methods only, so that naming a decoder in a YAML does not load torch. Knows no
+model, no cache, no grammar: the backbone masks `scores` with the grammar before it calls `draw`.
+"""
+
+from __future__ import annotations
+
+from math import log
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field
+
+from sgcad_core.interfaces import Decoder
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+
+class Sampled(Decoder):
+    """A decoder that may sample: temperature 0 takes the best token, and is the default."""
+
+    temperature: float = Field(0.0, ge=0.0, le=5.0)
+    top_p: float = Field(1.0, gt=0.0, le=1.0)
+
+    def draw(self, scores: Any, generator: Any) -> Any:
+        """One token a row from masked logits (rows, vocabulary); see `sample`."""
+        return sample(scores, self.temperature, self.top_p, generator)
+
+
+def sample(scores: Tensor, temperature: float, top_p: float, generator: Any) -> Tensor:
+    """Draw one token index a row, (rows,), from logits (rows, vocabulary) in which -inf excludes.
+
+    Temperature divides the logits; top-p keeps the smallest set of most likely tokens whose mass
+    reaches top_p (Holtzman et al. 2020, arXiv:1904.09751, eq. 2), the first token always.
+    """
+    if temperature == 0.0:
+        return scores.argmax(-1)
+    probabilities = (scores.float() / temperature).softmax(-1)
+    if top_p < 1.0:
+        ordered, order = probabilities.sort(-1, descending=True)
+        before = ordered.cumsum(-1) - ordered
+        ordered = ordered.masked_fill(before >= top_p, 0.0)
+        probabilities = probabilities.new_zeros(probabilities.shape).scatter(-1, order, ordered)
+    return probabilities.multinomial(1, generator=generator).squeeze(-1)
+
+
+def contrast(with_context: Tensor, without_context: Tensor | None, alpha: float | Tensor) -> Tensor:
+    """(1 + alpha) * with - alpha * without, in fp32; alpha a number or a column (rows, 1)."""
+    if without_context is None:
+        raise ValueError("this decoder needs the row without context; the backbone handed None")
+    rows = with_context.float()
+    return rows + alpha * (rows - without_context.float())
+
+
+def plausible_only(scores: Tensor, with_context: Tensor, beta: float) -> Tensor:
+    """Exclude tokens with p(y|c,x) < beta * max p(.|c,x) (Li et al. 2023, arXiv:2210.15097, eq. 4)."""
+    if beta == 0.0:
+        return scores
+    floor = with_context.amax(-1, keepdim=True) + log(beta)
+    return scores.masked_fill(with_context < floor, float("-inf"))

@@ -1,0 +1,1 @@
+"""Files -> CrashReport. One file per choice."""

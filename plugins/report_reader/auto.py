@@ -1,0 +1,31 @@
+"""Picks the reader by what the source is. The default of every config."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from plugins.report_reader.evidence import EvidenceReader
+from plugins.report_reader.folder import Folder
+from plugins.report_reader.nhtsa_xml import NhtsaXml
+from plugins.report_reader.pdf import Pdf
+from plugins.report_reader.text import Text
+from sgcad_core.errors import BadInput
+from sgcad_core.records import CrashReport
+
+READERS: dict[str, type[EvidenceReader]] = {".txt": Text, ".md": Text, ".xml": NhtsaXml, ".pdf": Pdf}
+
+
+class Auto(EvidenceReader):
+    """A case folder, a bare text, NHTSA case XML or a PDF, told apart by kind and suffix."""
+
+    def read(self, source: Path) -> CrashReport:
+        """Read one case with the reader that fits. Raises BadInput naming what would fit."""
+        if source.is_dir():
+            reader: type[EvidenceReader] = Folder
+        elif not source.exists():
+            raise BadInput(f"{source}: no such file or folder")
+        elif source.suffix.lower() in READERS:
+            reader = READERS[source.suffix.lower()]
+        else:
+            raise BadInput(f"{source}: suffix {source.suffix!r} is not read; give a folder or {', '.join(READERS)}")
+        return reader(**self.model_dump()).read(source)

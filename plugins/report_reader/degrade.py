@@ -1,0 +1,109 @@
+"""Robustness levels: the same report with less, or contradicting, evidence. Deterministic.
+
+    full                as read
+    semantic_noise      every number leaves the text, in digits and words, with its unit
+    blur_weak|medium|strong   Gaussian blur of the diagrams (sigma 1, 3 and 6 px at 512 px width)
+    modal_conflict      compass words and sides of the text are turned round; the diagram stays
+    critical_depletion  sentences with directions, sides or the contact leave the text
+    total_sparsity      "A collision occurred." and no diagram
+
+What was done stands in the report's notes. Knows no folder and no format.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import Literal, get_args
+
+from PIL import Image, ImageFilter
+
+from sgcad_core.records import CrashReport, Diagram
+
+Level = Literal[
+    "full", "semantic_noise", "blur_weak", "blur_medium", "blur_strong", "modal_conflict", "critical_depletion",
+    "total_sparsity",
+]  # fmt: skip
+LEVELS: tuple[Level, ...] = get_args(Level)
+SIGMA_PX = {"blur_weak": 1.0, "blur_medium": 3.0, "blur_strong": 6.0}
+REFERENCE_WIDTH_PX = 512
+SPARSE = "A collision occurred."
+
+_SMALL = "one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|sixteen|seventeen"
+_WORDS = (
+    rf"(?:{_SMALL}|eighteen|nineteen|twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety|hundred|thousand"
+    r"|single|first|second|third|fourth|fifth|both|half)"
+)
+_UNIT = (
+    r"(?:\s*-?\s*(?:mph|kmph|kpmh|kph|km/h|mi/h|miles?(?: per hour)?|meters?|metres?|feet|foot|ft|inch(?:es)?|cm|km|m"
+    r"|degrees?|percent|%|hours?|minutes?|seconds?)(?![a-z]))?"
+)
+_ACTOR = r"(?<!vehicle )(?<!vehicle # )(?<!vehicle #)(?<![VvPp#])(?<![VvPp] )"
+_DIGITS = re.compile(rf"{_ACTOR}(?<![\w.])[+-]?\d[\d,.]*(?:st|nd|rd|th)?(?:\s*-\s*\d[\d,.]*)?{_UNIT}", re.IGNORECASE)
+_SPELLED = re.compile(rf"{_ACTOR}\b{_WORDS}(?:[- ]{_WORDS})*\b{_UNIT}", re.IGNORECASE)
+_TURNED = {
+    "north": "east", "east": "south", "south": "west", "west": "north", "left": "right", "right": "left",
+    "front": "back", "back": "front", "rear": "front",
+}  # fmt: skip
+_DIRECTED = re.compile(
+    r"(north|south|east|west)(?=bound|ern|erly|ward|east|west|\b)|\b(left|right|front|back|rear)\b", re.I
+)
+_CRITICAL = re.compile(
+    r"north|south|east|west|\b(?:left|right|front|back|rear|struck|impact\w*|contact\w*|hit|collid\w*|intersection"
+    r"|direction|turn\w*)\b",
+    re.IGNORECASE,
+)
+_SENTENCE = re.compile(r"(?<=[.!?])\s+")
+
+
+def degrade(report: CrashReport, level: Level) -> CrashReport:
+    """The report at a robustness level; `full` returns it as it is."""
+    if level == "full":
+        return report
+    changed: dict[str, object] = {"notes": (*report.notes, f"degraded: {level}")}
+    if level in SIGMA_PX:
+        changed["diagrams"] = tuple(_blurred(d, SIGMA_PX[level]) for d in report.diagrams)
+    elif level == "total_sparsity":
+        changed |= {"narrative": SPARSE, "diagrams": (), "coded": None}
+    else:
+        text, note = _TEXT[level](report.narrative)
+        changed |= {"narrative": text, "coded": None, "notes": (*report.notes, f"degraded: {level} ({note})")}
+    return report.model_copy(update=changed)
+
+
+def _without_numbers(text: str) -> tuple[str, str]:
+    """Actor numbers (V1, Vehicle #2, vehicle one) stay: without them nothing could be told apart."""
+    bare, digits = _DIGITS.subn("", text)
+    bare, words = _SPELLED.subn("", bare)
+    bare = re.sub(r"(?<=\s)-(?=\w)|\(\s*\)", "", bare)
+    return re.sub(r"[ \t]{2,}", " ", bare).strip(), f"{digits + words} numbers removed"
+
+
+def _turned_round(text: str) -> tuple[str, str]:
+    def swap(match: re.Match[str]) -> str:
+        word = match.group(0)
+        other = _TURNED[word.lower()]
+        return other.capitalize() if word[0].isupper() else other
+
+    turned, count = _DIRECTED.subn(swap, text)
+    return turned, f"{count} directions and sides turned: N>E>S>W>N, left<>right, front<>back"
+
+
+def _without_critical(text: str) -> tuple[str, str]:
+    sentences = _SENTENCE.split(text)
+    kept = [s for s in sentences if not _CRITICAL.search(s)]
+    return " ".join(kept) or SPARSE, f"{len(sentences) - len(kept)} of {len(sentences)} sentences removed"
+
+
+_TEXT = {
+    "semantic_noise": _without_numbers, "modal_conflict": _turned_round, "critical_depletion": _without_critical,
+}  # fmt: skip
+
+
+def _blurred(picture: Diagram, sigma_px: float) -> Diagram:
+    """Sigma grows with the picture, so that every diagram loses the same detail."""
+    image = Image.open(io.BytesIO(picture.png))
+    radius = sigma_px * picture.width_px / REFERENCE_WIDTH_PX
+    out = io.BytesIO()
+    image.filter(ImageFilter.GaussianBlur(radius)).save(out, "PNG")
+    return Diagram(png=out.getvalue(), width_px=picture.width_px, height_px=picture.height_px)

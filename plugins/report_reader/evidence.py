@@ -1,0 +1,189 @@
+"""What every reader shares: decoding text, guarding pictures, and the switches of the evidence.
+
+Knows no folder layout and no XML. Limits are generous for real reports and small for attacks.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from abc import ABC
+from pathlib import Path
+
+from PIL import Image, UnidentifiedImageError
+
+from plugins.report_reader.degrade import Level, degrade
+from sgcad_core.errors import BadInput
+from sgcad_core.interfaces import ReportReader
+from sgcad_core.narrative.privacy import redact
+from sgcad_core.records import CrashReport, Diagram
+
+MAX_TEXT_BYTES = 1_000_000
+MAX_FILE_BYTES = 50_000_000
+MAX_PIXELS = 40_000_000
+MAX_SIDE_PX = 2048
+MIN_WORDS = 5
+_FUNCTION_WORDS = frozenset(
+    [
+        "the",
+        "a",
+        "an",
+        "of",
+        "in",
+        "on",
+        "at",
+        "to",
+        "and",
+        "was",
+        "were",
+        "is",
+        "it",
+        "that",
+        "by",
+        "with",
+        "for",
+        "from",
+        "as",
+        "this",
+        "which",
+        "had",
+        "not",
+        "no",
+        "has",
+        "be",
+        "or",
+        "both",
+    ]
+)
+
+
+class EvidenceReader(ReportReader, ABC):
+    """A reader whose evidence can be narrowed for an ablation; each switch is a config field."""
+
+    use_narrative: bool = True
+    use_diagrams: bool = True
+    use_coded_fields: bool = False
+    """Append NHTSA's coded fields to the narrative; no compared config does."""
+    redact_persons: bool = True
+    """Leave out sex, age, names, licence, health and injury data."""
+    robustness_level: Level = "full"
+    """Degrade the evidence, for robustness studies."""
+
+    def evidence(
+        self,
+        source: Path,
+        narrative: str,
+        diagrams: tuple[Diagram, ...] = (),
+        coded: dict[str, object] | None = None,
+        notes: tuple[str, ...] = (),
+    ) -> CrashReport:
+        """Assemble a report as the switches ask. Raises BadInput if nothing is left to read."""
+        text = checked_narrative(narrative, source) if self.use_narrative else ""
+        text = redact(text) if self.redact_persons else text
+        if self.use_coded_fields and coded:
+            text = f"{text}\n\nCoded fields:\n{coded_lines(coded)}".strip()
+        shown = diagrams if self.use_diagrams else ()
+        if not text and not shown:
+            raise BadInput(f"{source}: no diagram, and the narrative is switched off: set use_narrative to true")
+        name = source.name if source.is_dir() else source.stem
+        report = CrashReport(
+            case=safe_case(name),
+            narrative=text,
+            diagrams=shown,
+            coded=coded if self.use_coded_fields else None,
+            notes=notes,
+        )
+        return degrade(report, self.robustness_level)
+
+
+def safe_case(name: str) -> str:
+    """A case id that is a plain folder name: no separators, no leading dot, at most 100 characters."""
+    return re.sub(r"[^\w.\-]+", "_", name).strip(".")[:100] or "case"
+
+
+def decode(raw: bytes, source: Path) -> str:
+    """Bytes of a text file as text: UTF-8 (with or without BOM), UTF-16 with BOM, else Latin-1; LF line ends."""
+    if len(raw) > MAX_TEXT_BYTES:
+        raise BadInput(f"{source}: {len(raw):,} bytes of text; a report has at most {MAX_TEXT_BYTES:,}: cut the file")
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        text = raw.decode("utf-16", errors="replace")
+    else:
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = raw.decode("cp1252", errors="replace")
+    control = sum(1 for c in text if (ord(c) < 32 and c not in "\t\n\r\f") or c == "\x7f")
+    if "\x00" in text or control > 0.01 * len(text):
+        raise BadInput(f"{source}: binary data, not text ({control} control characters): give plain text, XML or PDF")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def checked_narrative(text: str, source: Path) -> str:
+    """The narrative, stripped. Raises BadInput if it is empty or does not read like English."""
+    text = text.strip()
+    words = re.findall(r"[^\W\d_]+", text.lower())
+    if len(words) < MIN_WORDS:
+        raise BadInput(f"{source}: the narrative has {len(words)} words, at least {MIN_WORDS} are needed: is it empty?")
+    common = sum(w in _FUNCTION_WORDS for w in words) / len(words)
+    if len(words) >= 25 and common < 0.12:
+        raise BadInput(f"{source}: does not read like English ({common:.0%} common words, 12 % expected): translate it")
+    return text
+
+
+def read_bytes(path: Path) -> bytes:
+    """A file's bytes. Raises BadInput if it cannot be read or is over the limit."""
+    try:
+        size = path.stat().st_size
+        if size > MAX_FILE_BYTES:
+            raise BadInput(f"{path}: {size:,} bytes, the limit is {MAX_FILE_BYTES:,}: cut the file")
+        return path.read_bytes()
+    except OSError as fault:
+        raise BadInput(f"{path}: cannot be read: {fault.strerror or fault}") from fault
+
+
+def diagram(raw: bytes, source: Path) -> Diagram:
+    """A picture, re-encoded as RGB PNG of at most 2048 px a side. Raises BadInput for anything else."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the limit below is stricter
+            picture = Image.open(io.BytesIO(raw))
+            if picture.width * picture.height > MAX_PIXELS:
+                raise BadInput(
+                    f"{source}: {picture.width} x {picture.height} pixels, the limit is {MAX_PIXELS:,}: scale it down"
+                )
+            flat = _on_white(picture)
+    except Image.DecompressionBombError as fault:
+        raise BadInput(f"{source}: {fault}; the limit is {MAX_PIXELS:,} pixels: scale it down") from fault
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as fault:
+        raise BadInput(f"{source}: no readable picture ({fault}): give PNG, JPEG, GIF, BMP, TIFF or WebP") from fault
+    if max(flat.size) > MAX_SIDE_PX:
+        flat.thumbnail((MAX_SIDE_PX, MAX_SIDE_PX))
+    out = io.BytesIO()
+    flat.save(out, "PNG")
+    return Diagram(png=out.getvalue(), width_px=flat.width, height_px=flat.height)
+
+
+def _on_white(picture: Image.Image) -> Image.Image:
+    """RGB; transparent parts become paper."""
+    if picture.mode not in ("RGBA", "LA", "PA") and "transparency" not in picture.info:
+        return picture.convert("RGB")
+    layer = picture.convert("RGBA")
+    paper = Image.new("RGBA", layer.size, "white")
+    return Image.alpha_composite(paper, layer).convert("RGB")
+
+
+def coded_lines(coded: dict[str, object], path: str = "") -> str:
+    """Coded fields as one "name: value" line each, for a prompt and for the rules."""
+    lines = []
+    for key, value in coded.items():
+        name = f"{path}{key}".replace("_", " ")
+        if isinstance(value, dict):
+            lines.append(coded_lines(value, f"{name} "))
+        elif isinstance(value, (list, tuple)):
+            lines += [
+                coded_lines(v if isinstance(v, dict) else {"": v}, f"{name} {i} ") for i, v in enumerate(value, 1)
+            ]
+        elif value is not None:
+            lines.append(f"{name.strip()}: {value}")
+    return "\n".join(line for line in lines if line)

@@ -1,0 +1,1 @@
+"""A query -> passages. One file per choice."""

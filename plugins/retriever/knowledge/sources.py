@@ -1,0 +1,66 @@
+"""Where chunks come from: what the project brings, and files that the user names.
+
+A file is an OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf) or chunks of the user's own (.jsonl).
+Knows no database.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import chain
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from plugins.retriever.knowledge.chunk import Chunk
+from plugins.retriever.knowledge.osm import ENDINGS as OSM_ENDINGS
+from sgcad_core.errors import ConfigError
+
+ENDINGS = (*OSM_ENDINGS, ".jsonl")
+
+OnSkip = Callable[[str, str], None]
+"""Told of what could not be taken in: its name and why."""
+
+
+def builtin_chunks() -> Iterator[Chunk]:
+    """scenariogeneration's API, snippets, SUMO's XML, worked scenarios; about 550 chunks, 2 s."""
+    from plugins.retriever.knowledge.api import api_chunks
+    from plugins.retriever.knowledge.examples import example_chunks
+    from plugins.retriever.knowledge.snippets import snippet_chunks
+    from plugins.retriever.knowledge.xml_schema import xml_chunks
+
+    return chain(example_chunks(), snippet_chunks(), xml_chunks(), api_chunks())
+
+
+def file_chunks(file: Path, on_skip: OnSkip) -> Iterator[Chunk]:
+    """Chunks of one file, one at a time. Raises ConfigError, MissingTool before the first."""
+    check_file(file)
+    if file.name.endswith(".jsonl"):
+        return _jsonl(file)
+    from plugins.retriever.knowledge.junctions import junction_chunks
+
+    return junction_chunks(file, on_skip)
+
+
+def check_file(file: Path) -> None:
+    """Raises ConfigError for a file that is absent or of an unknown kind."""
+    if not file.is_file():
+        raise ConfigError(f"{file}: no such file")
+    if not file.name.endswith(ENDINGS):
+        raise ConfigError(f"{file}: unknown kind of file; known endings: {', '.join(ENDINGS)}")
+
+
+def _jsonl(file: Path) -> Iterator[Chunk]:
+    with file.open(encoding="utf-8") as lines:
+        for number, line in enumerate(lines, 1):
+            if line.strip():
+                yield _chunk(line, f"{file}, line {number}", file.name)
+
+
+def _chunk(line: str, where: str, source: str) -> Chunk:
+    try:
+        chunk = Chunk.model_validate_json(line)
+    except ValidationError as fault:
+        faults = "; ".join(f"{'.'.join(map(str, e['loc'])) or 'line'}: {e['msg']}" for e in fault.errors())
+        raise ConfigError(f"{where}: {faults}; needed: id, kind, tasks, title, text") from fault
+    return chunk if chunk.source else chunk.model_copy(update={"source": source})

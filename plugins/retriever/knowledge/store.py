@@ -1,0 +1,213 @@
+"""The index on disk: one LanceDB table and `index.json`, which says what is in it and which version is whole.
+
+Readers open the version that index.json names, and it is written last, by rename: a build or an addition
+that was killed is never read. Knows no source of chunks and no plugin.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from plugins.retriever.knowledge.chunk import Chunk
+from plugins.retriever.knowledge.embedders import Embedder
+from plugins.retriever.knowledge.manifest import MANIFEST, Manifest, read_manifest
+from sgcad_core.errors import ConfigError
+
+TABLE = "chunks"
+BATCH = 256
+"""Chunks held in memory at a time; the vectors of 256 chunks take 0.4 MB."""
+VECTOR_INDEX_FROM = 20_000
+"""Below this many rows an exact scan is as fast as an index."""
+Progress = Callable[[int], None]
+"""Told of every batch: chunks looked at since the last call."""
+
+
+def build(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> Manifest:
+    """Write a whole new index beside `folder` and put it in its place. Raises ConfigError."""
+    import lancedb
+
+    _check_place(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}-partial-", dir=folder.parent))
+    try:
+        dimension = _dimension(embedder)
+        table = lancedb.connect(partial).create_table(TABLE, schema=_schema(dimension))
+        _write(table, chunks, embedder, progress)
+        manifest = _seal(partial, table, embedder.name if embedder else "", dimension, 1)
+        partial.chmod(0o755)
+        _replace(partial, folder)
+    except OSError as fault:
+        raise ConfigError(f"--out {folder}: cannot be written ({fault}); make room or choose another folder") from fault
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+    return manifest
+
+
+def add(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> Manifest:
+    """Add what is new or changed; without any, the index stays byte for byte. Raises ConfigError."""
+    import lancedb
+
+    with _locked(folder):
+        before = read_manifest(folder)
+        check_embedder(before, embedder.name if embedder else "")
+        table = lancedb.connect(folder).open_table(TABLE)
+        if table.version != before.table_version:
+            table.restore(before.table_version)  # what a killed addition left behind
+        if not _write(table, chunks, embedder, progress):
+            return before
+        table.optimize()
+        return _seal(folder, table, before.embedder, before.dimension, before.number + 1)
+
+
+def check_embedder(manifest: Manifest, name: str) -> None:
+    """Raises ConfigError where vectors would not be comparable."""
+    if manifest.embedder != name:
+        raise ConfigError(
+            f"the index was built with embedder {manifest.embedder or 'none'!r}, not {name or 'none'!r}; "
+            f"name the same one, or build it anew: `sgcad index build --embedder {name.split('/')[0] or 'none'}`"
+        )
+
+
+# ------------------------------------------------------------------ rows
+def _schema(dimension: int) -> Any:
+    import pyarrow as pa
+
+    names = ("id", "kind", "title", "text", "keywords", "source", "data", "digest", "words")
+    texts = [pa.field(name, pa.string()) for name in names]
+    vector = [pa.field("vector", pa.list_(pa.float32(), dimension))] if dimension else []
+    return pa.schema([*texts, pa.field("tasks", pa.list_(pa.string())), *vector])
+
+
+def _dimension(embedder: Embedder | None) -> int:
+    return int(embedder.embed(["dimension"]).shape[1]) if embedder else 0
+
+
+def _write(table: Any, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> int:
+    """Append new chunks and replace changed ones, batch by batch; how many."""
+    known = _known(table)
+    written = 0
+    for batch in _batches(chunks):
+        news = {c.id: c for c in batch if known.get(c.id) != c.digest}
+        stale = [i for i in news if i in known]
+        if stale:
+            table.delete(f"id IN ({', '.join(_quoted(i) for i in stale)})")
+        if news:
+            table.add(_rows(list(news.values()), embedder, table.schema))
+            known |= {c.id: c.digest for c in news.values()}
+            written += len(news)
+        progress(len(batch))
+    return written
+
+
+def _known(table: Any) -> dict[str, str]:
+    """id -> digest of what is there: 100 bytes a chunk."""
+    found = table.search().select(["id", "digest"]).limit(None).to_arrow()
+    return dict(zip(found["id"].to_pylist(), found["digest"].to_pylist(), strict=True))
+
+
+def _batches(chunks: Iterable[Chunk]) -> Iterator[list[Chunk]]:
+    rest = iter(chunks)
+    while batch := list(islice(rest, BATCH)):
+        yield batch
+
+
+def _rows(chunks: Sequence[Chunk], embedder: Embedder | None, schema: Any) -> Any:
+    import pyarrow as pa
+
+    columns: dict[str, Any] = {name: [getattr(c, name) for c in chunks] for name in schema.names if name != "vector"}
+    if embedder:
+        vectors = embedder.embed([c.gist for c in chunks])
+        columns["vector"] = pa.FixedSizeListArray.from_arrays(np.ascontiguousarray(vectors).ravel(), vectors.shape[1])
+    return pa.table({name: columns[name] for name in schema.names}, schema=schema)
+
+
+def _quoted(text: str) -> str:
+    return "'" + text.replace("'", "''") + "'"
+
+
+# ------------------------------------------------------------------ making it whole
+def _seal(folder: Path, table: Any, embedder: str, dimension: int, number: int) -> Manifest:
+    """Index the table, tag its version, and name that version in index.json."""
+    from lancedb.index import FTS, IvfFlat
+
+    table.create_index("words", config=FTS(with_position=False), replace=True)
+    if dimension and table.count_rows() >= VECTOR_INDEX_FROM:
+        table.create_index("vector", config=IvfFlat(distance_type="cosine"), replace=True)
+    manifest = _count(table, embedder, dimension, number)
+    _tag(table, manifest)
+    _write_json(folder / MANIFEST, manifest.model_dump())
+    return manifest
+
+
+def _tag(table: Any, manifest: Manifest) -> None:
+    """Mark the version so that it is never cleaned up; a killed addition may have used the tag."""
+    if manifest.tag in table.tags.list():
+        table.tags.update(manifest.tag, manifest.table_version)
+    else:
+        table.tags.create(manifest.tag, manifest.table_version)
+
+
+def _count(table: Any, embedder: str, dimension: int, number: int) -> Manifest:
+    found = table.search().select(["id", "digest", "kind", "source"]).limit(None).to_arrow()
+    pairs = sorted(zip(found["id"].to_pylist(), found["digest"].to_pylist(), strict=True))
+    content = hashlib.sha256("\n".join(" ".join(p) for p in pairs).encode()).hexdigest()[:12]
+    return Manifest(
+        number=number,
+        tag=f"kb-v{number}",
+        content=content,
+        table_version=table.version,
+        embedder=embedder,
+        dimension=dimension,
+        chunks=len(pairs),
+        kinds=dict(sorted(Counter(found["kind"].to_pylist()).items())),
+        sources=dict(sorted(Counter(found["source"].to_pylist()).items())),
+        written=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
+
+
+def _write_json(file: Path, value: dict[str, Any]) -> None:
+    beside = file.with_suffix(".partial")
+    beside.write_text(json.dumps(value, indent=2) + "\n", encoding="utf-8")
+    beside.replace(file)
+
+
+def _check_place(folder: Path) -> None:
+    """Never put an index in the place of something else."""
+    if folder.exists() and not (folder / MANIFEST).is_file() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ConfigError(f"--out {folder}: holds something that is no index; choose another folder")
+
+
+def _replace(partial: Path, folder: Path) -> None:
+    if not folder.exists():
+        partial.rename(folder)
+        return
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-partial-", dir=folder.parent))
+    folder.rename(old / "old")
+    partial.rename(folder)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """One addition at a time. Raises ConfigError where the folder holds no index."""
+    read_manifest(folder)
+    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)

@@ -1,0 +1,112 @@
+"""Retrieval from a knowledge base in one folder: API passages, SUMO's XML, worked scenarios, real junctions.
+
+`sgcad index build` makes the folder. Knows neither prompts nor writers.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from pydantic import Field, PrivateAttr
+
+from plugins.retriever.knowledge.chunk import KINDS, TASKS, Chunk, Kind, Task
+from plugins.retriever.knowledge.embedders import Embedder, Name, make
+from plugins.retriever.knowledge.manifest import Manifest, read_manifest
+from sgcad_core.errors import ConfigError
+from sgcad_core.interfaces import Retriever
+from sgcad_core.records import Passage
+
+if TYPE_CHECKING:
+    from plugins.retriever.knowledge.search import Hit, Index
+    from plugins.retriever.knowledge.sources import OnSkip
+    from plugins.retriever.knowledge.store import Progress
+
+
+class LanceDB(Retriever):
+    """Passages by full text and, with an embedder, by meaning; `sgcad index build` makes the folder."""
+
+    folder: Path = Path("knowledge")
+    """Where the index lies; relative to the working directory."""
+    embedder: Name = "none"
+    """none: full text alone. minilm: offline, an optional package. sentence_transformers, openai: see model."""
+    model: str = ""
+    """Hub id or folder (sentence_transformers), or the server's model (openai; text-embedding-ada-002 if empty)."""
+    base_url: str = ""
+    """Of an OpenAI-compatible server, such as http://127.0.0.1:8000/v1."""
+    api_key_env: str = "OPENAI_API_KEY"
+    """Name of the variable that holds the server's key."""
+    kinds: tuple[Kind, ...] = ("example", "junction")
+    """What is retrieved; api, snippet and xml serve writers that write code or XML themselves."""
+    per_kind: int = Field(2, ge=1, le=20)
+    """Passages of each kind."""
+    _guard: threading.Lock = PrivateAttr(default_factory=threading.Lock)
+
+    def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
+        """The best of each kind, kinds in the order of the field. Raises ConfigError: no index to read."""
+        if task not in TASKS:
+            raise ConfigError(f"retriever 'lancedb' serves the tasks {', '.join(TASKS)}, not {task!r}")
+        found = [hit for kind in self.kinds for hit in self.search(text, self.per_kind, (kind,), task)]
+        return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score) for hit in found)
+
+    def search(
+        self, text: str, k: int = 5, kinds: Sequence[Kind] = (), task: Task | None = None
+    ) -> list[Hit]:
+        """The k best chunks of any of the kinds (all if none is named), best first."""
+        return self._index().search(text, k, kinds, task)
+
+    def search_checked(self, text: str, k: int, kinds: Sequence[str], task: str | None) -> list[Hit]:
+        """`search` with names from a command line. Raises ConfigError naming what there is."""
+        for name, known in [*((kind, KINDS) for kind in kinds), *([(task, TASKS)] if task else [])]:
+            if name not in known:
+                raise ConfigError(f"unknown {name!r}; there are {', '.join(known)}")
+        return self.search(text, k, cast("Sequence[Kind]", kinds), cast("Task | None", task))
+
+    @property
+    def stamp(self) -> str:
+        """Version and fingerprint of the knowledge, for logs: "kb-v1-0123456789ab". Raises ConfigError."""
+        return self.stats().stamp
+
+    def stats(self) -> Manifest:
+        """What the index holds. Raises ConfigError."""
+        return read_manifest(self.folder)
+
+    def chunks(self, files: Sequence[Path], builtin: bool, on_skip: OnSkip) -> Iterator[Chunk]:
+        """What the project brings, if wanted, then each file's. Raises ConfigError before anything is read."""
+        from plugins.retriever.knowledge import sources
+
+        for file in files:
+            sources.check_file(file)
+        own = sources.builtin_chunks() if builtin else iter(())
+        return chain(own, chain.from_iterable(sources.file_chunks(file, on_skip) for file in files))
+
+    def build(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
+        """Write the index anew from chunks. Raises ConfigError, MissingTool."""
+        from plugins.retriever.knowledge import store
+
+        return store.build(self.folder, chunks, self._embedder, progress)
+
+    def add(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
+        """Add what is new or changed. Raises ConfigError, MissingTool."""
+        from plugins.retriever.knowledge import store
+
+        return store.add(self.folder, chunks, self._embedder, progress)
+
+    def _index(self) -> Index:
+        with self._guard:
+            return self._opened
+
+    @cached_property
+    def _opened(self) -> Index:
+        from plugins.retriever.knowledge.search import Index
+
+        read_manifest(self.folder)  # before a model is loaded
+        return Index(self.folder, self._embedder)
+
+    @cached_property
+    def _embedder(self) -> Embedder | None:
+        return make(self.embedder, self.model, self.base_url, self.api_key_env)

@@ -1,0 +1,14 @@
+"""No retrieval: the model sees the task and the evidence, nothing else. Knows no knowledge base."""
+
+from __future__ import annotations
+
+from sgcad_core.interfaces import Retriever
+from sgcad_core.records import Passage
+
+
+class NoRetrieval(Retriever):
+    """Gives no passages."""
+
+    def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
+        """Always empty."""
+        return ()

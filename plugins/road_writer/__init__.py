@@ -1,0 +1,1 @@
+"""Evidence -> RoadNetwork. One file per choice."""

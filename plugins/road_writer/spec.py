@@ -1,0 +1,81 @@
+"""The model says which roads there are; code draws and compiles them.
+
+The crash evidence stands in the context, so that contrast amplifies it; the instructions and retrieved
+passages stand in the query. Findings of the attempt before come back through the query's repair.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.interfaces import Ask, RoadWriter
+from sgcad_core.layout import road_spec
+from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.specs import RoadLayout, RoadSpec
+
+
+class SpecRoad(RoadWriter):
+    """Asks for a `RoadSpec` (any network), or for a `RoadLayout` (one hub and its legs: for small models)."""
+
+    asks_model: ClassVar[bool] = True
+    form: Literal["road", "layout"] = "road"
+    prompt: str = Field("", pattern=r"^[\w-]*$")
+    """configs/prompts/<prompt>.md; empty: the one named like the form."""
+
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Ask, read, draw, compile. Raises InvalidOutput with findings, Refused where the model declines."""
+        query = Query(
+            task=load_prompt(self.prompt or self.form),
+            passages=tuple(passages),
+            answer_schema=answer_schema(RoadSpec if self.form == "road" else RoadLayout),
+            attempt=attempt,
+        )
+        answer = ask(context, query).text
+        if self.form == "road":
+            spec = parse_answer(answer, RoadSpec)
+            return compile_network(plain_xml(spec), spec)
+        layout = _layout(answer)
+        spec = road_spec(layout)
+        return compile_network(plain_xml(spec), spec).model_copy(update={"layout": layout})
+
+
+def _layout(answer: str) -> RoadLayout:
+    layout = parse_answer(answer, RoadLayout)
+    if faults := list(_layout_faults(layout)):
+        raise InvalidOutput("\n".join(f.line() for f in faults), faults)
+    return layout
+
+
+def _layout_faults(layout: RoadLayout) -> Iterator[Finding]:
+    """What a layout's own fields contradict: legs of one bearing, legs without lanes, accesses of no leg."""
+    for bearing, count in Counter(leg.bearing for leg in layout.legs).items():
+        if count > 1:
+            yield _finding("legs", f"{count} legs have one bearing", bearing, "merge them, or turn one by 45 degrees")
+    for i, leg in enumerate(layout.legs):
+        if not leg.lanes_in and not leg.lanes_out:
+            yield _finding(f"legs[{i}]", "the leg has no lanes", "0 and 0", "give one direction a lane")
+        if leg.turns_in and len(leg.turns_in) != leg.lanes_in:
+            what, value = "not one turn for each of lanes_in", f"{len(leg.turns_in)} turns, {leg.lanes_in} lanes"
+            remedy = "count the lanes again: turn lanes are lanes; make both agree or leave the turns empty"
+            yield _finding(f"legs[{i}].turns_in", what, value, remedy)
+    bearings = [leg.bearing for leg in layout.legs]
+    for i, access in enumerate(layout.accesses):
+        if access.leg not in bearings:
+            remedy = f"use one of {', '.join(bearings)}"
+            yield _finding(f"accesses[{i}].leg", "there is no leg of this bearing", access.leg, remedy)
+        if not access.lanes_in and not access.lanes_out:
+            yield _finding(f"accesses[{i}]", "the access has no lanes", "0 and 0", "give one direction a lane")
+
+
+def _finding(where: str, what: str, value: str, remedy: str) -> Finding:
+    return Finding(source="layout", what=what, where=where, value=value, remedy=remedy)

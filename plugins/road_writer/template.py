@@ -1,0 +1,56 @@
+"""Road networks from templates: the narrative's stated roads, completed by parameters, without a model.
+
+The rival that a model has to beat, and the writer that always works: narrative -> facts -> layout -> spec ->
+netconvert. Reads no diagram and no passages; findings cannot change its answer.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from sgcad_core.errors import Refused
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.interfaces import Ask, RoadWriter
+from sgcad_core.layout import LEG_M, road_spec
+from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
+from sgcad_core.narrative.roads import road_facts
+from sgcad_core.records import Context, Finding, Passage, RoadNetwork
+
+_CRASH_WORDS = re.compile(
+    r"\b(?:vehicles?|V\d+|cars?|trucks?|pickups?|sedans?|vans?|minivans?|bus(?:es)?|motorcycl\w+|tractors?|drivers?|roads?|"
+    r"roadways?|streets?|highways?|freeways?|avenues?|lanes?|intersections?|driveways?|crash\w*|collision|collided)\b",
+    re.I)  # fmt: skip
+
+
+class Template(RoadWriter):
+    """Scale, lane and speed parameters stand for what a report leaves out."""
+
+    asks_model: ClassVar[bool] = False
+
+    lanes_each_way: Annotated[int, Field(ge=1, le=4)] = 1
+    """Where no lanes are stated: most roads of police-reported crashes at that are two-lane, two-way."""
+    leg_length_m: Annotated[float, Field(ge=60, le=400)] = LEG_M
+    """Long enough to reach 40 mph before the junction and to be in view for 7 s."""
+    speed_limit_mph: Annotated[int, Field(ge=5, le=85)] = 35
+    """Where no limit is posted: the usual one of urban arterials."""
+
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
+        if not _CRASH_WORDS.search(context.narrative):
+            raise Refused(
+                "the narrative names neither a vehicle nor a road",
+                ["the road or junction of the crash", "the vehicles and how they traveled"],
+            )
+        facts = road_facts(context.narrative)
+        defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
+        spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
+        network = compile_network(plain_xml(spec), spec)
+        notes = [f"template: {note}; a default stands in" for note in facts.notes]
+        return network.model_copy(update={"log": "\n".join([*notes, network.log]).strip()})

@@ -1,0 +1,1 @@
+"""Evidence and network -> Scenario. One file per choice."""

@@ -1,0 +1,54 @@
+"""Scenarios by rules: the narrative's facts placed on the network and planned, without a model.
+
+The rival that a model has to beat, and the writer that always works. Reads the narrative only: no diagram,
+no passages; findings cannot change its answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import ClassVar
+
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.narrative.behavior import behavior_of_facts
+from sgcad_core.narrative.facts import CrashFacts
+from sgcad_core.narrative.roads import road_facts
+from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
+from sgcad_core.scenario import compile_scenario
+
+
+class Rules(ScenarioWriter):
+    """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
+
+    asks_model: ClassVar[bool] = False
+
+    def write(
+        self,
+        context: Context,
+        passages: Sequence[Passage],
+        findings: Sequence[Finding],
+        ask: Ask,
+        attempt: int,
+        network: RoadNetwork,
+    ) -> Scenario:
+        """Write the scenario. Raises Refused without vehicles, InvalidOutput without a road spec."""
+        if network.spec is None:
+            raise InvalidOutput(
+                "rules need the network's road spec: use a road writer that leaves one (template, spec)"
+            )
+        facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
+        scenario = compile_scenario(behavior_of_facts(facts, network.spec), network)
+        return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
+
+
+def _inferred(facts: CrashFacts) -> Iterator[str]:
+    """What the text does not tell outright."""
+    for v in facts.vehicles:
+        if not v.heading_stated:
+            yield f"{v.id}'s heading is not told: inferred as {v.heading}" if v.heading else f"{v.id}'s heading is open"
+    first = facts.contacts[0] if facts.contacts else None
+    if first is None or not first.stated:
+        yield "the contact is not told: the most plausible one stands in"
+    elif not first.areas_stated:
+        yield f"sides inferred: {first.striker_area} of {first.striker}, {first.struck_area} of {first.struck}"

@@ -1,0 +1,109 @@
+"""The far end: puts up the walls, reads the rules, runs one script, answers one JSON object on its output.
+
+The script must leave an `xosc.Scenario` in its variable `scenario`. Nothing of the script is even parsed before
+the walls stand. Runs once and ends; knows nothing of the project.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+import traceback
+import xml.etree.ElementTree as ET
+from types import ModuleType
+from typing import Any, NoReturn
+
+from plugins.scenario_writer.sandbox import confine
+from plugins.scenario_writer.sandbox.modules import fronts, script_builtins
+from plugins.scenario_writer.sandbox.rules import breaches, parsed
+
+Json = dict[str, Any]
+STARTED = b"."
+MAX_XML = 5_000_000
+RECURSION = 400
+
+
+def main(site: str) -> None:
+    """Serve the job on standard input, then end."""
+    job: Json = json.loads(sys.stdin.buffer.read())
+    os.close(0)
+    own = confine.isolate()
+    if not own and not job["allow_without_namespace"]:
+        os.write(1, STARTED)
+        _end({"ok": False, "layer": "isolation", "message": "the system allows no own network namespace"})
+    modules = fronts(site)
+    walls = {"namespaces": own, "root": own and confine.shut_in(job["folder"])}
+    confine.limit(job["cpu_s"], job["memory_mb"])
+    walls["calls"] = confine.filter_calls()
+    printed: list[str] = []
+    os.write(1, STARTED)
+    try:
+        answer = _unchecked(job["source"]) if job["unchecked"] else _run(job["source"], modules, printed)
+    except BaseException as fault:  # noqa: BLE001 - whatever a script raises is its answer
+        answer = _fault(fault)
+    _end({**answer, "printed": _short("".join(printed), 2000), "walls": [name for name, up in walls.items() if up]})
+
+
+def _run(source: str, modules: dict[str, ModuleType] | Any, printed: list[str]) -> Json:
+    sys.setrecursionlimit(RECURSION)
+    try:
+        tree = parsed(source)
+    except (SyntaxError, MemoryError, RecursionError, ValueError) as fault:
+        line = getattr(fault, "lineno", None)
+        message = fault.msg if isinstance(fault, SyntaxError) else str(fault) or "nested too deeply"
+        return {"ok": False, "layer": "parse", "kind": type(fault).__name__, "message": message, "line": line}
+    if found := breaches(tree):
+        return {"ok": False, "layer": "rules", "breaches": [list(b) for b in found[:12]]}
+    space: Json = {"__builtins__": script_builtins(modules, printed), "__name__": "__main__"}
+    exec(compile(tree, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
+    return _result(space, modules["scenariogeneration.xosc"])
+
+
+def _unchecked(source: str) -> Json:
+    """Run with every builtin and module at hand: what the walls hold when the rules are not asked."""
+    space: Json = {"__name__": "__main__"}
+    exec(compile(source, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
+    return {"ok": True, "xosc": str(space.get("found", ""))}
+
+
+def _result(space: Json, xosc: ModuleType) -> Json:
+    scenario = space.get("scenario")
+    if not isinstance(scenario, xosc.Scenario):
+        found = type(scenario).__name__ if "scenario" in space else "nothing"
+        message = f"the name `scenario` must be bound to an xosc.Scenario, found {found}"
+        return {"ok": False, "layer": "execution", "kind": "NoScenario", "message": message}
+    root = scenario.get_element()
+    ET.indent(root)
+    text = '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    if len(text) > MAX_XML:
+        message = f"the scenario has {len(text)} characters, at most {MAX_XML} are taken"
+        return {"ok": False, "layer": "execution", "kind": "TooLarge", "message": message}
+    return {"ok": True, "xosc": text}
+
+
+def _fault(fault: BaseException) -> Json:
+    """Type, words and the script's own line of an exception."""
+    line = None
+    with contextlib.suppress(Exception):
+        frames = traceback.extract_tb(fault.__traceback__)
+        line = next((f.lineno for f in reversed(frames) if f.filename == "<scenario>"), None)
+    message = ""
+    with contextlib.suppress(Exception):
+        message = _short(str(fault), 600)
+    return {
+        "ok": False, "layer": "execution", "kind": _short(type(fault).__name__, 80), "message": message, "line": line,
+    }  # fmt: skip
+
+
+def _short(text: str, limit: int) -> str:
+    return text if len(text) <= limit else f"{text[: limit - 3]}..."
+
+
+def _end(answer: Json) -> NoReturn:
+    """Answer and end at once: no finalizer of the script runs."""
+    data = memoryview(json.dumps(answer).encode())
+    while data:
+        data = data[os.write(1, data) :]
+    os._exit(0)

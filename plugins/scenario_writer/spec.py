@@ -1,0 +1,68 @@
+"""The model says who drives where and who strikes whom; code plans and writes the scenario.
+
+The roads stand in the query, the crash evidence in the context, so that contrast amplifies the evidence only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from sgcad_core.describe import describe_network, road_ids
+from sgcad_core.errors import ConfigError, InvalidOutput
+from sgcad_core.formats.net_xml import LaneGraph, parse_net
+from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
+from sgcad_core.scenario import compile_scenario
+from sgcad_core.specs import BehaviorSpec, RoadSpec
+
+
+class SpecScenario(ScenarioWriter):
+    """Asks for a `BehaviorSpec` whose roads are those of the network."""
+
+    asks_model: ClassVar[bool] = True
+    prompt: str = Field("behavior", pattern=r"^[\w-]+$")
+    """configs/prompts/<prompt>.md; its slot {roads} is filled."""
+    roads: Literal["described", "layout"] = "described"
+    """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+
+    def write(
+        self,
+        context: Context,
+        passages: Sequence[Passage],
+        findings: Sequence[Finding],
+        ask: Ask,
+        attempt: int,
+        network: RoadNetwork,
+    ) -> Scenario:
+        """Ask, read, plan, write. Raises InvalidOutput with findings, Refused where the model declines."""
+        roads = _roads(network)
+        ids = road_ids(roads)
+        query = Query(
+            task=load_prompt(self.prompt, roads=self._shown(network, roads)),
+            passages=tuple(passages),
+            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
+            attempt=attempt,
+        )
+        return compile_scenario(parse_answer(ask(context, query).text, BehaviorSpec), network)
+
+    def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
+        if self.roads == "described":
+            return describe_network(roads)
+        if network.layout is None:
+            raise ConfigError(
+                "scenario_writer.roads 'layout' needs a network that was answered as a layout; use road_writer "
+                "'spec' with form 'layout', or roads 'described'"
+            )
+        return network.layout.model_dump_json()
+
+
+def _roads(network: RoadNetwork) -> RoadSpec | LaneGraph:
+    if network.spec is not None:
+        return network.spec
+    if network.net_xml is None:
+        raise InvalidOutput("the road network has neither spec nor net.xml: no road to place an actor on")
+    return parse_net(network.net_xml)

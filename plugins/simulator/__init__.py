@@ -1,0 +1,1 @@
+"""Scenario -> Execution. One file per choice."""

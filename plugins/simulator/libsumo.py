@@ -1,0 +1,105 @@
+"""Replays scenarios in SUMO: every actor is put on its played pose and read back, step by step.
+
+libsumo runs in a worker process: a network that kills it ends the execution, not the batch. Knows nothing
+of what happens over there (`_sumo_replay`, `_sumo_routes`).
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from plugins.simulator._exchange import Driven, Mover, Replayed
+from sgcad_core.contact import poses
+from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.execution import execution_of, played
+from sgcad_core.formats.xml import parse_xml
+from sgcad_core.formats.xosc_player import DT_S
+from sgcad_core.geometry import wrap_angle
+from sgcad_core.interfaces import Simulator
+from sgcad_core.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
+from sgcad_core.workers import Worker
+
+TOLERANCE_M = 0.01
+
+
+@functools.cache
+def _worker(function: str) -> Worker:
+    """One SUMO process for all simulators of this process: its start is what costs."""
+    return Worker(f"plugins.simulator.{function}")
+
+
+class LibSumo(Simulator):
+    """Scenario files are replayed: SUMO holds every pose to within 1 cm, or the execution fails.
+
+    Route files are run with SUMO's own driver models.
+    """
+
+    timeout_s: float = Field(60.0, gt=0, le=3600)
+    """Longest wait for SUMO."""
+    longest_s: float = Field(60.0, gt=0, le=600)
+    """Longest run of a route file, in simulated seconds."""
+
+    def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
+        """Replay the .xosc, or run the routes, on the net.xml. Raises SimulationFailed."""
+        if not network.net_xml:
+            raise SimulationFailed("the road network has no net.xml: compile it before simulating")
+        if "<edge " not in network.net_xml:
+            raise SimulationFailed("the network has no edges: nothing can drive on it")
+        if scenario.xosc is None and scenario.routes_xml is not None:
+            return self._drive(scenario, scenario.routes_xml, network.net_xml)
+        return self._replay(scenario, network, network.net_xml)
+
+    def _replay(self, scenario: Scenario, network: RoadNetwork, net_xml: str) -> Execution:
+        wanted = played(scenario, network)
+        movers = [_mover(actor, t) for actor, t in zip(scenario.actors, wanted, strict=True)]
+        back: Replayed = self._call("_sumo_replay:replay", net_xml, movers, DT_S)
+        seen = [_seen(t, rows) for t, rows in zip(wanted, back.poses, strict=True)]
+        worst = max(_deviation(a, b) for a, b in zip(wanted, seen, strict=True))
+        return execution_of("libsumo", scenario, seen, "\n".join([*back.notes, f"largest deviation {worst:.1e} m"]))
+
+    def _drive(self, scenario: Scenario, routes_xml: str, net_xml: str) -> Execution:
+        try:
+            parse_xml(routes_xml, "routes")
+        except InvalidOutput as fault:
+            raise SimulationFailed(str(fault)) from fault
+        ids = [actor.id for actor in scenario.actors]
+        back: Driven = self._call("_sumo_routes:drive", net_xml, routes_xml, ids, self.longest_s, DT_S)
+        seen = [_driven(name, rows) for name, rows in zip(ids, back.poses, strict=True)]
+        return execution_of("libsumo", scenario, seen, "\n".join(back.notes))
+
+    def _call(self, function: str, *args: Any) -> Any:
+        worker = _worker(function)
+        try:
+            return worker.call(*args, timeout_s=self.timeout_s)
+        except SimulationFailed as fault:
+            words = worker.said()
+            raise SimulationFailed(f"{fault}; SUMO's words: {words}" if words else str(fault)) from fault
+
+
+def _driven(name: str, rows: Floats) -> Trajectory:
+    t_s, heading = np.arange(len(rows)) * DT_S, np.unwrap(rows[:, 2])
+    return Trajectory(actor=name, t_s=t_s, x_m=rows[:, 0], y_m=rows[:, 1], heading_rad=heading, speed_mps=rows[:, 3])
+
+
+def _mover(actor: ActorInfo, t: Trajectory) -> Mover:
+    return Mover(actor.id, actor.length_m, actor.width_m, np.column_stack((poses(t), t.speed_mps)))
+
+
+def _seen(wanted: Trajectory, rows: Floats) -> Trajectory:
+    """Poses as SUMO holds them; headings stay continuous, speeds are the scenario's."""
+    heading = wanted.heading_rad + wrap_angle(rows[:, 2] - wanted.heading_rad)
+    return wanted.model_copy(update={"x_m": rows[:, 0], "y_m": rows[:, 1], "heading_rad": heading})
+
+
+def _deviation(wanted: Trajectory, seen: Trajectory) -> float:
+    """Largest distance of two poses, metres. Raises SimulationFailed above the tolerance."""
+    away = np.hypot(wanted.x_m - seen.x_m, wanted.y_m - seen.y_m)
+    if (worst := float(away.max())) > TOLERANCE_M:
+        t_s = wanted.t_s[int(away.argmax())]
+        moved = f"SUMO moved {wanted.actor} {worst:.3f} m away from its scenario pose"
+        raise SimulationFailed(f"{moved} at {t_s:.2f} s (limit {TOLERANCE_M} m)")
+    return worst

@@ -1,0 +1,1 @@
+"""What happened -> a place where it can be compared. One file per choice."""

@@ -1,0 +1,1 @@
+"""An artifact -> findings. One file per choice."""

@@ -1,0 +1,147 @@
+"""Whether scenario, net.xml and xodr agree, and whether the crash that is declared is the one that happens."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from sgcad_core.contact import first_contact
+from sgcad_core.distances import distance_to
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution import sizes_of
+from sgcad_core.formats.agreement import network_disagreements
+from sgcad_core.formats.net_xml import LaneGraph, parse_net
+from sgcad_core.formats.xosc_player import entity_boxes, play
+from sgcad_core.geometry import Floats
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import (
+    ActorInfo,
+    Evidence,
+    Finding,
+    ObservedContact,
+    RoadNetwork,
+    Scenario,
+    Trajectory,
+)
+from sgcad_core.result import realised
+from sgcad_core.specs import Contact
+
+START_M = 6.0
+"""A start on the shoulder, one and a half lanes from a center line, still stands on the road."""
+SIZE_M = 1e-3
+_DRIVES_M = 0.5
+_OFF_ROAD = ("parked", "departing_road_left", "departing_road_right")
+
+
+class Agreement(Validator):
+    """Compares the three files of a case with each other and with the declared contact."""
+
+    stage: ClassVar[str] = "scenario"
+    unrealised: Literal["repair", "note"] = "repair"
+    """Severity where another contact than the declared one comes first."""
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """Disagreements; what another validator finds unreadable is passed over."""
+        if not isinstance(artifact, Scenario) or artifact.xosc is None:
+            return []
+        network = evidence.network
+        try:
+            boxes = entity_boxes(artifact.xosc)
+            motions = artifact.planned or play(artifact.xosc, network.xodr if network else None)
+            graph = parse_net(network.net_xml) if network and network.net_xml else None
+            found = network_disagreements(graph, network.xodr) if graph and network and network.xodr else []
+        except InvalidOutput:
+            return []
+        found += _actor_findings(artifact.actors, {name: box[:2] for name, box in boxes.items()})
+        found += _contact_actors(artifact)
+        if found:
+            return found
+        contact = first_contact(motions, sizes_of(artifact))
+        found += _starts(artifact.actors, motions, graph, contact) if graph else []
+        return [*found, *self._contact(artifact.declared, contact)]
+
+    def _contact(self, declared: Contact | None, seen: ObservedContact | None) -> Iterator[Finding]:
+        """Nothing where the declared contact is the first; without a declared one any contact is noted."""
+        if declared is None and seen is not None:
+            yield _finding("a contact happens that is not declared", "contacts", _seen(seen), "declare it", "note")
+        elif declared is not None and not realised(declared, seen):
+            what = f"the first contact is not the declared one ({_declared(declared)})"
+            remedy = "change lanes, exit roads, maneuvers or the contact so that these sides can meet first"
+            yield _finding(what, "contacts[0]", _seen(seen), remedy, self.unrealised)
+
+
+# ------------------------------------------------------------------ actors
+def _actor_findings(actors: Sequence[ActorInfo], boxes: dict[str, tuple[float, ...]]) -> list[Finding]:
+    """Ids and sizes in the .xosc against the scenario's actors."""
+    names = [a.id for a in actors]
+    if sorted(names) != sorted(boxes):
+        remedy = f"write one entity an actor: {', '.join(names)}"
+        return [_finding("the .xosc has other entities than the scenario", "Entities", ", ".join(boxes), remedy)]
+    sized = [(a, (a.length_m, a.width_m), boxes[a.id]) for a in actors]
+    return [
+        _finding(f"the box of {a.id} is not its size", f"ScenarioObject {a.id!r}", f"{box} m", f"make it {size} m")
+        for a, size, box in sized
+        if not np.allclose(size, box, atol=SIZE_M, rtol=0)
+    ]
+
+
+def _contact_actors(scenario: Scenario) -> list[Finding]:
+    names = [a.id for a in scenario.actors]
+    contacts = scenario.behavior.contacts if scenario.behavior else ()
+    every = [scenario.declared, *contacts] if scenario.declared else list(contacts)
+    missing = {n for c in every if c for n in (c.striker, c.struck) if n not in names}
+    return [
+        _finding("a declared contact names no actor", "contacts", name, f"one of {', '.join(names)}")
+        for name in sorted(missing)
+    ]
+
+
+def _starts(
+    actors: Sequence[ActorInfo], motions: Sequence[Trajectory], graph: LaneGraph, contact: ObservedContact | None
+) -> list[Finding]:
+    """Actors that drive before the first contact and do not start in a lane."""
+    lines = _lane_lines(graph)
+    kinds = {a.id: a for a in actors}
+    until = contact.t_s if contact else np.inf
+    found = []
+    for motion in motions:
+        actor = kinds[motion.actor]
+        if actor.type in ("pedestrian", "object") or actor.maneuver in _OFF_ROAD or not _drives(motion, until):
+            continue
+        start = np.array([[motion.x_m[0], motion.y_m[0]]])
+        away = min(float(distance_to(line, start)[0]) for line in lines)
+        if away > START_M:
+            remedy = f"start it within {START_M:g} m of a lane's center"
+            found.append(_finding(f"{actor.id} does not start in a lane", actor.id, f"{away:.1f} m away", remedy))
+    return found
+
+
+def _drives(motion: Trajectory, until_s: float) -> bool:
+    before = motion.t_s <= until_s
+    way = np.hypot(motion.x_m - motion.x_m[0], motion.y_m - motion.y_m[0])[before]
+    return bool(way.max() > _DRIVES_M)
+
+
+def _lane_lines(graph: LaneGraph) -> list[Floats]:
+    lanes = [lane.shape for edge in graph.edges.values() for lane in edge.lanes]
+    return [line for line in [*lanes, *(c.via_shape for c in graph.connections)] if len(line) > 1]
+
+
+# ------------------------------------------------------------------ words
+def _declared(contact: Contact) -> str:
+    return f"{contact.striker} {contact.striker_area} into {contact.struck} {contact.struck_area}"
+
+
+def _seen(contact: ObservedContact | None) -> str:
+    if contact is None:
+        return "nothing touches"
+    sides = f"{contact.actor} {contact.actor_area} and {contact.other} {contact.other_area}"
+    return f"{sides} at {contact.t_s:.2f} s"
+
+
+def _finding(
+    what: str, where: str, value: str, remedy: str, severity: Literal["repair", "note"] = "repair"
+) -> Finding:
+    return Finding(source="agreement", severity=severity, what=what, where=where, value=value, remedy=remedy)

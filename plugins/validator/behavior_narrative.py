@@ -1,0 +1,156 @@
+"""Whether a scenario's behavior says what the narrative states for sure.
+
+Vehicles, initial headings, maneuvers and the first contact. Only what the text tells outright is asked
+again; where the reading is inferred or a corner is hit, a note is all. Reads no diagram.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import ClassVar, Literal
+
+from sgcad_core.interfaces import Validator
+from sgcad_core.narrative.compass import angle_of, compass_of_angle
+from sgcad_core.narrative.facts import ContactFacts, CrashFacts, crash_facts
+from sgcad_core.narrative.ways import Way, apart, degree, ways_of
+from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.specs import BehaviorSpec, Contact, Maneuver, RoadSpec
+
+_FAR_RAD = math.radians(70)
+"""A heading that is more than a compass eighth (and a bend) off."""
+_NEAR_RAD = math.radians(50)
+_STILL: tuple[Maneuver, ...] = ("stopped", "parked")
+_TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
+
+
+class BehaviorNarrative(Validator):
+    """Compares a behavior spec with the narrative's stated facts."""
+
+    stage: ClassVar[str] = "scenario"
+
+    areas: Literal["repair", "note"] = "repair"
+    """Severity where the declared sides differ from both told sides."""
+    maneuvers: Literal["repair", "note"] = "repair"
+    """Severity where a told turn, stop or straight course is missed."""
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """Contradictions, vehicles first; nothing for scenarios without a behavior or texts without vehicles."""
+        if not isinstance(artifact, Scenario) or artifact.behavior is None:
+            return []
+        facts = crash_facts(evidence.report.narrative)
+        if not facts.vehicles:
+            return []
+        behavior = artifact.behavior
+        found = list(_vehicles(behavior, facts))
+        spec = evidence.network.spec if evidence.network else None
+        if spec is not None:
+            found += _headings(behavior, facts, spec)
+        found += _maneuvers(behavior, facts, self.maneuvers)
+        return [*found, *_contact(behavior, facts, self.areas)]
+
+
+def _finding(
+    what: str, where: str, value: str, remedy: str, severity: Literal["repair", "refuse", "note"] = "repair"
+) -> Finding:
+    return Finding(source="behavior_narrative", severity=severity, what=what, where=where, value=value, remedy=remedy)
+
+
+# ------------------------------------------------------------------ vehicles
+def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
+    """Every numbered vehicle is an actor and no other number is."""
+    told = [v.id for v in facts.vehicles]
+    acting = [a.id for a in behavior.actors if a.id.startswith("V")]
+    for v in facts.vehicles:
+        if v.id not in acting:
+            named = " ".join(str(w) for w in (v.year, v.make, v.model) if w)
+            yield _finding(f"the report's vehicle {v.id} is missing", "actors", ", ".join(acting) or "none",
+                           f"add {v.id}{f', the {named}' if named else ''}")  # fmt: skip
+    for name in acting:
+        if name not in told:
+            yield _finding("the report numbers no such vehicle", "actors", name,
+                           f"keep to {', '.join(told)}; other road users are P, B or O")  # fmt: skip
+
+
+# ------------------------------------------------------------------ headings
+def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iterator[Finding]:
+    ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
+    for actor in behavior.actors:
+        fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
+        if fact is None or way is None or fact.heading is None or not fact.heading_stated:
+            continue
+        wanted = angle_of(fact.heading)
+        if min(apart(way.start_rad, wanted), apart(way.end_rad, wanted), apart(way.heading_rad, wanted)) > _FAR_RAD:
+            yield _finding(
+                f"{actor.id} first travels {compass_of_angle(way.heading_rad)}, but the report says {fact.heading}",
+                f"{actor.id}.road", f"{actor.road}, {actor.direction}",
+                _better_ways(wanted, tuple(ways.values()), spec),
+            )  # fmt: skip
+
+
+def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
+    """Ways in that direction, approaches to a junction first."""
+    fitting = [w for w in ways if apart(w.heading_rad, wanted) < _NEAR_RAD]
+    fitting.sort(key=lambda w: -degree(w.to_node, spec))
+    named = [f"{w.road.id} {w.direction}" for w in fitting[:4]]
+    return f"start it on {' or '.join(named)}" if named else "start it on the road nearest to that direction"
+
+
+# ------------------------------------------------------------------ maneuvers
+def _maneuvers(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
+    for actor in behavior.actors:
+        fact = facts.vehicle(actor.id)
+        if fact is None or not fact.maneuver_stated or not _contradicts(actor.maneuver, fact.maneuver):
+            continue
+        yield _finding(f"the report tells another maneuver of {actor.id}", f"{actor.id}.maneuver", actor.maneuver,
+                       f"use {fact.maneuver}", severity)  # fmt: skip
+
+
+def _contradicts(said: Maneuver, told: Maneuver) -> bool:
+    """Another turn than told, standing instead of moving, or a turn where none is told."""
+    if told in _TURNS or said in _TURNS:
+        return said != told
+    if told in _STILL or said in _STILL:
+        return (told in _STILL) != (said in _STILL) and "slowing" not in (said, told)
+    return False
+
+
+# ------------------------------------------------------------------ contact
+def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
+    told = next((c for c in facts.contacts if c.stated), None)
+    if told is None or not _acted(told, behavior):
+        return
+    said = behavior.contacts[0] if behavior.contacts else None
+    if said is None:
+        yield _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told))
+    elif {said.striker, said.struck} != {told.striker, told.struck}:
+        yield _finding(f"the report's first contact is between {told.striker} and {told.struck}", "contacts[0]",
+                       f"{said.striker} and {said.struck}", _declare(told))  # fmt: skip
+    elif _sides(said) != _sides(told):
+        sure = severity if told.areas_stated and _both_differ(said, told) else "note"
+        yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
+                       _declare(told), sure)  # fmt: skip
+
+
+def _acted(told: ContactFacts, behavior: BehaviorSpec) -> bool:
+    return {told.striker, told.struck} <= {a.id for a in behavior.actors}
+
+
+def _sides(contact: Contact | ContactFacts) -> dict[str, str]:
+    return {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+
+
+def _both_differ(said: Contact, told: ContactFacts) -> bool:
+    """A side that is simply another one; front against a corner's flank is no contradiction."""
+    mine, theirs = _sides(said), _sides(told)
+    opposite = {"left": "right", "right": "left", "front": "back", "back": "front"}
+    wrong = [v for v in mine if mine[v] != theirs.get(v)]
+    return len(wrong) == 2 or any(theirs.get(v) == opposite[mine[v]] for v in wrong)
+
+
+def _described(contact: Contact | ContactFacts) -> str:
+    return f"{contact.striker_area} of {contact.striker}, {contact.struck_area} of {contact.struck}"
+
+
+def _declare(told: ContactFacts) -> str:
+    return f"declare striker {told.striker}, struck {told.struck}: {_described(told)}"

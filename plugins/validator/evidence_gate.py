@@ -1,0 +1,97 @@
+"""Refuses an answer that the evidence does not carry, naming what the report would have to tell.
+
+For a group of fields the grounding is summed: S = sum log p(y|c,x) - log p(y|x), in nats, the logarithm of the
+factor by which the report makes that part of the answer more likely than the model believed anyway. Below the
+group's threshold the model has guessed. Only generations with both rows have a grounding (decoder cad, adacad
+or vcd, or backbone.always_ground); others, and writers that ask no model, are passed over.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import Field
+
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+
+
+@dataclass(frozen=True)
+class Group:
+    """Fields that stand and fall together, and what a report must tell to carry them."""
+
+    name: str
+    paths: re.Pattern[str]
+    remedy: str
+
+
+ROAD = (
+    Group(
+        "road layout",
+        re.compile(r"legs\[\]|legs\[\d+\]\.bearing|roads\[\]|nodes\[\]|roads\[\d+\]\.(from_node|to_node)"),
+        "the report must say how many roads meet and where they lead",
+    ),
+    Group(
+        "lanes",
+        re.compile(r"(legs|roads)\[\d+\]\.lanes_(in|out|forward|backward)"),
+        "the report or its diagram must show the lanes of each road",
+    ),
+)
+SCENARIO = (
+    Group(
+        "actors",
+        re.compile(r"actors\[\]|actors\[\d+\]\.(kind|road|direction|maneuver)"),
+        "the report must say who was involved, on which road, in which direction and doing what",
+    ),
+    Group(
+        "first contact",
+        re.compile(r"contacts\[0\]\.(striker|struck|striker_area|struck_area)"),
+        "the report must say who struck whom, and with which sides",
+    ),
+)
+
+
+class EvidenceGate(Validator):
+    """A threshold a group, in nats; null leaves a group out. One entry judges one stage."""
+
+    at: Literal["road", "scenario"] = "road"
+    road_layout: float | None = Field(0.5, description="nats; null = not required")
+    lanes: float | None = 0.5
+    actors: float | None = 0.5
+    first_contact: float | None = 0.5
+
+    @property
+    def stage(self) -> str:  # type: ignore[override]
+        """The stage named by `at`: the gate is the one validator that may stand in either."""
+        return self.at
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """A refusal a group that is not grounded, weakest first; [] where nothing is known of the grounding."""
+        ground = evidence.generation.grounding if evidence.generation else {}
+        wanted = ((group, self._threshold(group)) for group in (ROAD if self.at == "road" else SCENARIO))
+        sums = [(group, limit, nats_of(group, ground)) for group, limit in wanted if limit is not None]
+        weak = [(nats, group, limit) for group, limit, nats in sums if nats is not None and nats < limit]
+        return [_finding(group, nats, limit) for nats, group, limit in sorted(weak, key=lambda w: w[0] - w[2])]
+
+    def _threshold(self, group: Group) -> float | None:
+        found: float | None = getattr(self, group.name.replace(" ", "_"))
+        return found
+
+
+def nats_of(group: Group, grounding: Mapping[str, float]) -> float | None:
+    """A group's summed grounding; None if the answer has none of its fields."""
+    found = [nats for path, nats in grounding.items() if group.paths.fullmatch(path)]
+    return sum(found) if found else None
+
+
+def _finding(group: Group, nats: float, limit: float) -> Finding:
+    return Finding(
+        source="evidence_gate",
+        severity="refuse",
+        what=f"the evidence does not carry the {group.name}: it adds {nats:.2f} nats, at least {limit:g} are wanted",
+        value=group.name,
+        remedy=group.remedy,
+    )

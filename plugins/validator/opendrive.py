@@ -1,0 +1,22 @@
+"""Whether the .xodr is valid OpenDRIVE 1.7: schema, references, lane links, lengths, gaps."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from sgcad_core.formats.xodr import xodr_findings
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+
+
+class OpenDrive(Validator):
+    """Checks what ASAM's rules demand of a road network."""
+
+    stage: ClassVar[str] = "road"
+    most: int = 20
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """At most `most` findings; a network without .xodr is passed over (netconvert's validator tells)."""
+        if not isinstance(artifact, RoadNetwork) or artifact.xodr is None:
+            return []
+        return xodr_findings(artifact.xodr)[: self.most]

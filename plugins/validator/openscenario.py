@@ -1,0 +1,21 @@
+"""Schema, references and playability of the scenario file."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from sgcad_core.formats.xosc_check import xosc_findings
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+
+
+class OpenScenario(Validator):
+    """What `sgcad_core.formats.xosc_check` finds; scenarios without .xosc are passed over."""
+
+    stage: ClassVar[str] = "scenario"
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """Faults of the .xosc against its schema and the network's .xodr."""
+        if not isinstance(artifact, Scenario) or artifact.xosc is None:
+            return []
+        return xosc_findings(artifact.xosc, evidence.network.xodr if evidence.network else None)
