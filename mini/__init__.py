@@ -1,0 +1,1 @@
+"""The embedded vision-language model: its report generator, renderer, trainer and weights."""

@@ -1,0 +1,31 @@
+"""A trained model as a folder that transformers loads: bf16 safetensors, config, tokenizer, image processor."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import torch
+
+PREPROCESSOR = {
+    "image_processor_type": "MiniImageProcessor",
+    "processor_class": "MiniProcessor",
+    "patch_size": 14,
+    "merge_size": 2,
+    "channels": 5,
+}
+
+
+def export(model: Any, tokenizer: Any, folder: Path) -> None:
+    """Write the folder; files are replaced one by one, weights first."""
+    folder.mkdir(parents=True, exist_ok=True)
+    half = copy.deepcopy(model).to("cpu", torch.bfloat16)
+    half.config.dtype = torch.bfloat16
+    half.generation_config.eos_token_id = tokenizer.eos_token_id
+    half.generation_config.pad_token_id = tokenizer.pad_token_id
+    half.generation_config.bos_token_id = None
+    half.save_pretrained(folder)
+    tokenizer.save_pretrained(folder)
+    (folder / "preprocessor_config.json").write_text(json.dumps(PREPROCESSOR, indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,106 @@
+"""The event sentences of a report: who erred, who avoided, who struck whom, where they came to rest.
+
+A part of the writer.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+from mini.generator import clauses_motion as motion
+from mini.generator.grammar import choose, clauses, families
+from mini.generator.world import Contact, Crash
+
+
+class EventsMixin:
+    """Sentences about the collision; needs the writer's fields."""
+
+    rng: Random
+    crash: Crash
+    held_out: bool
+    ciren: bool
+    told: set[str]
+    who: tuple[int, int]
+
+    say: Any
+    id_of: Any
+
+    # -------------------------------------------------------------- events
+    def culprit(self) -> tuple[int, int]:
+        """Index of the one who errs and of the other."""
+        plain = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
+        actors = self.crash.actors
+        first = self.crash.contacts[0]
+        if self.crash.config in ("crossing", "rear_end", "pedestrian", "parked"):
+            return first.striker, first.struck
+        found = next((i for i, a in enumerate(actors) if a.maneuver not in plain), first.striker)
+        return found, first.struck if found == first.striker else first.striker
+
+    def events(self) -> list[str]:
+        """The sentences of what happened: error, avoidance, impacts, rest."""
+        rng, (v, w) = self.rng, self.who
+        config = self.crash.config
+        key = {"left_lateral": "turn_left", "right_into": "turn_right"}.get(config, config)
+        out = []
+        if rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4):
+            out.append(self.say(motion.CRITICAL[key], v, w, turn=self._turn(v)))
+            self.told |= {
+                f"man.{self.id_of(v)}",
+                f"exit.{self.id_of(v)}",
+                *({f"man.{self.id_of(w)}"} if config in ("crossing", "head_on") else ()),
+            }
+        if rng.random() < (0.12 if self.ciren else 0.4):
+            out.append(self.say(motion.AVOID, v, w))
+        for number, contact in enumerate(self.crash.contacts):
+            out.append(self._impact(number, contact))
+        if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
+            out = out[1:]
+        return out + [self.say(motion.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+
+    def _turn(self, index: int) -> str:
+        maneuver = self.crash.actors[index].maneuver
+        return "left" if maneuver.endswith("left") else "right"
+
+    def _impact(self, number: int, contact: Contact) -> str:
+        rear = contact.striker_area == "front" and contact.struck_area == "back"
+        swipe = {contact.striker_area, contact.struck_area} <= {"left", "right"}
+        later = number > 0
+        options, areas = (motion.THEN if later else motion.IMPACT), True
+        if swipe and self.rng.random() < 0.6:
+            options = motion.SWIPE
+        elif rear and self.rng.random() < 0.3:
+            options = motion.THEN_REAR if later else motion.IMPACT_REAR
+        elif self.rng.random() < 0.06 and not later:
+            options, areas = motion.IMPACT_BARE, False
+        self.told |= {f"contact.{number}"} | ({f"areas.{number}"} if areas else set())
+        if self.crash.actors[contact.struck].kind in ("object", "pedestrian", "bicycle"):
+            options = clauses(_FIXED)
+        sides = ("left", "right", "left", "right") if options is motion.SWIPE else None
+        sa = contact.striker_area if sides else self._area(contact.striker_area)
+        ta = contact.struck_area if sides else self._area(contact.struck_area)
+        return self.say(options, contact.striker, contact.struck, sa=sa, ta=ta)
+
+    def _area(self, area: str) -> str:
+        return choose(self.rng, self.rng.choice(families(_split_top(motion.AREA[area]), self.held_out)))
+
+
+def _split_top(text: str) -> list[str]:
+    """Split at | outside brackets."""
+    out, depth = [""], 0
+    for letter in text:
+        depth += (letter == "[") - (letter == "]")
+        if letter == "|" and not depth:
+            out.append("")
+        else:
+            out[-1] += letter
+    return out
+
+
+_FIXED = """
+The {sa} of {S} [struck|impacted|contacted|hit] {T}
+{S} [struck|impacted|hit] {T} with its {sa}
+{S}'s {sa} [struck|impacted] {T}
+{T} was [struck|hit] by the {sa} of {S}
+~With its {sa} {S} ran into {T}
+"""

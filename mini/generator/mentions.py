@@ -1,0 +1,84 @@
+# ruff: noqa: E501 - lists of words
+"""How one report names its vehicles: V1, Vehicle #1, the Ford, V1 (the Ford Taurus) ..., mixed as investigators mix."""
+
+from __future__ import annotations
+
+from random import Random
+
+from mini.generator.vehicles import COLORS, YEARS, body_text, model_text
+from mini.generator.world import Actor, Crash
+
+NUMBER_WORDS = ("zero", "one", "two", "three", "four", "five")
+STYLES = {
+    "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4, "Vehicle-{n}": 2,
+    "V 1": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
+}  # fmt: skip
+OBJECTS = (
+    "a tree", "a utility pole", "a {d}cm tree", "a guardrail", "a concrete barrier", "a {d}-cm diameter tree", "a sign post", "a large tree", "an embankment",
+    "a fence", "a mailbox", "a light pole", "a traffic signal pole", "a telephone pole", "a wooden pole", "a ditch", "a bridge abutment", "a rock wall",
+)  # fmt: skip
+
+
+class Mentions:
+    """Names of the actors in one report; the first mention introduces year, make and model."""
+
+    def __init__(self, rng: Random, crash: Crash, ciren: bool) -> None:
+        self.rng, self.crash, self.ciren = rng, crash, ciren
+        style = "V{n}" if ciren else rng.choices(list(STYLES), list(STYLES.values()))[0]
+        self.style = "V {n}" if style == "V 1" else style
+        self.mixed = not ciren and rng.random() < 0.35
+        self.introduced: set[int] = set()
+        self.years = {i: rng.choice(YEARS) for i in range(len(crash.actors))}
+        for actor in crash.actors:
+            actor.model = model_text(rng, actor.kind) if actor.id.startswith("V") else self._other(actor)
+
+    def _other(self, actor: Actor) -> str:
+        if actor.kind == "object":
+            return self.rng.choice(OBJECTS).format(d=self.rng.randint(10, 90))
+        return {"pedestrian": self.rng.choice(("a pedestrian", "the pedestrian", f"a {self.rng.randint(8, 80)}-year-old pedestrian")),
+                "bicycle": self.rng.choice(("a bicyclist", "a cyclist", "a bicycle"))}[actor.kind]  # fmt: skip
+
+    def name(self, index: int) -> str:
+        """A later mention."""
+        actor = self.crash.actors[index]
+        if not actor.id.startswith("V"):
+            return (
+                actor.model.replace("a ", "the ", 1)
+                if index in self.introduced and actor.model.startswith("a ")
+                else actor.model
+            )
+        number = int(actor.id[1:])
+        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
+        if not self.ciren and "(V" in plain and index in self.introduced and self.rng.random() < 0.7:
+            plain = f"V{number}"
+        if self.mixed and self.rng.random() < 0.3:
+            make = actor.model.split(" ")[0]
+            return self.rng.choice(
+                (f"the {make}", f"the {actor.model}", f"the {make} ({plain})", f"{plain}, the {make},", f"V{number}")
+            )
+        return plain
+
+    def full(self, index: int, body_odds: float = 0.6) -> tuple[str, bool]:
+        """The first mention, and whether it tells what kind of vehicle it is."""
+        actor = self.crash.actors[index]
+        if not actor.id.startswith("V"):
+            self.introduced.add(index)
+            return actor.model, True
+        if index in self.introduced:
+            return self.name(index), False
+        self.introduced.add(index)
+        number = int(actor.id[1:])
+        text = self._year_model(index, actor, 0.95 if self.ciren else body_odds)
+        if self.ciren:
+            case = " - case vehicle" if number == 1 or self.rng.random() < 0.1 else ""
+            return f"Vehicle {NUMBER_WORDS[number]} (V{number}{case}), {text},".replace(",,", ","), True
+        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
+        forms = (f"{plain}, {text},", f"{plain}, {text},", f"{plain} ({text})", f"{plain}, {text}", f"{text} ({plain})")
+        return self.rng.choice(forms), True
+
+    def _year_model(self, index: int, actor: Actor, body_odds: float) -> str:
+        color = f"{self.rng.choice(COLORS)} " if not self.ciren and self.rng.random() < 0.15 else ""
+        needs_body = actor.kind in ("truck", "motorcycle", "bus")
+        body = body_text(self.rng, actor.kind) if needs_body or self.rng.random() < body_odds else ""
+        comma = "," if self.ciren else ""
+        return f"a {color}{self.years[index]} {actor.model}" + (f"{comma} {body}" if body else "")

@@ -1,0 +1,111 @@
+"""One report from a seed: narrative, crash to draw, answers and weights; the modality is drawn here too.
+
+Modes: "both", "text" (no drawing), "image" (no narrative), "none" (the context-free row, which learns how
+answers are distributed), "thin" (nothing told of the road), "no_crash" (a road but no crash), "conflict" (the
+text contradicts itself). The last three are refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any
+
+from mini.answers import MISSING, REASONS
+from mini.generator.crash import sample_crash
+from mini.generator.targets import Targets, drawn_facts
+from mini.generator.world import Crash
+from mini.generator.writer import Writer
+
+MODES = {"both": 42.0, "image": 25.0, "text": 17.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
+TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
+Json = dict[str, Any]
+
+
+@dataclass
+class Report:
+    """What a model sees and what it is to answer; `behavior` is None where the road was refused."""
+
+    seed: int
+    mode: str
+    crash: Crash
+    narrative: str
+    has_image: bool
+    road: Json
+    behavior: Json | None
+    targets: Targets | None
+    told: set[str]
+    drawn: set[str] = field(default_factory=set)
+
+    def weight(self, path: tuple[Any, ...]) -> float:
+        """Weight of a value in the loss."""
+        return self.targets.weight(path) if self.targets else 1.0
+
+
+def make_report(
+    seed: int, held_out: bool = False, length: float = 1.0, modes: dict[str, float] | None = None
+) -> Report:
+    """The report of a seed; `length` scales the sentences that say nothing of the scene (0 none, 1 as in real ones)."""
+    rng = Random(seed * 2 + held_out)
+    weights = modes or MODES
+    mode = rng.choices(list(weights), list(weights.values()))[0]
+    crash = sample_crash(rng)
+    writer = Writer(rng, crash, held_out, length)
+    control, access = rng.random() < 0.6, bool(crash.accesses)
+    if mode in ("thin", "no_crash", "conflict"):
+        return _refused(seed, mode, rng, crash, writer)
+    narrative = writer.write()
+    drawn = drawn_facts(crash, control, access)
+    if mode in ("image", "none"):
+        narrative = ""
+    told = {"image": set(), "none": set()}.get(mode, writer.told)
+    seen = drawn if mode in ("both", "image") else set()
+    targets = Targets(crash, told | seen)
+    if mode == "none":
+        targets = _prior(crash, rng)
+    return Report(
+        seed, mode, crash, narrative, mode in ("both", "image"), targets.road, targets.behavior, targets, told, drawn
+    )
+
+
+def _prior(crash: Crash, rng: Random) -> Targets:
+    """What would be answered to this crash had somebody told a part of it: the distribution without context."""
+    facts = drawn_facts(crash, True, False) | {"light", "weather", "surface"}
+    facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
+    targets = Targets(crash, {fact for fact in facts if rng.random() < 0.8})
+    targets.weights = dict.fromkeys(targets.weights, 0.5)
+    return targets
+
+
+def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) -> Report:
+    if mode == "conflict":
+        narrative = _conflicting(rng, crash, writer)
+    elif mode == "thin":
+        narrative = " ".join(writer.aftermath())
+    else:
+        narrative = " ".join(writer.place() + writer.aftermath())
+    told = set(writer.told)
+    if mode == "no_crash":
+        targets = Targets(crash, told)
+        known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"
+        road = targets.road if known else refusal(0)
+        return Report(seed, mode, crash, narrative, False, road, refusal(1) if known else None, targets, told)
+    return Report(seed, mode, crash, narrative, False, refusal(2 if mode == "conflict" else 0), None, None, told)
+
+
+def _conflicting(rng: Random, crash: Crash, writer: Writer) -> str:
+    """The approaches told twice, the second time from elsewhere and on another road."""
+    first = writer.scene_and_approach()
+    other = sample_crash(rng)
+    while other.layout == crash.layout or other.actors[0].leg == crash.actors[0].leg:
+        other = sample_crash(rng)
+    again = Writer(rng, other, writer.held_out, writer.length)
+    again.mentions.style, again.ciren = writer.mentions.style, writer.ciren
+    parts = first + again.scene_and_approach()
+    return " ".join(parts + again.events() + writer.aftermath())
+
+
+def refusal(reason: int) -> Json:
+    """A refusal: 0 thin, 1 no crash, 2 conflict."""
+    missing = {0: list(MISSING), 1: list(MISSING[2:]), 2: [MISSING[0], MISSING[2]]}[reason]
+    return {"refuse": REASONS[reason], "missing": missing}

@@ -1,0 +1,156 @@
+"""Roads around a hub: how many legs, how many lanes, which control, with the frequencies of U.S. reports.
+
+Makes the legs only; who drives on them is `crash`'s business.
+"""
+
+from __future__ import annotations
+
+from random import Random
+
+from mini.generator.world import Access, Leg, pick
+
+LIMITS = {
+    "rural": (35, 40, 45, 45, 50, 55, 55, 55),
+    "urban": (25, 25, 30, 30, 35, 35, 40, 45),
+    "highway": (55, 60, 65, 65, 70),
+}
+MEDIANS = {"grass": 3.0, "barrier": 3.0, "raised": 3.0, "painted": 1.5}
+
+
+def main_road(rng: Random, area: str, least: int = 1) -> tuple[int, int, str, bool]:
+    """Lanes one way, lanes the other way, median and two-way left-turn lane of a through road."""
+    weights = (
+        {"1": 66.0, "2": 24.0, "3": 7.0, "4": 2.0} if area != "highway" else {"1": 5.0, "2": 55.0, "3": 25.0, "4": 12.0}
+    )
+    one = max(least, int(pick(rng, weights)))
+    other = one
+    if rng.random() < 0.08:
+        other = max(1, one + rng.choice((-1, 1)))
+    twltl = area == "urban" and one + other >= 2 and rng.random() < (0.2 if one + other >= 4 else 0.07)
+    divided = not twltl and one + other >= 4 and rng.random() < (0.9 if area == "highway" else 0.4)
+    median = pick(rng, MEDIANS) if divided else ("painted" if one > 1 and rng.random() < 0.05 else "none")
+    return one, other, median, twltl
+
+
+def pair(rng: Random, bearing: int, area: str, least: int = 1, one_way: bool = False) -> list[Leg]:
+    """Both legs of a through road: traffic out of one goes into the other."""
+    to, fro, median, twltl = main_road(rng, area, least)
+    limit = rng.choice(LIMITS[area])
+    if one_way:
+        to, fro, median, twltl = max(to, rng.choice((1, 2, 2, 3))), 0, "none", False
+    first = Leg(bearing % 8, to, fro, median=median, twltl=twltl, limit=limit)
+    second = Leg((bearing + 4) % 8, fro, to, median=median, twltl=twltl, limit=limit)
+    if one_way and rng.random() < 0.5:
+        first.lanes_in, first.lanes_out, second.lanes_in, second.lanes_out = 0, to, to, 0
+    return [first, second]
+
+
+def curve(rng: Random, legs: list[Leg]) -> None:
+    """Bend a plain road: what is a left curve one way is a right curve the other way."""
+    side = rng.choice(("left", "right"))
+    other = {"left": "right", "right": "left"}[side]
+    legs[0].curve, legs[1].curve = side, other
+
+
+def add_turn_lanes(rng: Random, legs: list[Leg], bearings: set[int], odds: float) -> None:
+    """Widen approaches by turn lanes and say what each lane is for."""
+    chosen = {leg.bearing % 4 for leg in legs if rng.random() < odds}
+    for leg in legs:
+        if leg.bearing % 4 not in chosen or leg.kind != "road" or not leg.lanes_in or leg.twltl:
+            continue
+        turns = [t for t, step in (("right", -2), ("through", 4), ("left", 2)) if (leg.bearing + step) % 8 in bearings]
+        leg.turns_in = lane_uses(rng, turns, leg.lanes_in)
+        leg.lanes_in = len(leg.turns_in) or leg.lanes_in
+
+
+def lane_uses(rng: Random, turns: list[str], lanes: int) -> list[str]:
+    """Use of each lane from the right curb; [] where no lane is for turning only."""
+    if "through" not in turns:
+        return ["right", "left"] if len(turns) == 2 and lanes <= 2 else []
+    uses = ["through"] * lanes
+    if "right" in turns:
+        if rng.random() < 0.3:
+            uses = ["right", *uses]
+        else:
+            uses[0] = "through_right"
+    if "left" in turns and (rng.random() < 0.85 or uses[0] != "right"):
+        uses = [*uses, "left"]
+    return uses if {"left", "right"} & set(uses) else []
+
+
+def control(rng: Random, legs: list[Leg], main: int) -> None:
+    """Signal, signs or nothing, the same way for both legs of a road."""
+    lanes = max(leg.lanes_in for leg in legs)
+    drive = any(leg.kind == "driveway" for leg in legs)
+    weights = {
+        "signal": 0.25 + 0.5 * (lanes > 1),
+        "stop": 0.9 if lanes <= 2 else 0.4,
+        "none": 0.35,
+        "all": 0.08,
+        "flashing": 0.04,
+        "yield": 0.04,
+    }
+    if drive:
+        weights = {"none": 0.9, "stop": 0.1}
+    if len(legs) == 3:
+        weights["signal"] = weights.get("signal", 0.0) * 0.4
+    kind = pick(rng, weights)
+    for leg in legs:
+        minor = leg.bearing % 4 != main % 4
+        if kind in ("signal", "flashing") or (kind == "all"):
+            leg.control = "stop" if kind == "all" else kind
+        elif kind in ("stop", "yield") and minor:
+            leg.control = kind
+
+
+def junction(rng: Random, layout: str, main: int, area: str) -> list[Leg]:
+    """Legs of a three-leg, four-leg or driveway junction, ordered clockwise from north."""
+    one_way = layout == "four" and rng.random() < 0.12
+    legs = pair(rng, main, area, one_way=one_way and rng.random() < 0.6)
+    if layout == "four":
+        calm = "urban" if area == "urban" or rng.random() < 0.3 else "rural"
+        side = pair(rng, main + 2, calm, one_way=one_way and rng.random() < 0.6)
+        if sum(s.lanes_in for s in side) > sum(m.lanes_in for m in legs) and rng.random() < 0.7:
+            for leg in side:
+                leg.lanes_in, leg.lanes_out = min(leg.lanes_in, 1), min(leg.lanes_out, 1)
+                leg.median, leg.twltl = "none", False
+        legs += side
+    else:
+        legs.append(stem(rng, layout, main))
+    bearings = {leg.bearing for leg in legs if leg.lanes_out}
+    if layout != "driveway":
+        add_turn_lanes(rng, legs, bearings, 0.22 if area == "rural" else 0.38)
+    control(rng, legs, main)
+    return sorted(legs, key=lambda leg: leg.bearing)
+
+
+def stem(rng: Random, layout: str, main: int) -> Leg:
+    """The third leg of a T: a side road or a driveway."""
+    bearing = (main + rng.choice((2, -2))) % 8
+    if layout == "driveway":
+        return Leg(bearing, kind="driveway")
+    lanes = 2 if rng.random() < 0.1 else 1
+    return Leg(bearing, lanes, lanes, limit=rng.choice(LIMITS["urban"]) if rng.random() < 0.5 else None)
+
+
+def merge(rng: Random, main: int) -> list[Leg]:
+    """A highway (one carriageway's direction matters) with an entrance ramp that leans to its approach leg."""
+    legs = pair(rng, main, "highway", least=2)
+    ramp = Leg((main + rng.choice((1, -1))) % 8, 1, 0, kind="ramp")
+    ramp.bearing = (main - 1) % 8
+    return sorted([*legs, ramp], key=lambda leg: leg.bearing)
+
+
+def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
+    """Now and then a driveway or side road away from the hub."""
+    if rng.random() > 0.07:
+        return []
+    leg = rng.choice([leg for leg in legs if leg.kind == "road"])
+    return [
+        Access(
+            leg.bearing,
+            rng.choice(("left", "right")),
+            rng.choice((30, 40, 40, 60)),
+            rng.choice(("driveway", "driveway", "road")),
+        )
+    ]

@@ -1,0 +1,157 @@
+"""What is to be answered to a report, given which facts its text and its drawing tell.
+
+Facts that nobody tells are null where the answer allows it; otherwise the true value stands in the target with
+a small weight, so that a model learns how often it is so. Weights go by the path of the answer.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mini.generator.world import COMPASS, Actor, Crash, Leg
+
+Json = dict[str, Any]
+GUESS = 0.25
+"""Weight of a value that the evidence does not tell and that has no null."""
+SURE = 1.0
+CONTACT = 3.0
+
+
+class Targets:
+    """Both answers to one report and the weights of their values."""
+
+    def __init__(self, crash: Crash, known: set[str]) -> None:
+        self.crash, self.known = crash, known
+        self.weights: dict[tuple[Any, ...], float] = {}
+        self.road = self._road()
+        self.behavior = self._behavior()
+
+    def weight(self, path: tuple[Any, ...]) -> float:
+        """Weight of a pick; paths not named are sure."""
+        return self.weights.get(path, SURE)
+
+    # -------------------------------------------------------------- road
+    def _road(self) -> Json:
+        legs = [self._leg(i, leg) for i, leg in enumerate(self.crash.legs)]
+        told = "access" in self.known
+        return {"legs": legs, "accesses": [self._access()] if told and self.crash.accesses else []}
+
+    def _leg(self, index: int, leg: Leg) -> Json:
+        axis, path = leg.bearing % 4, ("legs", index)
+        lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
+        if not ("layout" in self.known or self.crash.layout == "plain"):
+            self._unsure(path, "bearing", "more", "kind")
+        if not lanes or (leg.turns_in and not turns):
+            self._unsure(path, "lanes_in", "lanes_out")
+        median = leg.median if f"median.{axis}" in self.known else "none"
+        self._unsure(path, *(("median",) if f"median.{axis}" not in self.known else ()))
+        self._unsure(path, *(("center_turn_lane",) if not lanes else ()))
+        return {
+            "bearing": COMPASS[leg.bearing],
+            "lanes_in": leg.lanes_in,
+            "lanes_out": leg.lanes_out,
+            "turns_in": leg.turns_in if turns else [],
+            "center_turn_lane": leg.twltl and lanes,
+            "median": median,
+            "kind": leg.kind,
+            "control": self._control(leg, path),
+            "curve": leg.curve if "curve" in self.known else "none",
+            "speed_limit_mph": leg.limit if f"limit.{axis}" in self.known else None,
+        }
+
+    def _control(self, leg: Leg, path: tuple[Any, ...]) -> str:
+        if "control" in self.known:
+            return leg.control
+        self._unsure(path, "control")
+        return "none"
+
+    def _access(self) -> Json:
+        access = self.crash.accesses[0]
+        wide = 1
+        return {
+            "leg": COMPASS[access.leg],
+            "side": access.side,
+            "distance_m": float(access.distance_m),
+            "kind": access.kind,
+            "lanes_in": wide,
+            "lanes_out": wide,
+            "control": "none",
+        }
+
+    def _unsure(self, path: tuple[Any, ...], *keys: str) -> None:
+        for key in keys:
+            self.weights[(*path, key)] = GUESS
+
+    # -------------------------------------------------------------- behavior
+    def _behavior(self) -> Json:
+        crash = self.crash
+        actors = [self._actor(i, actor) for i, actor in enumerate(crash.actors)]
+        contacts = [self._contact(i) for i in range(len(crash.contacts))]
+        conditions = {
+            key: getattr(crash, key) if key in self.known else None for key in ("light", "weather", "surface")
+        }
+        return {"actors": actors, "contacts": contacts, **conditions}
+
+    def _actor(self, index: int, actor: Actor) -> Json:
+        path, known = ("actors", index), self.known
+        wheels = actor.kind not in ("object", "pedestrian", "bicycle")
+        sure = f"man.{actor.id}" in known or actor.maneuver == "straight"
+        self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
+        self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
+        self._unsure(path, *(("maneuver",) if not sure else ()))
+        for key in ("direction", "length_m", "width_m"):
+            self.weights[(*path, key)] = 0.1
+        leaves = actor.out is not None and sure and f"heading.{actor.id}" in known
+        return {
+            "id": actor.id,
+            "kind": actor.kind,
+            "road": COMPASS[actor.leg],
+            "direction": "forward",
+            "lane": self._lane(actor) if wheels else None,
+            "exit_road": COMPASS[actor.out] if leaves else None,
+            "maneuver": actor.maneuver,
+            "speed_mph": self._speed(actor, sure),  # type: ignore[index]
+            "length_m": None,
+            "width_m": None,
+        }
+
+    def _lane(self, actor: Actor) -> int | None:
+        leg = self.crash.leg(actor.leg)
+        only = leg is not None and leg.lanes_in == 1 and f"lanes.{leg.bearing % 4}" in self.known
+        return actor.lane if only or f"lane.{actor.id}" in self.known else None
+
+    def _speed(self, actor: Actor, sure: bool) -> int | None:
+        if actor.kind in ("object", "pedestrian", "bicycle"):
+            return None
+        if actor.maneuver in ("stopped", "parked"):
+            return 0 if sure else None
+        return actor.speed if f"speed.{actor.id}" in self.known else None
+
+    def _contact(self, index: int) -> Json:
+        contact, path = self.crash.contacts[index], ("contacts", index)
+        sure = f"contact.{index}" in self.known
+        for key in ("striker", "struck", "striker_area", "struck_area"):
+            areas = key.endswith("area")
+            told = sure if not areas else f"areas.{index}" in self.known
+            self.weights[(*path, key)] = CONTACT if told else GUESS
+        ids = [actor.id for actor in self.crash.actors]
+        return {
+            "striker": ids[contact.striker],
+            "struck": ids[contact.struck],
+            "striker_area": contact.striker_area,
+            "struck_area": contact.struck_area,
+        }
+
+
+def drawn_facts(crash: Crash, control: bool, access: bool) -> set[str]:
+    """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather."""
+    facts = {"layout", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
+    for leg in crash.legs:
+        facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "turns", "median")}
+    for actor in crash.actors:
+        facts |= {f"{key}.{actor.id}" for key in ("heading", "man", "exit", "lane")}
+        if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):
+            facts.add(f"kind.{actor.id}")
+    for index in range(len(crash.contacts)):
+        facts |= {f"contact.{index}", f"areas.{index}"}
+    return facts

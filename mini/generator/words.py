@@ -1,0 +1,186 @@
+# ruff: noqa: E501 - lists of words
+"""Words for numbers, lanes, roads, junctions, speeds and vehicle mentions, in the variants that reports use."""
+
+from __future__ import annotations
+
+from random import Random
+
+from mini.generator.world import WORDS, Crash, Leg
+
+NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
+SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
+
+
+def direction(rng: Random, bearing: int, held_out: bool) -> str:
+    """`north`, `in a northerly direction`, ..."""
+    word = WORDS[bearing % 8]
+    forms = [word] * 6 + [f"in a {word}erly direction", f"{word}bound"]
+    return rng.choice([*forms, f"toward the {word}"] if held_out else forms)
+
+
+def bound(rng: Random, bearing: int) -> str:
+    """`northbound`; now and then `north bound` or N/B."""
+    word = WORDS[bearing % 8]
+    if len(word) > 5:
+        return f"{word}bound"
+    return rng.choices([f"{word}bound", f"{word} bound", f"{word[0].upper()}/B"], [94, 4, 2])[0]
+
+
+def axis(rng: Random, bearing: int) -> str:
+    """`north/south` for either end of a road."""
+    low = bearing % 4
+    pair = (WORDS[low], WORDS[low + 4])
+    if low == 2:
+        return rng.choice(("east/west", "east/west", "east-west", "east west", "west/east"))
+    return rng.choice(("/", "/", "-", " ")).join(pair)
+
+
+def kph(mph: int) -> int:
+    """Kilometres an hour, as rounded in reports."""
+    return round(mph * 1.609)
+
+
+def limit(rng: Random, mph: int) -> str:
+    """A speed limit in one of the unit spellings; a wrong pair now and then."""
+    k = kph(mph) if rng.random() > 0.015 else kph(mph + rng.choice((-5, 5)))
+    forms = (
+        (f"{k} kmph ({mph} mph)", 24), (f"{k} KMPH ({mph} MPH)", 12), (f"{k}kmph ({mph}mph)", 10), (f"{mph} mph", 14), (f"{mph} MPH", 14),
+        (f"{mph} MPH ({k} KPH)", 6), (f"{k} kph ({mph} mph)", 8), (f"{k}kph ({mph}mph)", 4), (f"{mph} mph ({k} kph)", 6),
+        (f"{k} KPH ({mph} MPH)", 4), (f"{k} kpmh ({mph} mph)", 1),
+    )  # fmt: skip
+    return rng.choices([f for f, _ in forms], [w for _, w in forms])[0]
+
+
+def driver_speed(rng: Random, mph: int) -> tuple[str, int]:
+    """A driver's speed as told and the number to answer: ranges give their middle, rounded to fives up."""
+    if rng.random() < 0.6:
+        low = (max(mph, 1) - 1) // 10 * 10 + 1
+        text = rng.choice((
+            f"between {low}-{low + 9} MPH", f"{kph(low)}-{kph(low + 9)} kmph ({low}-{low + 9} mph)", f"{low}-{low + 9} mph",
+            f"between {low} and {low + 9} mph",
+        ))  # fmt: skip
+        return text, low + 4
+    text = rng.choice(
+        (
+            f"{mph} mph",
+            f"about {mph} MPH",
+            f"approximately {mph} mph",
+            f"{kph(mph)} kmph ({mph} mph)",
+            f"{kph(mph)}kmph ({mph}mph)",
+            f"at {mph} MPH",
+        )
+    )
+    return text, mph
+
+
+def lane(rng: Random, leg: Leg, number: int | None, xb: str) -> str:
+    """The lane's name: by side, number, direction or use."""
+    lanes, use = max(leg.lanes_in, 1), ""
+    if leg.turns_in and number:
+        use = leg.turns_in[number - 1]
+    if use in ("left", "right") and rng.random() < 0.85:
+        return rng.choice(
+            (
+                f"{xb} {use}-turn lane",
+                f"{use} turn lane",
+                f"{use}-turn lane",
+                f"{xb} {use} turn lane",
+                f"dedicated {use} turn lane",
+            )
+        )
+    through = sum("through" in u for u in leg.turns_in)
+    if use == "through" and through == 1 and rng.random() < 0.4:
+        return rng.choice((f"{xb} through-lane", "through lane", f"{xb} through lane"))
+    if lanes == 1 or number is None:
+        return rng.choice((f"{xb} lane", f"{xb} lane", f"{xb} travel lane", "only lane"))
+    names = [
+        f"lane {NUMBERS[number]}",
+        f"{ORDINALS[number]} travel lane",
+        f"{SHORT_ORDINALS[number]} travel lane",
+        f"lane {number}",
+        f"{ORDINALS[number]} lane",
+    ]
+    if number == 1:
+        names += ["right lane", f"right {xb} lane", "right travel lane", "curb lane", "far right lane"] * 2
+    elif number == lanes and use != "left":
+        names += ["left lane", f"left {xb} lane", "left travel lane", "passing lane", "inside lane"] * 2
+    elif lanes == 3:
+        names += ["middle lane", "center lane", f"middle {xb} lane"] * 3
+    return rng.choice(names)
+
+
+def junction(rng: Random, crash: Crash) -> str:
+    """`a T-intersection`, `a four-leg intersection`, or the plain word."""
+    if crash.layout == "four":
+        return "a " + rng.choice(
+            (
+                "four-leg intersection",
+                "four-leg intersection",
+                "four-way intersection",
+                "4-way intersection",
+                "four-legged intersection",
+                "4-leg intersection",
+                "four leg intersection",
+            )
+        )
+    return "a " + rng.choice(
+        (
+            "T-intersection",
+            "T-intersection",
+            "T-intersection",
+            "T intersection",
+            '"T" intersection',
+            "t-intersection",
+            "three-leg intersection",
+            "three-way intersection",
+            "three-legged intersection",
+            "type T intersection",
+        )
+    )
+
+
+def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str) -> str:
+    """The bracket that tells lanes each way: (two lanes northbound, center turn lane, two lanes southbound)."""
+    to, fro = lane_list(rng, leg, xb), lane_list(rng, back, yb)
+    middle = (
+        "center turn lane, "
+        if leg.twltl
+        else {"grass": "grass median, ", "raised": "raised median, ", "barrier": "concrete barrier, "}.get(
+            leg.median, ""
+        )
+    )
+    parts = [p for p in (to, fro) if p]
+    return f"({parts[0]}, {middle}{parts[1]})" if len(parts) == 2 else f"({parts[0]})"
+
+
+def lane_list(rng: Random, leg: Leg, xb: str) -> str:
+    """`one northbound left-turn lane, two northbound through lanes`."""
+    if not leg.lanes_in:
+        return ""
+    left, right = leg.turns_in.count("left"), leg.turns_in.count("right")
+    plain = leg.lanes_in - left - right
+    parts = [f"one {xb} left-turn lane"] * bool(left)
+    if plain:
+        word = "through-lane" if leg.turns_in and rng.random() < 0.5 else "lane"
+        parts.append(
+            rng.choice(
+                (
+                    f"{NUMBERS[plain]} {xb} {word}",
+                    f"{NUMBERS[plain]} {word}{'s' * (plain > 1)} {xb}",
+                    f"{NUMBERS[plain]} {xb} {word}{'s' * (plain > 1)}",
+                )
+            )
+        )
+    parts += [f"one {xb} right-turn lane"] * bool(right)
+    return ", ".join(parts)
+
+
+def person(rng: Random) -> dict[str, str]:
+    """Age, sex and pronouns of an occupant."""
+    age, male = rng.randint(16, 88), rng.random() < 0.5
+    form = rng.choice(("{}-year-old", "{}-year-old", "{}-year old", "{} year old"))
+    return {
+        "age": form.format(age), "sex": "male" if male else "female", "He": "He" if male else "She",
+        "he": "he" if male else "she", "his": "his" if male else "her",
+    }  # fmt: skip

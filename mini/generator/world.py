@@ -1,0 +1,104 @@
+"""What the generator knows of one crash before it is told: roads, actors, contacts, conditions.
+
+Bearings are indices 0..7 clockwise from north. A leg's bearing says where it lies seen from the hub, so an
+actor on leg b heads towards b + 4. Plain data; knows no text, no drawing and no JSON.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from random import Random
+
+COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
+WORDS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+TURN_OF = {"left": 2, "right": -2, "through": 4}
+"""Leg taken from leg b: b + TURN_OF[turn]."""
+
+
+@dataclass
+class Leg:
+    """One road end at the hub; the fields are those of the answer."""
+
+    bearing: int
+    lanes_in: int = 1
+    lanes_out: int = 1
+    turns_in: list[str] = field(default_factory=list)
+    twltl: bool = False
+    median: str = "none"
+    kind: str = "road"
+    control: str = "none"
+    curve: str = "none"
+    limit: int | None = None
+
+
+@dataclass
+class Access:
+    """A driveway or side road off a leg."""
+
+    leg: int
+    side: str
+    distance_m: int
+    kind: str = "driveway"
+
+
+@dataclass
+class Actor:
+    """A road user: `leg` it comes from, `out` the leg it takes or means to take."""
+
+    id: str
+    kind: str
+    leg: int
+    out: int | None
+    maneuver: str
+    lane: int | None = None
+    speed: int | None = None
+    model: str = ""
+    purpose: str = ""
+    """Why it stands or slows: "light", "turn_left", "turn_right", "traffic", "sign" or nothing."""
+
+    @property
+    def heading(self) -> int:
+        """Where it drives, as a bearing index."""
+        return (self.leg + 4) % 8
+
+
+@dataclass
+class Contact:
+    """striker and struck are indices into the actors."""
+
+    striker: int
+    struck: int
+    striker_area: str
+    struck_area: str
+
+
+@dataclass
+class Crash:
+    """One crash in full; what is told of it is decided later."""
+
+    config: str
+    layout: str
+    main: int
+    """Bearing of one leg of the main road; the other is main + 4."""
+    legs: list[Leg]
+    actors: list[Actor]
+    contacts: list[Contact]
+    light: str
+    weather: str
+    surface: str
+    accesses: list[Access] = field(default_factory=list)
+    area_word: str = "urban"
+    one_way: bool = False
+
+    def leg(self, bearing: int) -> Leg | None:
+        """The leg at a bearing, if there is one."""
+        return next((leg for leg in self.legs if leg.bearing == bearing % 8), None)
+
+    def is_main(self, bearing: int) -> bool:
+        """Whether a leg belongs to the main road."""
+        return bearing % 4 == self.main % 4
+
+
+def pick(rng: Random, weights: dict[str, float]) -> str:
+    """One key, by weight."""
+    return rng.choices(list(weights), list(weights.values()))[0]

@@ -1,0 +1,262 @@
+"""One crash to a narrative: which sentences, in which order, with which words, and which facts they tell.
+
+`Writer.write()` returns the text; `told` then holds keys such as "heading.V1", "lanes.0" (road of bearings 0
+and 4), "limit.2", "areas.0", "light". Facts are told where a slot that holds them was really used.
+"""
+
+from __future__ import annotations
+
+from random import Random
+
+from mini.generator import clauses_motion as motion
+from mini.generator import words
+from mini.generator.clauses_noise import GROUPS
+from mini.generator.events import EventsMixin
+from mini.generator.grammar import choose, families, fill, sentence
+from mini.generator.mentions import Mentions
+from mini.generator.noise import join, slips
+from mini.generator.scene import SceneMixin
+from mini.generator.world import WORDS, Crash
+
+CIREN_ORDER = (
+    "approach",
+    "conditions",
+    "critical",
+    "avoid",
+    "impact",
+    "rest",
+    "tow",
+    "occupant",
+    "occupant",
+    "interview",
+)
+
+
+class Writer(SceneMixin, EventsMixin):
+    """State of one report while it is written."""
+
+    def __init__(self, rng: Random, crash: Crash, held_out: bool, length: float) -> None:
+        self.rng, self.crash, self.held_out, self.length = rng, crash, held_out, length
+        self.ciren = rng.random() < 0.45
+        self.mentions = Mentions(rng, crash, self.ciren)
+        self.told: set[str] = set()
+        self.stated: set[str] = set()
+        self.who = self.culprit()
+        self.roads_left = rng.random() < 0.85
+        """Whether the report tells lanes at all."""
+
+    # -------------------------------------------------------------- text
+    def write(self) -> str:
+        """The narrative."""
+        sentences, breaks = self._ciren() if self.ciren else self._nmvccs()
+        text = join(self.rng, sentences, breaks, squeeze=not self.ciren and self.rng.random() < 0.06)
+        return slips(self.rng, text, self.rng.choice((0.0, 0.0, 0.002, 0.006)))
+
+    def _ciren(self) -> tuple[list[str], list[int]]:
+        out = self._approaches()
+        if self.rng.random() < 0.6:
+            out += self._control_sentence(0.5)
+        out += self._conditions(0.94)
+        out += self.events()
+        out += (
+            self._noise("tow", 1.0)
+            + self._noise("occupant", 3.5)
+            + self._noise("interview", 0.4)
+            + self._noise("police", 0.2)
+        )
+        return out, [len(out) // 2] if self.rng.random() < 0.15 else []
+
+    def _nmvccs(self) -> tuple[list[str], list[int]]:
+        rng = self.rng
+        opening = self._opening() if rng.random() < 0.96 else []
+        scene = self._road_sentences() + self._control_sentence(0.6)
+        conditions = self._conditions(0.77)
+        head = opening + (scene + conditions if rng.random() < 0.7 else conditions + scene)
+        breaks = [len(head)]
+        approaches = self._approaches()
+        head = [*head, *self._noise("noncontact", 0.15), *approaches, *self.events()]
+        for index in range(min(len(self.crash.actors), 2)):
+            breaks.append(len(head))
+            head += self._about(index)
+        if rng.random() < 0.1:
+            head = head[1:] if not opening else head
+        return head, breaks
+
+    def _about(self, index: int) -> list[str]:
+        """The block on one vehicle: driver, interview, health, codes."""
+        out = (
+            self._noise("occupant", 1.2, index) + self._noise("interview", 1.6, index) + self._noise("tow", 0.6, index)
+        )
+        return (
+            out
+            + self._noise("health", 1.0, index)
+            + self._noise("codes", 2.6, index)
+            + self._noise("police", 0.5, index)
+        )
+
+    # -------------------------------------------------------------- parts, for depleted reports
+    def aftermath(self) -> list[str]:
+        """Only what came after: towing, occupants, interviews, codes."""
+        groups = ("tow", "occupant", "occupant", "health", "codes", "police", "tow", "interview")
+        return [text for group in groups for text in self._noise(group, 1.0)] or self._noise(
+            "tow", 2.0 / max(self.length, 0.1)
+        )
+
+    def place(self) -> list[str]:
+        """Only the place and the conditions."""
+        return self._opening() + self._road_sentences() + self._conditions(0.7)
+
+    def scene_and_approach(self) -> list[str]:
+        """Place and approaches."""
+        return (self._opening() if not self.ciren else []) + self._approaches()
+
+    # -------------------------------------------------------------- slots
+    def say(self, options: list[str], v: int = 0, w: int | None = None, **extra: str) -> str:
+        """One sentence of a role about actors v and w."""
+        clause = choose(self.rng, self.rng.choice(families(options, self.held_out)))
+        other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
+        return sentence(fill(clause, lambda slot: self._slot(slot, v, other, extra)))
+
+    def _slot(self, slot: str, v: int, w: int, extra: dict[str, str]) -> str:
+        if slot in extra:
+            return extra[slot]
+        if slot == "Vf":
+            text, kind = self.mentions.full(v)
+            self.told |= {f"kind.{self.id_of(v)}"} if kind else set()
+            return text
+        if slot in ("V", "W", "S", "T", "U"):
+            return self._mention(v if slot in ("V", "S") else w)
+        if slot in ("dir", "xb", "opp", "from", "lane", "W0", "side0", "surf0"):
+            return self._motion_slot(slot, v, w)
+        if slot in ("any4", "any8", "any8b", "anyside", "deg", "m", "k", "kk", "spd"):
+            return self._noise_slot(slot, v)
+        return self._scene_slot(slot, v)
+
+    def _mention(self, index: int) -> str:
+        if index not in self.mentions.introduced and self.rng.random() < 0.5:
+            text, kind = self.mentions.full(index)
+            self.told |= {f"kind.{self.id_of(index)}"} if kind else set()
+            return text
+        self.told |= {f"kind.{self.id_of(index)}"} if not self.id_of(index).startswith("V") else set()
+        return self.mentions.name(index)
+
+    def _motion_slot(self, slot: str, v: int, w: int) -> str:
+        actor = self.crash.actors[v]
+        if slot in ("dir", "xb", "from"):
+            self.told.add(f"heading.{actor.id}")
+        if slot == "dir":
+            return words.direction(self.rng, actor.heading, self.held_out)
+        if slot == "from":
+            return WORDS[actor.leg]
+        if slot == "lane":
+            leg = self.crash.leg(actor.leg)
+            self.told |= {f"lane.{actor.id}"}
+            return words.lane(self.rng, leg, actor.lane, words.bound(self.rng, actor.heading))  # type: ignore[arg-type]
+        bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
+        if bearing is not None:
+            return words.bound(self.rng, bearing)
+        return {
+            "W0": "vehicle",
+            "side0": self.rng.choice(("left", "right")),
+            "surf0": {"ice": "icy", "snow": "snowy"}.get(self.crash.surface, self.crash.surface),
+        }[slot]
+
+    def _noise_slot(self, slot: str, v: int) -> str:
+        rng = self.rng
+        if slot == "spd":
+            actor = self.crash.actors[v]
+            if not actor.speed or f"speed.{actor.id}" in self.told:
+                return rng.choice(("slowly", "at an unknown speed", "at normal speed"))
+            text, actor.speed = words.driver_speed(rng, actor.speed)
+            self.told.add(f"speed.{actor.id}")
+            return text
+        return {
+            "any4": rng.choice(WORDS[::2]),
+            "any8": rng.choice(WORDS),
+            "any8b": rng.choice(WORDS),
+            "anyside": rng.choice(("left", "right")),
+            "deg": str(rng.choice((45, 90, 180, 270, 30, 80))),
+            "m": str(rng.randint(5, 60)),
+            "k": rng.choice(("two", "three", "2", "3", "four")),
+            "kk": str(rng.randint(5, 60)),
+        }[slot]
+
+    def id_of(self, index: int) -> str:
+        return self.crash.actors[index].id
+
+    # -------------------------------------------------------------- noise
+    def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
+        """About mean * length sentences of a noise group."""
+        wanted = mean * self.length
+        count = int(wanted) + (self.rng.random() < wanted % 1)
+        vehicles = [i for i, a in enumerate(self.crash.actors) if a.id.startswith("V")]
+        out = []
+        for _ in range(count):
+            v = index if index in vehicles else self.rng.choice(vehicles)
+            others = [i for i in vehicles if i != v]
+            options = [c for c in GROUPS[group] if others or ("{W}" not in c and "Both" not in c)]
+            w = self.rng.choice(others) if others else v
+            out.append(self.say(options, v, w, **words.person(self.rng)))  # type: ignore[arg-type]
+        return out
+
+    # -------------------------------------------------------------- approach
+    def _approaches(self) -> list[str]:
+        actors = self.crash.actors
+        order = [i for i, a in enumerate(actors) if a.id.startswith("V")]
+        if self.rng.random() < 0.12:
+            self.rng.shuffle(order)
+        if not self.ciren and len(order) > 1 and self.rng.random() < 0.04:
+            order.pop()
+        out: list[str] = []
+        for place, index in enumerate(order):
+            out.append(self._approach(index, order[:place]))
+        if len(order) == 2 and self.rng.random() < 0.06:
+            out = [" ".join(out)]
+        return out
+
+    def _approach(self, index: int, before: list[int]) -> str:
+        actor = self.crash.actors[index]
+        ahead = next((i for i in before if self.crash.actors[i].leg == actor.leg), None)
+        options = {
+            "stopped": motion.APPROACH_STOPPED,
+            "parked": motion.APPROACH_PARKED,
+            "slowing": motion.APPROACH_SLOWING,
+        }.get(actor.maneuver)
+        if options:
+            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            return self.say(options, index, ahead, why=self._why(actor.purpose))
+        order = self._behind(index, ahead)
+        if order is not None and self.rng.random() < 0.6:
+            self.told |= {f"heading.{actor.id}", f"man.{actor.id}"}
+            return self.say(motion.SAME if order else motion.AHEAD, index, ahead)
+        if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
+            self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
+            return self.say(motion.APPROACH_CURVE, index, ahead)
+        return self.say(motion.APPROACH, index, ahead, appr=self._approaching(index, bool(before)))
+
+    def _behind(self, index: int, other: int | None) -> bool | None:
+        """Whether one drives behind the other in a rear-end crash: the striker does."""
+        for contact in self.crash.contacts if self.crash.config == "rear_end" else ():
+            if {contact.striker, contact.struck} == {index, other}:
+                return contact.striker == index
+        return None
+
+    def _why(self, purpose: str) -> str:
+        if not purpose or self.rng.random() < 0.15:
+            return ""
+        return " " + self._option(motion.WHY[purpose])
+
+    def _option(self, bracket: str) -> str:
+        return self.rng.choice(families(bracket.strip("[]").split("|"), self.held_out))
+
+    def _approaching(self, index: int, later: bool) -> str:
+        """What the vehicle comes to and means to do."""
+        rng, actor = self.rng, self.crash.actors[index]
+        text = ""
+        if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren else 0.4):
+            place = "the same intersection" if later else self.scene_junction()
+            text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
+        if actor.maneuver in motion.INTENT and rng.random() < 0.3:
+            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            text += (", " if text else " ") + self._option(motion.INTENT[actor.maneuver])
+        return text

@@ -1,0 +1,74 @@
+"""A crash diagram as the model sees it: cropped, fitted to a grid of patches, thin lines kept dark.
+
+Ink is averaged and then raised to a power below one, since a one-pixel line would fade away when a drawing of
+1300 pixels shrinks to 224. Two further channels hold the place, x and y. Needs Pillow and numpy only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+PATCH = 14
+GRIDS = ((16, 16), (12, 20), (20, 12), (10, 24), (24, 10), (8, 32), (32, 8))
+"""Rows and columns of patches; at most 256 patches, 64 tokens."""
+GAMMA = 0.55
+Floats = NDArray[np.float32]
+
+
+def crop_box(ink: NDArray[np.uint8]) -> tuple[int, int, int, int]:
+    """The part of a drawing that holds ink, with a small margin; (left, top, right, bottom)."""
+    rows, columns = np.flatnonzero(ink.max(axis=1) > 60), np.flatnonzero(ink.max(axis=0) > 60)
+    height, width = ink.shape
+    if not len(rows) or not len(columns):
+        return 0, 0, width, height
+    margin = max(2, round(0.01 * max(height, width)))
+    return (max(0, int(columns[0]) - margin), max(0, int(rows[0]) - margin), min(width, int(columns[-1]) + margin + 1),
+            min(height, int(rows[-1]) + margin + 1))  # fmt: skip
+
+
+def fit_grid(width: int, height: int) -> tuple[int, int]:
+    """The grid whose shape is nearest to a picture's."""
+    return min(GRIDS, key=lambda g: abs(np.log(g[1] / g[0]) - np.log(width / height)))
+
+
+def look(image: Image.Image) -> tuple[Floats, tuple[int, int]]:
+    """Channels (5, H, W) and the grid of patches (rows, columns)."""
+    rgb = image.convert("RGB")
+    gray = 255 - np.asarray(rgb.convert("L"))
+    left, top, right, bottom = crop_box(gray)
+    rgb = rgb.crop((left, top, right, bottom))
+    rows, columns = fit_grid(*rgb.size)
+    width, height = columns * PATCH, rows * PATCH
+    scale = min(width / rgb.width, height / rgb.height)
+    size = (max(1, round(rgb.width * scale)), max(1, round(rgb.height * scale)))
+    small = rgb.resize(size, Image.Resampling.BOX if scale < 1 else Image.Resampling.BILINEAR)
+    sheet = np.zeros((3, height, width), np.float32)
+    at_y, at_x = (height - size[1]) // 2, (width - size[0]) // 2
+    ink = 1 - np.asarray(small, np.float32).transpose(2, 0, 1) / 255
+    sheet[:, at_y : at_y + size[1], at_x : at_x + size[0]] = ink**GAMMA
+    return np.concatenate((sheet * 2 - 0.3, place(height, width))), (rows, columns)
+
+
+def place(height: int, width: int) -> Floats:
+    """The two place channels, -1 to 1 along the longer side."""
+    longest = max(height, width) / 2
+    y = (np.arange(height, dtype=np.float32) - height / 2) / longest
+    x = (np.arange(width, dtype=np.float32) - width / 2) / longest
+    return np.stack((np.broadcast_to(x, (height, width)), np.broadcast_to(y[:, None], (height, width))))
+
+
+def patches(channels: Floats, grid: tuple[int, int]) -> Floats:
+    """Rows (rows * columns, 5 * 14 * 14) in the order that the vision tower merges them: blocks of 2 x 2."""
+    rows, columns = grid
+    cut = channels.reshape(-1, rows // 2, 2, PATCH, columns // 2, 2, PATCH)
+    return np.ascontiguousarray(cut.transpose(1, 4, 2, 5, 0, 3, 6)).reshape(rows * columns, -1)
+
+
+def places(grid: tuple[int, int]) -> NDArray[np.int64]:
+    """Row and column of each patch in that order, (rows * columns, 2)."""
+    rows, columns = grid
+    index = np.stack(np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij"), axis=-1)
+    cut = index.reshape(rows // 2, 2, columns // 2, 2, 2)
+    return cut.transpose(0, 2, 1, 3, 4).reshape(-1, 2)

@@ -1,0 +1,259 @@
+"""A report's diagram: view, roads, vehicles at their poses, north arrow, captions, scan.
+
+Everything follows from the report's seed. What a drawing tells is in `generator.targets.drawn_facts`; speeds and
+names are only captions, too small to read at the size that the model sees.
+"""
+
+from __future__ import annotations
+
+import math
+from random import Random
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageFilter
+
+from mini.generator.report import Report
+from mini.generator.world import Crash
+from mini.renderer.lines import Ground, Points
+from mini.renderer.pen import BLACK, Color, Pen
+from mini.renderer.poses import Pose, Stage, Track, corners
+from mini.renderer.road_marks import RoadMarks
+
+COLORS: dict[int, tuple[Color, ...]] = {
+    1: ((230, 20, 20), (240, 15, 40), (190, 15, 20), (235, 40, 90)),
+    2: ((200, 200, 200), (190, 190, 190), (35, 130, 190), (10, 20, 210), (30, 160, 190)),
+    3: ((15, 140, 50), (200, 200, 200), (30, 200, 60), (230, 180, 30)),
+    4: ((230, 180, 30), (150, 60, 180)),
+    5: ((150, 60, 180),),
+}
+NOTES = (
+    "Speed limit {n} mph",
+    "Speed Limit - {k} kmph ({n} mph)",
+    "posted speed limit {n} mph ({k} kph)",
+    "FRPs not supported by evidence",
+    "No physical evidence",
+    "POI & FRPs not supported by evidence",
+    "V1 - {y} Ford Taurus, 4-door sedan",
+    "V2 - {y} Jeep, 4-door utility",
+    "Not to scale",
+    "paved shoulder",
+    "gravel",
+    "Lawn",
+)
+
+
+def draw_report(report: Report) -> Image.Image:
+    """The drawing of a report, RGB."""
+    rng = Random(report.seed * 7 + 3)
+    crash = report.crash
+    pen, ground = _sheet(rng, crash)
+    tracks = Stage(rng, crash, ground, rng.uniform(1.0, 1.45)).tracks()
+    _aim(rng, pen, tracks)
+    marks = RoadMarks(rng, pen, crash, ground)
+    marks.draw(arrows=rng.random() < 0.85, signs="control" in report.drawn)
+    _vehicles(rng, pen, tracks)
+    _north(rng, pen)
+    _captions(rng, pen)
+    return scan(rng, pen.image)
+
+
+def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
+    """View and ground; plain roads get wide sheets along the road, junctions nearly square ones."""
+    plain = len(crash.legs) == 2
+    turn = math.radians(rng.choices((0, 90, -90, 180, rng.uniform(-60, 60)), (62, 16, 12, 4, 6))[0])
+    half = rng.uniform(21, 36) if not plain else rng.uniform(22, 48)
+    wide = max(leg.lanes_in + leg.lanes_out for leg in crash.legs)
+    half += 2.0 * wide
+    lengths = {leg.bearing: half * rng.uniform(0.85, 1.5) for leg in crash.legs}
+    curved = any(leg.curve != "none" for leg in crash.legs)
+    ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0)
+    long = int(rng.uniform(400, 540))
+    if plain and not curved:
+        direction = math.radians(90 - 45 * crash.main) + turn
+        short = int(long * rng.uniform(0.3, 0.75))
+        size = (
+            (long, short)
+            if abs(math.cos(direction)) > 0.6
+            else (short, long)
+            if abs(math.cos(direction)) < 0.4
+            else (long, long)
+        )
+    else:
+        size = (long, int(long * rng.uniform(0.65, 1.0)))
+        size = size if rng.random() < 0.75 else size[::-1]
+    scale = max(size) / (2 * half) if plain else min(size) / (2 * half) * rng.uniform(1.0, 1.15)
+    return Pen(rng, *size, scale, turn, (0.0, 0.0)), ground
+
+
+def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
+    """Center the sheet between the hub and the impact, so that both are on it."""
+    at = [track.poses[track.contact] for track in tracks]
+    x, y = sum(p.x for p in at) / len(at), sum(p.y for p in at) / len(at)
+    room = 0.08 * min(pen.image.size) / pen.scale
+    pen.center = (0.45 * x + rng.uniform(-room, room), 0.45 * y + rng.uniform(-room, room))
+
+
+# ------------------------------------------------------------------ vehicles
+def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> None:
+    style = rng.choice(("box", "box", "icon", "icon", "plain"))
+    arrows, labels = rng.random() < 0.55, rng.random() < 0.9
+    order = list(tracks)
+    rng.shuffle(order)
+    for track in order:
+        color = _color(rng, track)
+        for i, pose in enumerate(track.poses):
+            if i and arrows and i <= track.contact:
+                _link(pen, track.poses[i - 1], pose, track.size[0])
+            ghost = style == "icon" and i != track.contact and rng.random() < 0.3
+            _vehicle(rng, pen, track, pose, color, style, labels, ghost)
+    if rng.random() < 0.12 and tracks:
+        x, y = pen.px(np.array([[tracks[0].poses[tracks[0].contact].x, tracks[0].poses[tracks[0].contact].y]]))[0]
+        pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
+        pen.draw.line([(x, y - 8), (x, y + 8)], fill=BLACK, width=2)
+
+
+def _color(rng: Random, track: Track) -> Color:
+    if not track.actor.id.startswith("V"):
+        return (
+            rng.choice(((90, 60, 20), (20, 110, 40), (20, 20, 20)))
+            if track.actor.kind == "object"
+            else rng.choice(((250, 150, 30), (20, 20, 20), (150, 30, 160)))
+        )
+    if rng.random() < 0.05:
+        return (255, 255, 255)
+    return rng.choice(COLORS[int(track.actor.id[1:])])
+
+
+def _link(pen: Pen, before: Pose, after: Pose, length: float) -> None:
+    a, b = pen.px(np.array([(before.x, before.y), (after.x, after.y)]))
+    gap = float(np.hypot(*(b - a)))
+    margin = length * pen.scale * 0.55
+    if gap > 2.6 * margin:
+        u = (b - a) / gap
+        pen.arrow(a + u * margin, b - u * margin, width=1 if pen.scale < 6 else 2, head=max(6.0, 1.1 * pen.scale))
+
+
+def _vehicle(
+    rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, style: str, label: bool, ghost: bool
+) -> None:
+    kind, size = track.actor.kind, track.size
+    if kind in ("object", "pedestrian"):
+        _round(pen, pose, size, color, track.actor.id if kind == "pedestrian" else rng.choice(("", "tree", "pole")))
+        return
+    light: Color = (235, 235, 235)
+    fill = light if ghost else color
+    if kind == "truck":
+        _truck(pen, pose, size, fill)
+    else:
+        pen.polygon(corners(pose, size), fill, BLACK, 1)
+    if style == "icon":
+        for along in (0.16, -0.3):
+            _part(pen, pose, size, along, 0.1, 0.72, (255, 255, 255) if fill != (255, 255, 255) else (120, 120, 120))
+    if style == "box" or kind in ("motorcycle", "bicycle"):
+        _triangle(pen, pose, size, (255, 255, 255) if sum(fill) < 650 else BLACK)
+    if label:
+        x, y = pen.px(
+            np.array(
+                [(pose.x - 0.12 * size[0] * math.cos(pose.heading), pose.y - 0.12 * size[0] * math.sin(pose.heading))]
+            )
+        )[0]
+        ink = (255, 255, 255) if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
+        angle = math.degrees(pose.heading + pen.turn)
+        pen.text(
+            x,
+            y,
+            track.actor.id,
+            max(7, int(size[1] * 0.62 * pen.scale)),
+            ink,
+            angle if abs(math.cos(math.radians(angle))) > 0.2 else 90,
+        )
+
+
+def _part(
+    pen: Pen, pose: Pose, size: tuple[float, float], along: float, length: float, width: float, color: Color
+) -> None:
+    x, y = pose.x + along * size[0] * math.cos(pose.heading), pose.y + along * size[0] * math.sin(pose.heading)
+    pen.polygon(corners(Pose(x, y, pose.heading), (size[0] * length, size[1] * width)), color, BLACK, 1)
+
+
+def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> None:
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    shape = np.array([(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]) * size
+    pen.polygon(shape @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y), color, None)
+
+
+def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
+    """Tractor and trailer."""
+    _part(pen, pose, size, 0.4, 0.2, 1.0, fill)
+    _part(pen, pose, size, -0.12, 0.76, 1.0, fill)
+
+
+def _round(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: str) -> None:
+    x, y = pen.px(np.array([(pose.x, pose.y)]))[0]
+    r = max(5.0, size[0] * pen.scale * 0.6)
+    pen.draw.ellipse((x - r, y - r, x + r, y + r), fill=color, outline=BLACK)
+    if text:
+        pen.text(x, y + r + 7, text, 11)
+
+
+# ------------------------------------------------------------------ around
+def _north(rng: Random, pen: Pen) -> None:
+    """An arrow with an N; missing now and then where north is up."""
+    if abs(pen.turn) < 0.01 and rng.random() < 0.08:
+        return
+    w, h = pen.image.size
+    length = rng.uniform(26, 46)
+    x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94))) * w
+    y = rng.choice((rng.uniform(0.08, 0.25), rng.uniform(0.75, 0.92))) * h
+    x, y = min(max(x, length), w - length), min(max(y, length), h - length)
+    up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
+    center = np.array([x, y])
+    pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
+    pen.arrow(center - up * length / 2, center + up * length * 0.3, width=rng.choice((2, 3)), head=rng.uniform(9, 14))
+    place = center + up * length * (0.62 if rng.random() < 0.7 else -0.7)
+    pen.text(*place, "N", int(rng.uniform(14, 22)))
+
+
+def _captions(rng: Random, pen: Pen) -> None:
+    w, h = pen.image.size
+    n = rng.choice((25, 35, 45, 55, 70))
+    for _ in range(rng.choice((0, 1, 1, 2, 3))):
+        text = rng.choice(NOTES).format(n=n, k=round(n * 1.609), y=rng.randint(1990, 2007))
+        pen.text(
+            rng.uniform(0.2, 0.8) * w,
+            rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h,
+            text,
+            rng.choice((9, 10, 12, 14)),
+        )
+    if rng.random() < 0.15:
+        x, y = rng.uniform(0.1, 0.9) * w, rng.uniform(0.1, 0.9) * h
+        pen.draw.line([(x, y), (x + rng.uniform(-60, 60), y + rng.uniform(-40, 40))], fill=BLACK, width=1)
+
+
+def scan(rng: Random, image: Image.Image) -> Image.Image:
+    """What copying does: gray, blur, low resolution, skew, specks; most drawings are clean."""
+    if rng.random() < 0.12:
+        image = image.convert("L").convert("RGB")
+    if rng.random() < 0.15:
+        factor = rng.uniform(0.45, 0.8)
+        small = image.resize((int(image.width * factor), int(image.height * factor)), Image.Resampling.BILINEAR)
+        image = small.resize(image.size, Image.Resampling.BILINEAR)
+    if rng.random() < 0.12:
+        image = image.filter(ImageFilter.GaussianBlur(rng.uniform(0.4, 1.1)))
+    if rng.random() < 0.12:
+        image = image.rotate(rng.uniform(-2.5, 2.5), fillcolor="white", resample=Image.Resampling.BILINEAR)
+    if rng.random() < 0.1:
+        image = _specks(rng, image)
+    return image
+
+
+def _specks(rng: Random, image: Image.Image) -> Any:
+    noise = np.random.default_rng(rng.randrange(2**32))
+    pixels = np.asarray(image, np.int16) + noise.normal(0, rng.uniform(3, 14), (image.height, image.width, 1)).astype(
+        np.int16
+    )
+    return Image.fromarray(np.clip(pixels, 0, 255).astype(np.uint8))
+
+
+__all__ = ["Points", "draw_report", "scan"]

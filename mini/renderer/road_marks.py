@@ -1,0 +1,227 @@
+"""Roads on paper: edges with rounded corners, center and lane lines, turn arrows, medians, signs."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter
+
+from mini.generator.world import Crash
+from mini.renderer.lines import STEP, Band, Ground
+from mini.renderer.pen import Pen
+
+TURN_STEPS = {
+    "left": ("left",),
+    "right": ("right",),
+    "through": ("through",),
+    "left_through": ("left", "through"),
+    "through_right": ("through", "right"),
+    "left_right": ("left", "right"),
+}
+
+
+def outline(area: Image.Image, width: int) -> Image.Image:
+    """The ring of `width` pixels around a mask (shifts of an array: far faster than a rank filter)."""
+    inside = np.asarray(area) > 0
+    grown = inside
+    for _ in range(width):
+        wider = grown.copy()
+        wider[1:] |= grown[:-1]
+        wider[:-1] |= grown[1:]
+        wider[:, 1:] |= grown[:, :-1]
+        wider[:, :-1] |= grown[:, 1:]
+        grown = wider
+    return Image.fromarray((grown & ~inside).astype(np.uint8) * 255)
+
+
+class RoadMarks:
+    """Draws one crash's roads with one style."""
+
+    def __init__(self, rng: Random, pen: Pen, crash: Crash, ground: Ground) -> None:
+        self.rng, self.pen, self.crash, self.ground = rng, pen, crash, ground
+        self.edge = rng.choice((1, 2, 2, 3))
+        self.mark = rng.choice((1, 2, 2))
+        self.dash = rng.uniform(2.0, 4.0)
+        self.gap = rng.uniform(2.0, 5.0)
+        self.corner = rng.uniform(1.5, 5.5)
+        self.shoulders = rng.choice((0, 0, 1, 1, 2)) if ground.plain else rng.choice((0, 0, 0, 1))
+        self.center = rng.choice(("double", "double", "dashed", "solid", "solid_dashed"))
+
+    def draw(self, arrows: bool, signs: bool) -> None:
+        """Everything, edges first."""
+        self._edges()
+        for band in self.ground.bands.values():
+            start = self.ground.setback(band.leg.bearing, self.corner * 0.8)
+            self._center(band, start)
+            self._lanes(band, start)
+            if arrows:
+                self._arrows(band, start)
+        if signs:
+            self._signs()
+
+    # -------------------------------------------------------------- edges
+    def _edges(self) -> None:
+        pen, bands = self.pen, list(self.ground.bands.values())
+        area = Image.new("L", pen.image.size, 0)
+        paint = ImageDraw.Draw(area)
+        for band in bands:
+            self._fill(paint, band, band.right, band.left, band.length + 60, 255)
+        for access in self.crash.accesses:
+            self._fill_access(paint, access)
+        radius = self.corner * pen.scale * 0.6
+        if not self.ground.plain:
+            area = area.filter(ImageFilter.BoxBlur(radius)).point(lambda v: 255 if v > 128 else 0)
+        pen.image.paste((0, 0, 0), (0, 0), outline(area, self.edge))
+        for band in bands:
+            if band.length < 500:
+                self._cut(band)
+        if self.shoulders:
+            self._shoulders(bands)
+
+    def _fill(
+        self, paint: ImageDraw.ImageDraw, band: Band, right: float, left: float, length: float, value: int
+    ) -> None:
+        s = np.arange(-0.5, length, 1.0 if band.leg.curve != "none" else 4.0)
+        shape = np.concatenate((band.at(s, right), band.at(s, left)[::-1]))
+        paint.polygon([tuple(p) for p in self.pen.px(shape)], fill=value)
+
+    def _cut(self, band: Band) -> None:
+        """A leg ends where its drawing ends: white beyond."""
+        if band.length > 80:
+            return
+        s = np.arange(band.length, band.length + 70, 4.0)
+        shape = np.concatenate((band.at(s, band.right + 2), band.at(s, band.left - 2)[::-1]))
+        self.pen.draw.polygon([tuple(p) for p in self.pen.px(shape)], fill="white")
+
+    def _shoulders(self, bands: list[Band]) -> None:
+        """Lines beside the travel lanes: paved and gravel shoulders, as most investigators draw them."""
+        places = [self.rng.uniform(0.8, 3.2)]
+        places += [places[0] + self.rng.uniform(0.8, 3.0)] * (self.shoulders - 1)
+        for band in bands:
+            s = np.arange(self.ground.setback(band.leg.bearing, self.corner + 1.5), band.length, 1.0)
+            if len(s) < 3 or band.leg.kind != "road":
+                continue
+            for wide in places:
+                self.pen.line(band.at(s, band.right + wide), width=self.mark)
+                self.pen.line(band.at(s, band.left - wide), width=self.mark)
+
+    def _fill_access(self, paint: ImageDraw.ImageDraw, access: object) -> None:
+        paint.polygon([tuple(p) for p in self.pen.px(self._access_box(access))], fill=255)
+
+    def _access_box(self, access: object) -> np.ndarray:  # type: ignore[type-arg]
+        band = self.ground.bands[access.leg]  # type: ignore[attr-defined]
+        place, wide = float(access.distance_m), 3.0 if access.kind == "driveway" else 3.8  # type: ignore[attr-defined]
+        place = min(place, band.length - 6)
+        sign = 1 if access.side == "right" else -1  # type: ignore[attr-defined]
+        near, far = 0.0, (band.right if sign > 0 else -band.left) + 14
+        a, b = band.at(place - wide, sign * near)[0], band.at(place + wide, sign * near)[0]
+        c, d = band.at(place + wide, sign * far)[0], band.at(place - wide, sign * far)[0]
+        return np.array([a, b, c, d])
+
+    # -------------------------------------------------------------- lines
+    def _center(self, band: Band, start: float) -> None:
+        leg, pen = band.leg, self.pen
+        if not leg.lanes_in * leg.lanes_out or leg.kind != "road":
+            return
+        s = np.arange(start, band.length, STEP)
+        if len(s) < 3:
+            return
+        if leg.twltl:
+            for side in (1, -1):
+                pen.line(band.at(s, side * band.middle / 2), width=self.mark)
+                pen.line(band.at(s, side * (band.middle / 2 - 0.6)), width=self.mark, dash=self.dash, gap=self.gap)
+        elif leg.median == "none":
+            self._center_line(band, s)
+        else:
+            self._median(band, s)
+
+    def _center_line(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+        pen, wide = self.pen, max(0.35, 1.6 / self.pen.scale)
+        if self.center == "dashed" and band.leg.lanes_in == 1:
+            pen.line(band.at(s, 0), width=self.mark, dash=self.dash, gap=self.gap)
+        elif self.center in ("solid", "dashed"):
+            pen.line(band.at(s, 0), width=self.mark + 1)
+        else:
+            pen.line(band.at(s, wide), width=self.mark)
+            dash = self.dash if self.center == "solid_dashed" and band.leg.lanes_in == 1 else 0.0
+            pen.line(band.at(s, -wide), width=self.mark, dash=dash, gap=self.gap)
+
+    def _median(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+        pen, kind = self.pen, band.leg.median
+        for side in (1, -1):
+            pen.line(band.at(s, side * band.middle / 2), width=self.mark)
+        if kind == "barrier":
+            for k in range(0, len(s) - 1, 6):
+                pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k], -band.middle / 2))), width=1)
+        elif kind in ("raised", "painted"):
+            for k in range(0, len(s) - 8, 8):
+                pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k + 6], -band.middle / 2))), width=1)
+            if kind == "raised":
+                pen.line(band.at(s, 0), width=self.mark + 1)
+        else:
+            self._tufts(band, s)
+
+    def _tufts(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+        for k in range(2, len(s) - 2, 9):
+            x, y = self.pen.px(band.at(s[k], self.rng.uniform(-0.3, 0.3) * band.middle))[0]
+            self.pen.draw.line([(x - 3, y + 3), (x, y - 3), (x + 3, y + 3)], fill=(60, 130, 60), width=1)
+
+    def _lanes(self, band: Band, start: float) -> None:
+        leg, pen = band.leg, self.pen
+        s = np.arange(start, band.length, STEP)
+        if len(s) < 3 or leg.kind != "road":
+            return
+        for k in range(1, leg.lanes_in):
+            uses = (leg.turns_in[k - 1], leg.turns_in[k]) if leg.turns_in else ("", "")
+            solid = uses[0] == "right" or uses[1] == "left"
+            pen.line(
+                band.at(s, band.right - k * band.lane), width=self.mark, dash=0.0 if solid else self.dash, gap=self.gap
+            )
+        for k in range(1, leg.lanes_out):
+            pen.line(band.at(s, band.left + k * band.lane), width=self.mark, dash=self.dash, gap=self.gap)
+        if self.rng.random() < 0.25 and leg.control in ("stop", "signal") and not self.ground.plain:
+            pen.line(np.concatenate((band.at(start, band.right), band.at(start, band.middle / 2))), width=self.mark + 2)
+
+    # -------------------------------------------------------------- arrows, signs
+    def _arrows(self, band: Band, start: float) -> None:
+        for k, use in enumerate(band.leg.turns_in, 1):
+            place = min(start + self.rng.uniform(4, 9), band.length - 6)
+            for turn in TURN_STEPS.get(use, ()):
+                self._turn_arrow(band, place, band.lane_in(k), turn)
+
+    def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> None:
+        pen = self.pen
+        tail, knee = band.at(place + 4.2, lateral)[0], band.at(place + 1.2, lateral)[0]
+        side = {"left": -1.3, "right": 1.3, "through": 0.0}[turn]
+        tip = band.at(place - (1.5 if turn == "through" else 0.2), lateral + side)[0]
+        points = pen.px(np.array([tail, knee, tip]))
+        pen.draw.line([tuple(p) for p in points], fill=(0, 0, 0), width=self.mark, joint="curve")
+        pen.head(points[2], math.atan2(*(points[2] - points[1])[::-1]), max(6.0, 1.5 * pen.scale))
+
+    def _signs(self) -> None:
+        """Stop signs as red ovals or the word, signals as three lamps in the middle of the junction."""
+        pen, size = self.pen, max(9, int(2.2 * self.pen.scale))
+        style = self.rng.random()
+        for band in self.ground.bands.values():
+            control = band.leg.control
+            place = self.ground.setback(band.leg.bearing, self.corner)
+            x, y = pen.px(band.at(place, band.right + 2.6))[0]
+            if control == "stop":
+                if style < 0.6:
+                    pen.draw.ellipse((x - size, y - size * 0.6, x + size, y + size * 0.6), fill=(205, 40, 20))
+                    pen.text(x, y, "stop", max(7, int(size * 0.8)), (255, 255, 255))
+                else:
+                    pen.text(x, y, "Stop", size)
+            elif control == "yield":
+                pen.draw.polygon([(x - size, y - size), (x + size, y - size), (x, y + size)], outline=(200, 0, 0))
+            elif control in ("signal", "flashing"):
+                self._lamps(x, y, size, control)
+
+    def _lamps(self, x: float, y: float, size: int, control: str) -> None:
+        lamps = [(220, 30, 30), (240, 190, 0), (0, 160, 60)] if control == "signal" else [(220, 30, 30)]
+        r = max(3, size * 0.35)
+        self.pen.draw.rectangle((x - r - 2, y - r - 2, x + r + 2, y + (2 * len(lamps) - 1) * r + 2), fill=(40, 40, 40))
+        for k, color in enumerate(lamps):
+            self.pen.draw.ellipse((x - r, y - r + 2 * k * r, x + r, y + r + 2 * k * r), fill=color)

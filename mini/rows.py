@@ -1,0 +1,138 @@
+"""Reports to rows of tokens, and rows to padded batches.
+
+A row is evidence (narrative, then picture), the road token, the road answer, the scenario token, the behavior
+answer: one sequence that trains both queries. Knows no model and no optimizer.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from PIL import Image
+
+from mini import answers, picture
+from mini.generator.report import Report
+from mini.model import Batch
+from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
+
+Ints = NDArray[np.int64]
+MAX_TEXT = 640
+"""Tokens of narrative that a training row may have; longer ones are made anew, shorter."""
+
+
+@dataclass
+class Row:
+    """One training row; picks are places of value tokens with their weights."""
+
+    ids: list[int]
+    picks: list[tuple[int, float]]
+    patches: NDArray[np.float16] | None = None
+    grid: tuple[int, int] = (0, 0)
+    image_start: int = 0
+    pieces: list[tuple[str, str]] = field(default_factory=list)
+
+
+def evidence(coder: Coder, narrative: str, image: Image.Image | None) -> Row:
+    """The prompt without its task."""
+    row = Row(coder.text(narrative.strip()), [])
+    if image is not None:
+        channels, row.grid = picture.look(image)
+        row.patches = picture.patches(channels, row.grid).astype(np.float16)
+        row.image_start = len(row.ids) + 1
+        count = row.grid[0] * row.grid[1] // 4
+        row.ids += [coder.special[VISION_START], *[coder.special[IMAGE]] * count, coder.special[VISION_END]]
+    return row
+
+
+def road_ids(road: answers.Any) -> tuple[str, ...]:
+    """Ids of the roads of a layout, legs first."""
+    legs = [leg["bearing"] for leg in road["legs"]]
+    outer = [f"{a['leg']}_outer" for a in road["accesses"]]
+    sides = {"both": ("left", "right")}
+    ends = [f"{a['leg']}_access_{side}" for a in road["accesses"] for side in sides.get(a["side"], (a["side"],))]
+    return tuple(dict.fromkeys([*legs, *outer, *ends]))
+
+
+def training_row(coder: Coder, report: Report, image: Image.Image | None) -> Row:
+    """Evidence and both answers."""
+    row = evidence(coder, report.narrative, image)
+    _answer(coder, row, ROAD, answers.write(answers.road_walk(), report.road), report)
+    if report.behavior is not None:
+        walk = answers.behavior_walk(road_ids(report.road))
+        _answer(coder, row, SCENARIO, answers.write(walk, report.behavior), report)
+    return row
+
+
+def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], report: Report) -> None:
+    row.ids.append(coder.special[task])
+    for text, pick in pieces:
+        ids = coder.piece(text)
+        if pick is not None and len(pick.options) >= 1:
+            weight = report.weight(pick.path)
+            row.picks += [(len(row.ids) + i, weight) for i in range(len(ids))]
+        row.ids += ids
+
+
+def positions(row: Row) -> Ints:
+    """M-RoPE positions (3, L): text counts on, a picture spans its grid and moves on by its longer side."""
+    length = len(row.ids)
+    out = np.broadcast_to(np.arange(length), (3, length)).copy()
+    if row.patches is None:
+        return out
+    rows, columns = row.grid[0] // 2, row.grid[1] // 2
+    start, count = row.image_start, rows * columns
+    out[0, start : start + count] = start
+    out[1, start : start + count] = start + np.repeat(np.arange(rows), columns)
+    out[2, start : start + count] = start + np.tile(np.arange(columns), rows)
+    out[:, start + count :] += max(rows, columns) - count
+    return out
+
+
+def collate(rows: Sequence[Row], coder: Coder) -> Batch:
+    """A padded batch, pad on the right."""
+    longest = max(len(row.ids) for row in rows)
+    ids = np.full((len(rows), longest), coder.special[PAD])
+    place = np.zeros((3, len(rows), longest), np.int64)
+    picks, wanted, weights = [], [], []
+    for i, row in enumerate(rows):
+        n = len(row.ids)
+        ids[i, :n], place[:, i, :n] = row.ids, positions(row)
+        for at, weight in row.picks:
+            picks.append(i * longest + at - 1)
+            wanted.append(row.ids[at])
+            weights.append(weight)
+    return Batch(
+        torch.from_numpy(ids),
+        torch.from_numpy(place),
+        *_pictures(rows, longest),
+        torch.tensor(picks),
+        torch.tensor(wanted),
+        torch.tensor(weights),
+    )
+
+
+def _pictures(rows: Sequence[Row], longest: int) -> tuple[torch.Tensor, ...]:
+    """patches, grids, lengths, image_index, patch_index."""
+    seen = [(i, row) for i, row in enumerate(rows) if row.patches is not None]
+    most = max((len(row.patches) for _, row in seen), default=4)  # type: ignore[arg-type]
+    patches = np.zeros((len(seen), most, picture.PATCH**2 * 5), np.float32)
+    grids = np.zeros((len(seen), most, 2), np.int64)
+    places, tokens = [], []
+    for n, (i, row) in enumerate(seen):
+        count = len(row.patches)  # type: ignore[arg-type]
+        patches[n, :count], grids[n, :count] = row.patches, picture.places(row.grid)
+        places.append(i * longest + row.image_start + np.arange(count // 4))
+        tokens.append(n * (most // 4) + np.arange(count // 4))
+    lengths = np.array([len(row.patches) for _, row in seen], np.int64)  # type: ignore[arg-type]
+    flat = [np.concatenate(x) if x else np.zeros(0, np.int64) for x in (places, tokens)]
+    return tuple(torch.from_numpy(a) for a in (patches, grids, lengths, *flat))
+
+
+def compact(answer: answers.Any) -> str:
+    """An answer as it stands in the next query."""
+    return json.dumps(answer, separators=(",", ":"))

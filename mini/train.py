@@ -1,0 +1,297 @@
+"""Training: `python -m mini.train --out runs/mini --budget 3600` trains for an hour and can be called again.
+
+Imports torch, transformers, safetensors, numpy, Pillow and mini only. The folder holds `state.pt` (masters,
+optimizer, progress; replaced whole), `log.jsonl`, the tokenizer, and after every save an `export/` that
+transformers loads. Called again with the same folder it goes on where it stopped; the budget counts the
+seconds of all calls together, and the learning rate follows the budget.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from mini.export import export
+from mini.feed import Feed
+from mini.generator.report import make_report
+from mini.model import Forward, make_config, make_model
+from mini.muon import Optimizer
+from mini.ranks import Ranks
+from mini.rows import Row, collate
+from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
+
+TOKENIZER_BASE = 40_000_000
+
+
+@dataclass
+class Options:
+    """What one call is told."""
+
+    out: Path
+    budget: float
+    device: str = "cpu"
+    call: float = 1e9
+    """Seconds after which this call stops, whatever the budget."""
+    seed: int = 0
+    tokens: int = 3000
+    """Tokens of a batch of one rank, padding counted."""
+    workers: int = 1
+    threads: int = 1
+    """Of each rank."""
+    ranks: int = 2
+    rank: int = 0
+    size: str = "mini"
+    save_every: float = 150.0
+    max_steps: int = 10**9
+    total_steps: int = 0
+    """If given, progress is counted in steps rather than seconds: two runs are then equal to the bit."""
+    muon_lr: float = 0.015
+    adam_lr: float = 0.0025
+    texts: int = 6000
+    start: str = ""
+    """Exported weights to begin with (`mini/weights`), with fresh optimizer state."""
+    hold: float = 0.4
+    """Share of the budget with the full learning rate."""
+
+
+def schedule(progress: float, hold: float = 0.4) -> float:
+    """Learning rate over its peak: a short warm-up, constant to `hold` of the budget, then linear to 2 %."""
+    if progress < 0.01:
+        return 0.1 + 90 * progress
+    return 1.0 if progress < hold else max(0.02, 1 - 0.98 * (progress - hold) / (1 - hold))
+
+
+class Log:
+    """JSON lines, one a report."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def write(self, **values: Any) -> None:
+        """Append a line and show it."""
+        line = json.dumps({k: round(v, 5) if isinstance(v, float) else v for k, v in values.items()})
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+        sys.stderr.write(line + "\n")
+
+
+class Trainer:
+    """One run in one folder."""
+
+    def __init__(self, options: Options) -> None:
+        self.options = options
+        options.out.mkdir(parents=True, exist_ok=True)
+        torch.set_num_threads(options.threads)
+        torch.manual_seed(options.seed)
+        random.seed(options.seed)
+        np.random.seed(options.seed)
+        self.log = Log(options.out / "log.jsonl")
+        self.ranks = Ranks(options.rank, options.ranks, str((options.out / "meeting").resolve()))
+        self.tokenizer = self.make_tokenizer(options)
+        self.coder = Coder(self.tokenizer)
+        self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
+        self.forward = Forward(self.model)
+        self.answer_tokens = answer_tokens(self.coder)
+        self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr)
+        self.model.to(torch.bfloat16)
+        self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
+        self.pool_progress: float | None = None
+        self._resume()
+
+    @staticmethod
+    def make_tokenizer(options: Options) -> Any:
+        """The folder's tokenizer, trained first where there is none."""
+        folder = options.out / "tokenizer"
+        if options.start and not folder.is_dir():
+            load_tokenizer(Path(options.start)).save_pretrained(folder)
+        if not (folder / "tokenizer.json").is_file():
+            texts = (make_report(TOKENIZER_BASE + i, False, 0.7, {"text": 1.0}).narrative for i in range(options.texts))
+            train_tokenizer(texts).save_pretrained(folder)
+        return load_tokenizer(folder)
+
+    def _resume(self) -> None:
+        path = self.options.out / "state.pt"
+        if not path.is_file():
+            self._begin()
+            return
+        state = torch.load(path, map_location=self.options.device, weights_only=True)
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.spent, self.steps, self.rows, self.pool = (state[k] for k in ("spent", "steps", "rows", "pool"))
+        self.used, self.pool_progress = state.get("used", 0), state.get("pool_progress")
+        if not self.options.rank:
+            self.log.write(event="resumed", step=self.steps, seconds=self.spent)
+
+    def _begin(self) -> None:
+        """Fresh weights, or exported ones; from then on rows that those have not seen."""
+        if not self.options.start:
+            return
+        exported = type(self.model).from_pretrained(self.options.start, dtype=torch.float32, local_files_only=True)
+        found = dict(exported.named_parameters())
+        masters = self.optimizer.master
+        with torch.no_grad():
+            for key, value in found.items():
+                masters[key].copy_(value)
+        self.optimizer.publish()
+        self.pool += 100_000
+        self.log.write(event="begun with", folder=self.options.start, tensors=len(found))
+
+    def save(self) -> None:
+        """State and export, each replaced whole; the first rank's business."""
+        if self.options.rank:
+            return
+        path = self.options.out / "state.pt"
+        state = {
+            "optimizer": self.optimizer.state_dict(),
+            "spent": self.spent,
+            "steps": self.steps,
+            "rows": self.rows,
+            "pool": self.pool,
+            "used": self.used,
+            "pool_progress": self.pool_progress,
+        }
+        torch.save(state, path.with_suffix(".new"))
+        os.replace(path.with_suffix(".new"), path)
+        export(self.model, self.tokenizer, self.options.out / "export")
+
+    @property
+    def progress(self) -> float:
+        """Share of the budget that is spent."""
+        if self.options.total_steps:
+            return self.steps / self.options.total_steps
+        return self.spent / self.options.budget
+
+    def run(self) -> None:
+        """Train until the budget, the call or the steps are spent; saves at the end."""
+        options, begun = self.options, time.monotonic()
+        feed = Feed(
+            str(options.out / "tokenizer"), options.workers, self.pool + options.rank, options.ranks, self.pool_progress
+        )
+        saved, before, over = begun, self.spent, False
+        try:
+            for rows in self._batches(feed):
+                self.spent = before + time.monotonic() - begun
+                stop = self.progress >= 1 or time.monotonic() - begun > options.call or self.steps >= options.max_steps
+                self.spent, over = (number := self.ranks.from_first(self.spent, stop))[0], bool(number[1])
+                if over:
+                    break
+                self._step(rows)
+                if time.monotonic() - saved > options.save_every:
+                    self.save()
+                    saved = time.monotonic()
+        finally:
+            feed.close()
+        self.save()
+        self.ranks.close()
+
+    def _batches(self, feed: Feed) -> Iterator[list[Row]]:
+        """Batches without end; a resumed run passes over those of the first pool that were used before."""
+        skip = self.used
+        for number, made_at, rows in feed.pools(lambda: self.progress):
+            self.pool_progress = made_at
+            for index, batch in enumerate(batches(rows, self.options.tokens, number)):
+                if index >= skip:
+                    yield batch
+                    self.used = index + 1
+            self.pool, self.used, skip = number + self.options.ranks - self.options.rank, 0, 0
+
+    def _candidates(self, wanted: torch.Tensor) -> torch.Tensor:
+        """Answer tokens and a tenth of the others, which keeps those down at a tenth of the price."""
+        seeded = torch.Generator().manual_seed(self.steps)
+        others = torch.randint(len(self.tokenizer), (len(self.tokenizer) // 10,), generator=seeded)
+        return torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted)).unique()
+
+    def _step(self, rows: list[Row]) -> None:
+        batch = collate(rows, self.coder).to(self.options.device)
+        started = time.monotonic()
+        loss, right = self.forward.loss(batch, self._candidates(batch.wanted))
+        loss.backward()
+        self.ranks.average(self.model.parameters())
+        self.optimizer.step(schedule(self.progress, self.options.hold))
+        self.steps += 1
+        self.rows += len(rows) * self.options.ranks
+        if self.steps % 20 == 0 and not self.options.rank:
+            took = time.monotonic() - started
+            self.log.write(
+                step=self.steps,
+                seconds=self.spent,
+                rows=self.rows,
+                loss=float(loss.detach()),
+                right=float(right),
+                step_s=took,
+                batch=len(rows),
+                tokens=batch.ids.shape[1],
+            )
+
+
+def answer_tokens(coder: Coder) -> torch.Tensor:
+    """Tokens that answers are made of."""
+    texts = [*fragments(), *(str(n) for n in range(100)), ",", "]}", "}", ".0"]
+    return torch.tensor(sorted({i for text in texts for i in coder.piece(text)}))
+
+
+def batches(rows: list[Row], tokens: int, seed: int) -> Iterator[list[Row]]:
+    """Neighbors in length, as many as fit into `tokens`, in random order."""
+    groups: list[list[Row]] = [[]]
+    for row in rows:
+        if groups[-1] and (len(groups[-1]) + 1) * len(row.ids) > tokens:
+            groups.append([])
+        groups[-1].append(row)
+    random.Random(seed).shuffle(groups)
+    yield from groups
+
+
+def parse(arguments: list[str] | None = None) -> Options:
+    """Options from the command line; DEVICE and BUDGET in the environment are defaults."""
+    parser = argparse.ArgumentParser(prog="python -m mini.train", description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("runs/mini-train"))
+    parser.add_argument("--budget", type=float, default=float(os.environ.get("BUDGET", 3600)))
+    parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
+    for name in (
+        "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
+        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every",
+    ):  # fmt: skip
+        usual = getattr(Options, name)
+        parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)
+    return suited(Options(**vars(parser.parse_args(arguments))))
+
+
+def suited(options: Options) -> Options:
+    """On a GPU: one rank, many workers and large batches, unless told otherwise."""
+    if options.device.startswith("cuda"):
+        options.ranks = 1
+        options.workers = max(options.workers, (os.cpu_count() or 2) - 2)
+        options.tokens = options.tokens if options.tokens != Options.tokens else 16_000
+    return options
+
+
+def main() -> None:
+    """Entry point: the first rank starts the others."""
+    options = parse()
+    others = []
+    if options.rank == 0 and options.ranks > 1:
+        options.out.mkdir(parents=True, exist_ok=True)
+        (options.out / "meeting").unlink(missing_ok=True)
+        Trainer.make_tokenizer(options)
+        others = [
+            subprocess.Popen([sys.executable, "-m", "mini.train", *sys.argv[1:], "--rank", str(rank)])  # noqa: S603 - ourselves
+            for rank in range(1, options.ranks)
+        ]
+    Trainer(options).run()
+    for other in others:
+        other.wait(timeout=60)
+
+
+if __name__ == "__main__":
+    main()
