@@ -1,0 +1,198 @@
+"""A batch: configs times cases, planned whole before anything starts, and the processes that work on it.
+
+Knows no Prefect: the flow only waits for what happens here, so that cases already run while Prefect's
+server is still starting. A config without a model runs in worker processes (numpy and XML hold the
+interpreter's lock); a config with one runs in threads of this process, where its weights are loaded once.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+from collections import Counter
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from flows import cases, chain, store
+from flows.cases import Case
+from flows.chain import Ending
+from flows.store import CaseFolder
+from sgcad_core.config import Config, load
+from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.refine import OnAttempt
+from sgcad_core.workers import Worker
+
+CASE_LIMIT_S = 600.0
+"""A case without a model that takes longer hangs: its process is ended and the case fails."""
+MAX_JOBS = 8
+"""Cases at a time without --jobs: cores where nobody is asked, as many where a model answers several at once."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One case of one config."""
+
+    config: Config
+    case: Case
+    digest: str
+    folder: CaseFolder
+
+    @property
+    def name(self) -> str:
+        """As task runs and the log call it."""
+        return f"{self.config.name}/{self.case.id}"
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Everything to do, and where it goes.
+
+    `jobs` cases are on their way at a time, those without a model in `processes`. `fresh` does finished cases
+    again.
+    """
+
+    configs: tuple[Config, ...]
+    cases: tuple[Case, ...]
+    out: Path
+    jobs: int
+    processes: int
+    fresh: bool = False
+
+    def plan(self) -> tuple[Job, ...]:
+        """All jobs, config by config."""
+        return tuple(
+            Job(config, case, cases.digest_of(case, config), CaseFolder(self.out, config.name, case.id))
+            for config in self.configs
+            for case in self.cases
+        )
+
+
+def batch_of(
+    found: Sequence[Case],
+    configs: Sequence[Path],
+    out: Path,
+    overrides: Sequence[str] = (),
+    jobs: int | None = None,
+    fresh: bool = False,
+) -> Batch:
+    """Check a whole batch. Raises ConfigError with every fault; nothing is started or written but `out`."""
+    loaded = _load_all(configs, tuple(overrides))
+    if jobs is not None and jobs < 1:
+        raise ConfigError(f"--jobs {jobs}: at least 1 is needed")
+    out = out.resolve()
+    store.check_writable(out)
+    for config in loaded:
+        store.check_writable(out / config.name)
+        store.clear_partial(out / config.name)
+    asks = any(config.backbone for config in loaded)
+    return Batch(loaded, tuple(found), out, jobs or (MAX_JOBS if asks else cores()), jobs or cores(), fresh)
+
+
+def _load_all(paths: Sequence[Path], overrides: tuple[str, ...]) -> tuple[Config, ...]:
+    faults: list[str] = []
+    loaded: list[Config] = []
+    for path in paths:
+        try:
+            loaded.append(load(path, overrides))
+        except ConfigError as fault:
+            faults.append(str(fault))
+    twice = [name for name, n in Counter(c.name for c in loaded).items() if n > 1]
+    faults += [f"two configs are called {name!r} and would share a folder: rename one file" for name in twice]
+    if faults:
+        raise ConfigError("\n".join(faults))
+    return tuple(loaded)
+
+
+def cores() -> int:
+    """Cores this process may use, at most 8."""
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(MAX_JOBS, usable))
+
+
+# ------------------------------------------------------------------ doing it
+@dataclass
+class Crew:
+    """Does jobs: those without a model at once in the background, those with one when they are waited for."""
+
+    batch: Batch
+    stopping: threading.Event = field(default_factory=threading.Event)
+    _begun: dict[str, Future[Ending]] = field(default_factory=dict)
+    _workers: list[Worker] = field(default_factory=list)
+    _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
+    _threads: ThreadPoolExecutor | None = None
+
+    def begin(self, plan: Sequence[Job]) -> None:
+        """Start what needs no model."""
+        waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
+        if not waiting:
+            return
+        count = min(self.batch.processes, len(waiting))
+        self._workers = [Worker("flows.chain:run_in_worker") for _ in range(count)]
+        for worker in self._workers:
+            self._idle.put(worker)
+        self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
+        for job in waiting:
+            self._begun[job.name] = self._threads.submit(self._in_worker, job)
+
+    def reusable(self, job: Job) -> Ending | None:
+        """The ending of a job that is done already."""
+        result = None if self.batch.fresh else job.folder.finished(job.digest)
+        return Ending(result, reused=True) if result is not None else None
+
+    def finish(self, job: Job, on_attempt: OnAttempt) -> Ending:
+        """Wait for a job, or do it here and now. Raises MissingTool, ConfigError."""
+        if job.name in self._begun:
+            return self._begun[job.name].result()
+        if done := self.reusable(job):
+            return done
+        return chain.run_case(job.config, job.case, self.batch.out, job.digest, self._unless_stopped(on_attempt))
+
+    def began(self, job: Job) -> bool:
+        """Whether the job runs in a worker process (its attempts are then reported when it ends)."""
+        return job.name in self._begun
+
+    def _in_worker(self, job: Job) -> Ending:
+        self._check()
+        worker = self._idle.get()
+        try:
+            raw, out = job.config.raw, self.batch.out
+            ending: Ending = worker.call(raw, job.config.name, job.case, out, job.digest, timeout_s=CASE_LIMIT_S)
+        except SimulationFailed as death:
+            self._check()
+            ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
+        finally:
+            self._idle.put(worker)
+        return ending
+
+    def _unless_stopped(self, on_attempt: OnAttempt) -> OnAttempt:
+        def checked(name: str, turn: Callable[[], object]) -> object:
+            self._check()
+            return on_attempt(name, turn)  # type: ignore[arg-type]
+
+        return checked  # type: ignore[return-value]
+
+    def _check(self) -> None:
+        if self.stopping.is_set():
+            raise Interrupted
+
+    def stop(self) -> None:
+        """Begin nothing more and end the worker processes; a case's folder appears whole or not at all."""
+        self.stopping.set()
+        if self._threads:
+            self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in self._workers:
+            worker.kill()
+
+    def close(self) -> None:
+        """End the worker processes of a batch that is done."""
+        if self._threads:
+            self._threads.shutdown(wait=True)
+        for worker in self._workers:
+            worker.close()
+
+
+class Interrupted(BaseException):
+    """The batch is being stopped: no result of this case, not even a failed one."""

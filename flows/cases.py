@@ -1,0 +1,162 @@
+"""Which reports a command means, what their folders are called, and when one counts as done already.
+
+Knows the file system and the configuration; reads no report's content but for the digest.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from sgcad_core import settings
+from sgcad_core.config import Config
+from sgcad_core.errors import ConfigError
+from sgcad_core.interfaces import Plugin
+
+TEXTS = {"report.txt", "narrative.txt"}
+SUFFIXES = {".txt", ".xml", ".pdf"}
+MAX_NAME_BYTES = 120
+"""Of a case's folder name: room for a suffix within the file systems' 255."""
+MAX_READ_BYTES = 300 * 2**20
+
+
+@dataclass(frozen=True)
+class Case:
+    """One report and the name of its folder in the output."""
+
+    source: Path
+    id: str
+
+
+def cases_of(sources: Sequence[Path]) -> tuple[Case, ...]:
+    """Reports named one by one. Raises ConfigError for a missing one or two of the same name."""
+    missing = [str(s) for s in sources if not s.exists()]
+    if missing:
+        raise ConfigError(f"no such report: {', '.join(missing)}; give a case folder or a .txt, .xml or .pdf file")
+    cases = tuple(Case(s, safe_id(s.resolve().name)) for s in sources)
+    twice = [name for name, n in Counter(c.id.casefold() for c in cases).items() if n > 1]
+    if twice:
+        same = [str(c.source) for c in cases if c.id.casefold() == twice[0]]
+        raise ConfigError(f"{' and '.join(same)} would share the folder {twice[0]!r}: rename one or use --out")
+    return cases
+
+
+def cases_in(folders: Iterable[Path]) -> tuple[Case, ...]:
+    """Every case in the folders, in the order of their names. Raises ConfigError where there is none."""
+    sources = [s for folder in folders for s in _inside(folder)]
+    return cases_of(sources)
+
+
+def _inside(folder: Path) -> list[Path]:
+    if not folder.exists():
+        raise ConfigError(f"{folder}: no such folder; give a folder of case folders")
+    try:
+        entries = sorted(e for e in folder.iterdir() if not e.name.startswith(".")) if folder.is_dir() else []
+    except OSError as fault:
+        raise ConfigError(f"{folder}: cannot be listed: {fault.strerror}") from fault
+    if folder.is_file() or any(e.name.lower() in TEXTS for e in entries):
+        return [folder]
+    found = [e for e in entries if e.is_dir()] or [e for e in entries if e.suffix.lower() in SUFFIXES]
+    if not found:
+        raise ConfigError(f"{folder}: no case in it; put each report into a folder of its own, as report.txt")
+    return found
+
+
+def safe_id(name: str) -> str:
+    """A name as a plain folder name: unchanged if it is one; never a path, hidden, a control character or too long."""
+    safe = re.sub(r'[\x00-\x1f\x7f/\\:*?"<>|]', "_", name.encode("utf-8", "replace").decode())
+    safe = re.sub(r"^\.+", "_", safe).rstrip(" .") or "case"
+    if len(safe.encode()) > MAX_NAME_BYTES:
+        mark = hashlib.sha256(name.encode("utf-8", "replace")).hexdigest()[:8]
+        safe = f"{safe.encode()[: MAX_NAME_BYTES - 9].decode('utf-8', 'ignore')}-{mark}"
+    return safe
+
+
+# ------------------------------------------------------------------ digest
+def digest_of(case: Case, config: Config) -> str:
+    """Fingerprint of everything a result depends on: report, config, prompts, plugin versions, code.
+
+    The code's own text counts only where no model is asked: there a new run costs a second, and a stale
+    result misleads; with a model it costs hours, and plugin versions tell when a result would change.
+    """
+    parts = (_source_digest(case.source), config_digest(config))
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def config_digest(config: Config) -> str:
+    """Fingerprint of an experiment without its reports and its tracker."""
+    raw = {key: value for key, value in config.raw.items() if key != "tracker"}
+    about = {
+        "raw": raw,
+        "name": config.name,
+        "plugins": {_qualified(p): type(p).version for p in _plugins(config)},
+        "files": sorted(set(_named_digests(raw))),
+        "package": version("sg-cadvlm"),
+        "code": _prompts_digest() if config.backbone else _code_digest(),
+    }
+    return hashlib.sha256(json.dumps(about, sort_keys=True, default=str).encode()).hexdigest()
+
+
+def _plugins(config: Config) -> Iterator[Plugin]:
+    for value in (getattr(config, name) for name in type(config).model_fields if name != "tracker"):
+        yield from (v for v in (value if isinstance(value, tuple) else (value,)) if isinstance(v, Plugin))
+
+
+def _named_digests(value: object) -> Iterator[str]:
+    """Of files and folders that a configuration names: a script of answers, a model's weights."""
+    if isinstance(value, dict | list):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _named_digests(inner)
+    elif isinstance(value, str) and "\n" not in value and 0 < len(value) < 1000:
+        for place in {Path(value), settings.ROOT / value}:
+            if place.is_file():
+                yield _files_digest([place], place)
+            elif place.is_dir() and "/" in value:
+                yield _folder_digest(place)
+
+
+def _folder_digest(folder: Path) -> str:
+    """By content up to 300 MB; larger ones (weights of hours to load) by their files' names and sizes."""
+    files = sorted(f for f in folder.rglob("*") if f.is_file())
+    sizes = [(str(f.relative_to(folder)), f.stat().st_size) for f in files]
+    small = sum(size for _, size in sizes) <= MAX_READ_BYTES
+    return _files_digest(files, folder) if small else hashlib.sha256(repr(sizes).encode()).hexdigest()
+
+
+def _qualified(plugin: Plugin) -> str:
+    return f"{type(plugin).__module__}:{type(plugin).__qualname__}"
+
+
+def _source_digest(source: Path) -> str:
+    files = sorted(f for f in source.rglob("*") if f.is_file()) if source.is_dir() else [source]
+    return _files_digest(files, source)
+
+
+@cache
+def _prompts_digest() -> str:
+    return _files_digest((f for f in sorted(settings.PROMPTS.rglob("*")) if f.is_file()), settings.PROMPTS)
+
+
+@cache
+def _code_digest() -> str:
+    code = [f for part in ("sgcad_core", "plugins") for f in sorted((settings.ROOT / part).rglob("*.py"))]
+    return _files_digest(code, settings.ROOT) + _prompts_digest()
+
+
+def _files_digest(files: Iterable[Path], root: Path) -> str:
+    found = hashlib.sha256()
+    for file in files:
+        found.update(f"\n{file.relative_to(root)}\n".encode("utf-8", "surrogateescape"))
+        try:
+            with file.open("rb") as content:
+                found.update(hashlib.file_digest(content, "sha256").digest())
+        except OSError as fault:  # the reader will say what is wrong with it
+            found.update(str(fault).encode())
+    return found.hexdigest()

@@ -1,0 +1,261 @@
+"""One case from report to folder: read, retrieve, road, scenario, simulate, measure, draw, write.
+
+Knows the interfaces, not the plugins, and no Prefect: it runs in a thread, a worker process or a test
+alike. Here is the boundary that keeps a batch alive: whatever one case dies of is that case's result.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from flows import picture, player, store
+from flows.cases import Case
+from flows.view import View
+from sgcad_core.config import Config, build
+from sgcad_core.errors import BadInput, ConfigError, MissingTool, SgcadError
+from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
+from sgcad_core.metrics import measure
+from sgcad_core.records import (
+    Attempt,
+    Context,
+    CrashReport,
+    Evidence,
+    Execution,
+    Generation,
+    Passage,
+    Query,
+    RoadNetwork,
+    Scenario,
+    Stage,
+    StageOutcome,
+)
+from sgcad_core.refine import Call, OnAttempt, Refinement, Write, run_at_once
+from sgcad_core.result import CaseRecord, result_of
+
+
+@dataclass(frozen=True)
+class Ending:
+    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done."""
+
+    result: dict[str, Any]
+    attempts: tuple[Attempt, ...] = ()
+    calls: tuple[Call, ...] = ()
+    reused: bool = False
+
+
+@dataclass
+class _Run:
+    """A case on its way: what is known so far, whatever comes next."""
+
+    config: Config
+    case: Case
+    on_attempt: OnAttempt
+    report: CrashReport | None = None
+    outcomes: dict[str, StageOutcome] = field(default_factory=dict)
+    execution: Execution | None = None
+    metrics: dict[str, Any] | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+    calls: list[Call] = field(default_factory=list)
+    failure: str = ""
+    trace: str = ""
+
+    def go(self) -> None:
+        """Run the stages; how they ended stands in the fields. Raises MissingTool and ConfigError only."""
+        try:
+            self._stages()
+        except (MissingTool, ConfigError):
+            raise
+        except SgcadError as fault:
+            self.failure = str(fault)
+        except Exception as fault:  # noqa: BLE001 - the case's boundary: a bug costs one case, not the batch
+            self.fail(fault)
+
+    def _stages(self) -> None:
+        with self._clock("read"):
+            self.report = report = self.config.report_reader.read(self.case.source)
+        network = self._stage("road", self._road(report))
+        if isinstance(network, RoadNetwork):
+            scenario = self._stage("scenario", self._scenario(report, network))
+            if isinstance(scenario, Scenario):
+                self._execute(scenario, network)
+
+    def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:
+        with self._clock("simulate"):
+            self.execution = self.config.simulator.execute(scenario, network)
+        with self._clock("measure"):
+            self.metrics = measure(self.execution, scenario)
+
+    def _stage(self, name: str, refinement: Refinement) -> RoadNetwork | Scenario | None:
+        with self._clock(name):
+            self.outcomes[name], calls = refinement.run()
+        self.calls += calls
+        outcome = self.outcomes[name]
+        return outcome.artifact if outcome.status == "written" else None
+
+    def _road(self, report: CrashReport) -> Refinement:
+        writer, context = self.config.road_writer, context_of(report)
+        passages = self._passages(report, "road")
+        return self._refinement(
+            "road", writer, lambda findings, ask, n: writer.write(context, passages, findings, ask, n), report, None
+        )
+
+    def _scenario(self, report: CrashReport, network: RoadNetwork) -> Refinement:
+        writer, context = self.config.scenario_writer, context_of(report)
+        passages = self._passages(report, "scenario")
+        return self._refinement(
+            "scenario",
+            writer,
+            lambda findings, ask, n: writer.write(context, passages, findings, ask, n, network),
+            report,
+            network,
+        )
+
+    def _passages(self, report: CrashReport, stage: str) -> tuple[Passage, ...]:
+        with self._clock("retrieve"):
+            return self.config.retriever.retrieve(report.narrative, stage)
+
+    def _refinement(
+        self,
+        stage: Stage,
+        writer: RoadWriter | ScenarioWriter,
+        write: Write,
+        report: CrashReport,
+        net: RoadNetwork | None,
+    ) -> Refinement:
+        return Refinement(
+            stage=stage,
+            write=write,
+            validators=self.config.validators_of(stage),
+            evidence_of=lambda generation: Evidence(report=report, network=net, generation=generation),
+            ask=ask_of(self.config) if writer.asks_model else None,
+            max_attempts=self.config.max_attempts,
+            on_attempt=self.on_attempt,
+            case=self.case.id,
+        )
+
+    @contextmanager
+    def _clock(self, step: str) -> Iterator[None]:
+        started = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[step] = self.seconds.get(step, 0.0) + time.perf_counter() - started
+
+    def record(self) -> CaseRecord:
+        """Everything known, for result.json and the player."""
+        notes = self.report.notes if self.report else ()
+        return CaseRecord(
+            self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
+        )
+
+    def attempts(self) -> tuple[Attempt, ...]:
+        """Attempts of all stages in order."""
+        return tuple(a for outcome in self.outcomes.values() for a in outcome.attempts)
+
+    def leave(self, folder: Path) -> dict[str, Any]:
+        """Write the case's files into a folder, result.json last; the result."""
+        record = self.record()
+        store.write_report(folder, self.report)
+        store.write_attempts(folder, self.attempts())
+        if record.network:
+            store.write_network(folder, record.network)
+        if record.scenario:
+            store.write_scenario(folder, record.scenario)
+        if self.execution:
+            store.write_trajectories(folder / "trajectories.csv", self.execution.trajectories)
+        if self.metrics is not None:
+            store.write_json(folder / "metrics.json", self.metrics)
+        if self.trace:
+            (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
+        self._draw(folder, record)
+        result = result_of(self.record())
+        store.write_json(folder / "result.json", result)
+        return result
+
+    def _draw(self, folder: Path, record: CaseRecord) -> None:
+        """player.html and picture.png of an executed case."""
+        if record.network and record.scenario and record.execution and self.report:
+            with self._clock("draw"):
+                view = View.of(record, self.report, self.metrics or {}, result_of(record))
+                (folder / "player.html").write_text(player.page(view), encoding="utf-8")
+                (folder / "picture.png").write_bytes(picture.png(view))
+
+    def fail(self, fault: Exception) -> None:
+        """Make this a failed case whose reason is a fault that nobody foresaw."""
+        self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
+        self.trace = "".join(traceback.format_exception(fault))
+
+
+def context_of(report: CrashReport) -> Context:
+    """CAD's c: the crash evidence."""
+    return Context(narrative=report.narrative, diagrams=report.diagrams)
+
+
+def ask_of(config: Config) -> Ask:
+    """How writers of this config speak to its model; a later attempt draws with another seed."""
+    backbone, decoder = config.backbone, config.decoder
+    if backbone is None or decoder is None:  # config.build refuses this pairing
+        raise ConfigError(f"{config.name}: a writer asks a model, but there is no backbone or no decoder")
+
+    def ask(context: Context, query: Query) -> Generation:
+        return backbone.generate(context, query, decoder, seed=config.seed + query.attempt - 1)
+
+    return ask
+
+
+def run_case(config: Config, case: Case, out: Path, digest: str, on_attempt: OnAttempt = run_at_once) -> Ending:
+    """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
+    run = _Run(config, case, on_attempt)
+    run.go()
+    result = _leave(run, store.CaseFolder(out, config.name, case.id), digest)
+    return Ending(result, run.attempts(), tuple(run.calls))
+
+
+def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
+    """The folder of a case whose process died: report.txt as far as it can be read, and the reason."""
+    run = _Run(config, case, run_at_once, failure=reason)
+    try:
+        run.report = config.report_reader.read(case.source)
+    except BadInput:
+        run.report = None
+    return Ending(_leave(run, store.CaseFolder(out, config.name, case.id), digest))
+
+
+def _leave(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
+    try:
+        return _write(run, folder, digest)
+    except OSError as fault:
+        raise ConfigError(
+            f"{folder.path}: cannot be written ({fault.strerror}); make room or choose another --out; "
+            "run again to go on where it stopped"
+        ) from fault
+    except Exception as fault:  # noqa: BLE001 - what cannot be drawn or written down costs one case, not the batch
+        bare = _Run(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
+        bare.fail(fault)
+        return _write(bare, folder, digest)
+
+
+def _write(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
+    """Write the folder. A failed case gets no digest that matches: running again tries it again."""
+    with folder.writing() as partial:
+        result = run.leave(partial)
+        mark = digest if result["status"] != "failed" else ""
+        (partial / store.DIGEST).write_text(mark, encoding="utf-8")
+    return result
+
+
+# ------------------------------------------------------------------ in a worker process
+_configs: dict[str, Config] = {}
+
+
+def run_in_worker(raw: dict[str, Any], name: str, case: Case, out: Path, digest: str) -> Ending:
+    """`run_case` from what can be pickled; the plugins are built once a process."""
+    if name not in _configs:
+        _configs[name] = build(raw, name, name)
+    return run_case(_configs[name], case, out, digest)

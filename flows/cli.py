@@ -1,0 +1,193 @@
+"""The command line: `sgcad run | evaluate | plugins | index | check | doctor`.
+
+Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
+nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
+quick; `except Exception` stands here once, at the edge.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from flows.index import index_app
+from sgcad_core.errors import SgcadError
+
+DEFAULT_CONFIG = Path("template.yaml")
+DEFAULT_OUT = Path("runs")
+PATIENCE_S = 5.0
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Turns crash reports into road networks and scenarios that a simulator runs.",
+)
+plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`.")
+app.add_typer(plugins_app, name="plugins")
+app.add_typer(index_app, name="index")
+
+Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YAML; may be given several times.")]
+Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.")]
+Jobs = Annotated[int | None, typer.Option("--jobs", "-j", help="Cases at a time; default: the cores, with a model 8.")]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Do finished cases again.")]
+
+
+@app.command()
+def run(
+    reports: Annotated[list[Path], typer.Argument(help="Case folders, or .txt, .xml, .pdf files.")],
+    config: Configs = None,
+    overrides: Overrides = None,
+    out: Out = DEFAULT_OUT,
+    jobs: Jobs = None,
+    fresh: Fresh = False,
+) -> None:
+    """Turn reports into scenarios."""
+    from flows.cases import cases_of
+
+    _batch(cases_of(reports), config, overrides, out, jobs, fresh)
+
+
+@app.command()
+def evaluate(
+    cases: Annotated[list[Path], typer.Argument(help="A folder of case folders.")],
+    config: Configs = None,
+    overrides: Overrides = None,
+    out: Out = DEFAULT_OUT,
+    jobs: Jobs = None,
+    fresh: Fresh = False,
+) -> None:
+    """Run every case of a folder under one or several configs; run again to go on where it stopped."""
+    from flows.cases import cases_in
+
+    _batch(cases_in(cases), config, overrides, out, jobs, fresh)
+
+
+def _batch(
+    found: Sequence[object],
+    config: list[Path] | None,
+    overrides: list[str] | None,
+    out: Path,
+    jobs: int | None,
+    fresh: bool,
+) -> None:
+    """Check everything, then start."""
+    from flows import batch as batches
+
+    made = batches.batch_of(found, config or [DEFAULT_CONFIG], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
+    from flows import start, summary
+
+    tally = summary.Tally(made)
+    stopped = _heed_interrupts()
+    try:
+        with summary.progress(tally) as on_ending:
+            start.evaluate(made, on_ending)
+    except BaseException as fault:
+        # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
+        if not (stopped.is_set() or isinstance(fault, KeyboardInterrupt)):
+            raise
+        _interrupted()
+    summary.show(tally)
+    raise typer.Exit(tally.exit_code())
+
+
+@app.command()
+def check(
+    config: Annotated[Path, typer.Argument(help="A YAML.")],
+    overrides: Overrides = None,
+) -> None:
+    """Check a config whole, without starting anything."""
+    from flows.catalogue import describe_config
+    from sgcad_core.config import load
+
+    describe_config(load(config, tuple(overrides or ())))
+
+
+@plugins_app.command("list")
+def plugins_list() -> None:
+    """Every installed plugin, kind by kind."""
+    from flows.catalogue import list_plugins
+
+    list_plugins()
+
+
+@plugins_app.command("show")
+def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or kind/name.")]) -> None:
+    """A plugin's job and its fields with types and defaults."""
+    from flows.catalogue import show_plugin
+
+    show_plugin(name)
+
+
+@app.command()
+def doctor(out: Out = DEFAULT_OUT) -> None:
+    """Look whether everything needed is there and works."""
+    from flows.doctor import examine
+
+    raise typer.Exit(0 if examine(out) else 1)
+
+
+def main() -> None:
+    """The edge: every error becomes one message on stderr and an exit code."""
+    try:
+        app()
+    except SgcadError as fault:
+        _end(str(fault), 2)
+    except Exception as fault:  # noqa: BLE001 - the command line's edge
+        import traceback
+
+        traceback.print_exception(fault)
+        _end(f"unexpected {type(fault).__name__}: {fault}; `sgcad doctor` may tell why", 1)
+
+
+def _end(message: str, code: int) -> None:
+    sys.stderr.write(f"sgcad: error: {message}\n")
+    _leave(code)
+
+
+def _heed_interrupts() -> threading.Event:
+    """The first Ctrl-C stops the batch in order, for 5 s at most (a model may be thinking); the second at once.
+
+    The event that comes back is set from the first on.
+    """
+    stopped = threading.Event()
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        return stopped  # whoever started us wants Ctrl-C ignored
+
+    def first(number: int, frame: object) -> None:
+        stopped.set()
+        signal.signal(signal.SIGINT, lambda *_: _interrupted())
+        patience = threading.Timer(PATIENCE_S, _interrupted)
+        patience.daemon = True
+        patience.start()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, first)
+    return stopped
+
+
+def _interrupted() -> None:
+    sys.stderr.write("sgcad: interrupted; finished cases are kept, run the same command again to go on\n")
+    _leave(130)
+
+
+def _leave(code: int) -> None:
+    """Leave at once: threads may still wait for a model or a simulator, and their processes must not outlive us."""
+    import psutil
+
+    sys.stdout.flush()
+    sys.stderr.flush()
+    for child in psutil.Process().children(recursive=True):
+        try:
+            child.kill()
+        except psutil.NoSuchProcess:
+            continue
+    os._exit(code)

@@ -1,0 +1,173 @@
+"""`sgcad doctor`: is everything there, and does it work? Each line says what, the value, and the remedy."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import httpx
+import psutil
+from rich.console import Console
+from rich.markup import escape
+
+from flows import store
+from flows.server import prefect_server
+from sgcad_core import settings
+from sgcad_core.errors import SgcadError
+
+PACKAGES = (
+    "prefect", "mlflow", "torch", "transformers", "eclipse-sumo", "libsumo", "scenariogeneration", "lancedb",
+)  # fmt: skip
+LOW_MB = 2000
+STALE_S = 24 * 3600
+
+
+class Trouble(Exception):
+    """A check failed; the message says what to do."""
+
+
+def examine(out: Path) -> bool:
+    """Run every check and print a line each; True if none failed."""
+    settings.quiet_libraries()
+    console = Console(emoji=False, highlight=False)
+    fine = True
+    for name, test in CHECKS.items():
+        started = time.perf_counter()
+        try:
+            said, mark = test(out), "[green]ok[/]   "
+        except (Trouble, SgcadError, OSError, subprocess.SubprocessError) as fault:
+            said, mark, fine = str(fault), "[red]wrong[/]", False
+        seconds = time.perf_counter() - started
+        console.print(f"{mark} {escape(name)}: {escape(said)} [dim]({seconds:.1f} s)[/]", soft_wrap=True)
+    return fine
+
+
+def _python(out: Path) -> str:
+    if not (3, 11) <= sys.version_info[:2] < (3, 14):
+        raise Trouble(f"Python {sys.version.split()[0]}; 3.11 to 3.13 are supported")
+    return sys.version.split()[0]
+
+
+def _packages(out: Path) -> str:
+    return ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError as fault:
+        raise Trouble(f"{name} is not installed: pip install -e .") from fault
+
+
+def _netconvert(out: Path) -> str:
+    command, environment = [str(settings.netconvert()), "--version"], settings.subprocess_environment()
+    said = subprocess.run(command, capture_output=True, text=True, timeout=30, env=environment)  # noqa: S603 - ours
+    if said.returncode:
+        raise Trouble(f"{settings.netconvert()} does not run: {said.stderr.strip()[:200]}")
+    return said.stdout.splitlines()[0]
+
+
+def _configs(out: Path) -> str:
+    from sgcad_core.config import load
+
+    files = sorted(settings.CONFIGS.rglob("*.yaml"))
+    for file in files:
+        load(file)
+    return f"{len(files)} in {settings.CONFIGS} are fine"
+
+
+def _writable(out: Path) -> str:
+    there = out.exists()
+    store.check_writable(out)
+    free = shutil.disk_usage(out).free // 2**20
+    if not there:
+        out.rmdir()
+    if free < LOW_MB:
+        raise Trouble(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
+    return f"{out.resolve()} can be written, {free:,} MB free"
+
+
+def _flow(out: Path) -> str:
+    """One real flow, on the user's server or one of our own."""
+    with prefect_server() as server:
+        if server:
+            server.wait()
+        try:
+            stale = _run_tiny_flow()
+        except (RuntimeError, httpx.HTTPError) as fault:
+            raise Trouble(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
+    said = f"a Prefect flow runs (server: {settings.prefect_url() or 'one for each command'})"
+    if stale:
+        remedy = f"prefect flow-run delete {stale[0]} ..."
+        said += f"; {len(stale)} runs of killed batches still say RUNNING, remove them: {remedy}"
+    return said
+
+
+def _run_tiny_flow() -> list[str]:
+    """Run a flow; ids of runs that have said RUNNING for so long that nothing can stand behind them."""
+    from prefect import flow
+    from prefect.client.orchestration import get_client
+    from prefect.events.worker import EventsWorker
+    from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
+
+    def tiny() -> None:
+        """Nothing to do."""
+
+    with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
+        flow(name="doctor")(tiny)()
+    oldest = datetime.now(UTC) - timedelta(seconds=STALE_S)
+    with get_client(sync_client=True) as client:
+        runs = client.read_flow_runs(limit=200)
+    EventsWorker.drain_all(timeout=5)
+    return [str(r.id) for r in runs if r.state and r.state.is_running() and r.start_time and r.start_time < oldest]
+
+
+def _database(out: Path) -> str:
+    from typing import cast
+
+    from sgcad_core.interfaces import Tracker
+    from sgcad_core.registry import plugin_class
+
+    tracker = cast("Tracker", plugin_class("tracker", "mlflow")())
+    result = {"status": "generated", "seconds": {}}
+    with tempfile.TemporaryDirectory(prefix="sgcad-doctor-") as place:
+        case = Path(place) / "config" / "case"
+        (case / "attempts").mkdir(parents=True)
+        tracker.log_case("doctor", {}, case, result)
+    return "MLflow can log a run to sqlite"
+
+
+def _leftovers(out: Path) -> str:
+    servers = [str(p.pid) for p in _orphans()]
+    if servers:
+        raise Trouble(f"Prefect servers of killed commands still run; end them: kill {' '.join(servers)}")
+    partial = [str(p) for p in out.glob(f"*/{store.PARTIAL}*")] if out.is_dir() else []
+    if partial:
+        return f"{len(partial)} half-written case folders of killed or running batches; the next batch clears them"
+    return "no orphaned Prefect server, no half-written case"
+
+
+def _orphans() -> Iterator[psutil.Process]:
+    for process in psutil.process_iter(["pid", "ppid", "cmdline"]):
+        line = process.info["cmdline"] or []
+        if "prefect.server.api.server:create_app" in line and process.info["ppid"] == 1:
+            yield process
+
+
+CHECKS: dict[str, Callable[[Path], str]] = {
+    "python": _python,
+    "packages": _packages,
+    "netconvert": _netconvert,
+    "configs": _configs,
+    "output": _writable,
+    "flow": _flow,
+    "tracking": _database,
+    "leftovers": _leftovers,
+}

@@ -1,0 +1,103 @@
+"""A road network as things to draw: asphalt, lane lines, stop lines. Shared by the player and the picture.
+
+Knows SUMO's .net.xml; metres, x east, y north; nothing of pixels or colors but the lines' names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sgcad_core.formats.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.formats.xml import parse_xml
+from sgcad_core.geometry import offset_polyline
+
+Floats = NDArray[np.float64]
+Style = Literal["edge", "lane", "center", "stop"]
+HELD = set("sZw")
+"""SUMO's connection states that make traffic stop: stop, zipper excluded by its node, all-way stop."""
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A lane's asphalt: center line (n, 2) and width."""
+
+    points: Floats
+    width_m: float
+    cars: bool
+
+
+@dataclass(frozen=True)
+class Line:
+    """A painted line, (n, 2)."""
+
+    points: Floats
+    style: Style
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything painted, from the ground up."""
+
+    areas: tuple[Floats, ...]
+    strips: tuple[Strip, ...]
+    lines: tuple[Line, ...]
+
+
+def drawing_of(net_xml: str) -> Drawing:
+    """What to draw of a network. Raises InvalidOutput where it cannot be read."""
+    graph, root = parse_net(net_xml), parse_xml(net_xml, "net_xml")
+    strips = [Strip(ln.shape, ln.width_m, ln.allows_cars) for e in graph.edges.values() for ln in e.lanes]
+    strips += [Strip(c.via_shape, _width(graph, c.from_edge, c.from_lane), True) for c in graph.connections]
+    lines = [line for edge in graph.edges.values() for line in _edge_lines(edge, graph)]
+    return Drawing(tuple(_areas(root)), tuple(strips), tuple(lines + _stop_lines(root, graph)))
+
+
+def _areas(root: Any) -> list[Floats]:
+    """Polygons of the junctions (dead ends have none)."""
+    shapes = [j.get("shape", "") for j in root.iterfind("junction") if j.get("type") not in ("internal", "dead_end")]
+    points = [[[float(v) for v in p.split(",")[:2]] for p in shape.split()] for shape in shapes]
+    return [np.array(p) for p in points if len(p) > 2]
+
+
+def _width(graph: LaneGraph, edge: str, lane: int) -> float:
+    return next((ln.width_m for ln in graph.edges[edge].lanes if ln.index == lane), 3.2)
+
+
+def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
+    """Right edge, lines between lanes, left edge: yellow where traffic comes the other way or must not go."""
+    right, left = edge.lanes[0], edge.lanes[-1]
+    lines = [Line(_side(right, -1), "edge"), Line(_side(left, +1), "center")]
+    return lines + [Line(_side(lane, +1), "lane") for lane in edge.lanes[:-1]]
+
+
+def _side(lane: Lane, side: int) -> Floats:
+    """The lane's left (+1) or right (-1) border, drawn a hand's breadth inside of it."""
+    return offset_polyline(lane.shape, side * (lane.width_m / 2 - 0.12))
+
+
+def _stop_lines(root: Any, graph: LaneGraph) -> list[Line]:
+    held = {
+        (c.get("from", ""), int(c.get("fromLane", "0")))
+        for c in root.iterfind("connection")
+        if c.get("tl") or c.get("state") in HELD
+    }
+    return [
+        Line(_across(lane), "stop")
+        for edge in graph.edges.values()
+        for lane in edge.car_lanes
+        if (edge.id, lane.index) in held
+    ]
+
+
+def _across(lane: Lane) -> Floats:
+    """A line across the lane, half a metre before its end."""
+    end, before = lane.shape[-1], lane.shape[-2]
+    along = (end - before) / max(float(np.hypot(*(end - before))), 1e-9)
+    half = np.array([-along[1], along[0]]) * (lane.width_m / 2 - 0.2)
+    place = end - along * 0.5
+    return np.array([place - half, place + half])

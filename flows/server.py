@@ -1,0 +1,136 @@
+"""A Prefect server for the length of one command, where the user has named none.
+
+Prefect would start one itself, but late (after its import), in our process group (Ctrl-C would end it
+before the flow's state is written) and as an orphan after a kill -9. This one starts first, has a session of
+its own and ends when our end of its standard input closes, however that happens.
+
+    python -m flows.server <file descriptor of a bound socket>        # the far end
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sgcad_core import settings
+from sgcad_core.errors import MissingTool
+
+START_S = 180.0
+"""The first start makes the database: 14 s on two idle cores, a minute on busy ones."""
+STOP_S = 15.0
+"""For writing what it has been told."""
+
+LEAN = {
+    "PREFECT__SERVER_EPHEMERAL": "1",
+    "PREFECT_SERVER_SERVICES_TASK_RUN_RECORDER_BATCH_SIZE": "50",
+    "PREFECT_SERVER_SERVICES_TASK_RUN_RECORDER_READ_BATCH_SIZE": "50",
+    "PREFECT_SERVER_SERVICES_TASK_RUN_RECORDER_FLUSH_INTERVAL": "1",
+    "PREFECT_SERVER_SERVICES_EVENT_PERSISTER_ENABLED": "false",
+    "PREFECT_SERVER_SERVICES_TRIGGERS_ENABLED": "false",
+}
+"""States of task runs are written in bulk; automations and the event feed need a server that stays.
+
+12 ms of processor time a case instead of 82 (3 task runs a case, 2 cores); the user's own settings win.
+"""
+
+
+class Server:
+    """A server process; `wait` until it answers."""
+
+    def __init__(self) -> None:
+        with socket.socket() as bound:
+            bound.bind(("127.0.0.1", 0))
+            self.address = f"http://127.0.0.1:{bound.getsockname()[1]}/api"
+            self.process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
+                [sys.executable, "-m", "flows.server", str(bound.fileno())],
+                stdin=subprocess.PIPE,
+                pass_fds=[bound.fileno()],
+                start_new_session=True,
+                env=LEAN | settings.subprocess_environment(),
+            )
+
+    def wait(self) -> None:
+        """Return when the server answers. Raises MissingTool if it never does."""
+        deadline = time.monotonic() + START_S
+        while self.process.poll() is None and time.monotonic() < deadline:
+            if answers(self.address):
+                return
+            time.sleep(0.05)
+        code = self.process.poll()
+        ended = f"silent for {START_S:g} s" if code is None else f"ended with code {code}"
+        raise MissingTool(
+            f"Prefect's server does not start ({ended}); look at its messages above, at PREFECT_HOME (can it be "
+            "written?), or name a running server: export PREFECT_API_URL=http://.../api"
+        )
+
+    def stop(self) -> None:
+        """End the process."""
+        self.process.terminate()
+        try:
+            self.process.wait(STOP_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+def answers(url: str) -> bool:
+    """Whether a Prefect API answers at a URL such as http://127.0.0.1:4200/api."""
+    try:
+        with urllib.request.urlopen(f"{url.rstrip('/')}/health", timeout=5):  # noqa: S310 - an address the user gave
+            return True
+    except urllib.error.HTTPError as fault:
+        return fault.code in (401, 403)  # there, and wants a key that Prefect's own client has
+    except (OSError, ValueError):
+        return False
+
+
+@contextmanager
+def prefect_server() -> Iterator[Server | None]:
+    """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
+
+    Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
+    if the user's server does not answer.
+    """
+    if url := settings.prefect_url():
+        if not answers(url):
+            raise MissingTool(
+                f"PREFECT_API_URL names {url}, where no Prefect server answers: start it (`prefect server start`), or "
+                "unset the variable (and the active profile's) to have one for each command"
+            )
+        yield None
+        return
+    server = Server()
+    settings.use_prefect_url(server.address)
+    try:
+        yield server
+    finally:
+        settings.use_prefect_url("")
+        server.stop()
+
+
+def _serve(descriptor: int) -> None:
+    """The far end: serve on a bound socket until standard input closes."""
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    settings.quiet_libraries()
+    import uvicorn
+    from prefect.server.api.server import create_app
+
+    config = uvicorn.Config(create_app, factory=True, log_level="error", lifespan="on")
+    uvicorn.Server(config).run(sockets=[socket.socket(fileno=descriptor)])
+
+
+def _end_with_parent() -> None:
+    sys.stdin.buffer.read()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    _serve(int(sys.argv[1]))

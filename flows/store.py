@@ -1,0 +1,181 @@
+"""A case's folder on disk, as docs/configs.md promises it: written whole or not at all.
+
+Everything goes into a hidden folder beside the target, result.json and the digest last, then one rename:
+a kill, a full disk or Ctrl-C leaves no half case that looks finished.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sgcad_core.errors import ConfigError
+from sgcad_core.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
+
+DIGEST = ".digest"
+TRACKED = ".tracked"
+PARTIAL = ".partial-"
+MIN_FREE_MB = 50
+"""Below this nothing is started; a case takes 1 to 3 MB."""
+
+
+@dataclass(frozen=True)
+class CaseFolder:
+    """Where one case of one config lies."""
+
+    out: Path
+    config: str
+    case: str
+
+    @property
+    def path(self) -> Path:
+        """The folder itself."""
+        return self.out / self.config / self.case
+
+    def finished(self, digest: str) -> dict[str, Any] | None:
+        """result.json if the case is done with this very digest, else None."""
+        try:
+            if (self.path / DIGEST).read_text(encoding="utf-8") != digest:
+                return None
+            result = json.loads((self.path / "result.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        return result if isinstance(result, dict) and "status" in result else None
+
+    @contextmanager
+    def writing(self) -> Iterator[Path]:
+        """A fresh folder that becomes the case's folder when the block ends well, and vanishes otherwise."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
+        try:
+            yield partial
+            partial.chmod(0o755)
+            self._replace(partial)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+    def _replace(self, partial: Path) -> None:
+        """Put the new folder in the old one's place."""
+        if self.path.exists():
+            old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
+            self.path.rename(old / "old")
+            partial.rename(self.path)
+            shutil.rmtree(old, ignore_errors=True)
+        else:
+            partial.rename(self.path)
+
+    def tracked(self, tracker: str) -> bool:
+        """Whether this tracker has the case already."""
+        mark = self.path / TRACKED
+        return mark.is_file() and tracker in mark.read_text(encoding="utf-8").splitlines()
+
+    def mark_tracked(self, tracker: str) -> None:
+        """Note that this tracker has the case."""
+        with (self.path / TRACKED).open("a", encoding="utf-8") as file:
+            file.write(tracker + "\n")
+
+
+def check_writable(out: Path) -> None:
+    """Make the output folder. Raises ConfigError if it cannot be written or the disk is full."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(prefix=PARTIAL, dir=out):
+            pass
+    except OSError as fault:
+        raise ConfigError(f"--out {out}: cannot be written ({fault.strerror}); choose another folder") from fault
+    free_mb = shutil.disk_usage(out).free // 2**20
+    if free_mb < MIN_FREE_MB:
+        raise ConfigError(f"--out {out}: {free_mb} MB free, {MIN_FREE_MB} are needed; free some or choose another disk")
+
+
+def clear_partial(folder: Path) -> int:
+    """Remove what killed processes left behind; how many folders it was."""
+    left = [p for p in folder.glob(f"{PARTIAL}*-*") if p.is_dir() and not _alive(p.name.split("-")[1])]
+    for partial in left:
+        shutil.rmtree(partial, ignore_errors=True)
+    return len(left)
+
+
+def _alive(pid: str) -> bool:
+    try:
+        os.kill(int(pid), 0)
+    except (ValueError, ProcessLookupError):
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+# ------------------------------------------------------------------ files
+def write_report(folder: Path, report: CrashReport | None) -> None:
+    """report.txt (empty if the report could not be read) and diagram.png, diagram-2.png, ..."""
+    (folder / "report.txt").write_text(report.narrative if report else "", encoding="utf-8")
+    for number, diagram in enumerate(report.diagrams if report else (), 1):
+        (folder / ("diagram.png" if number == 1 else f"diagram-{number}.png")).write_bytes(diagram.png)
+
+
+def write_attempts(folder: Path, attempts: Iterable[Attempt]) -> None:
+    """attempts/<stage>-<nn>/: prompt.txt, answer.txt, findings.json, attempt.json."""
+    (folder / "attempts").mkdir()
+    for attempt in attempts:
+        place = folder / "attempts" / f"{attempt.stage}-{attempt.number:02d}"
+        place.mkdir()
+        (place / "prompt.txt").write_text(attempt.prompt, encoding="utf-8", errors="replace")
+        (place / "answer.txt").write_text(attempt.answer, encoding="utf-8", errors="replace")
+        write_json(place / "findings.json", [f.model_dump() for f in attempt.findings])
+        write_json(place / "attempt.json", _about(attempt))
+
+
+def _about(attempt: Attempt) -> dict[str, Any]:
+    about: dict[str, Any] = {"stage": attempt.stage, "number": attempt.number, "seconds": round(attempt.seconds, 4)}
+    if generation := attempt.generation:
+        about["generation"] = {
+            "finish": generation.finish,
+            "prompt_tokens": generation.prompt_tokens,
+            "answer_tokens": len(generation.tokens),
+            "model_calls": generation.model_calls,
+            "seconds": generation.seconds,
+            "grounding": dict(generation.grounding),
+            "notes": list(generation.notes),
+        }
+    return about
+
+
+def write_network(folder: Path, network: RoadNetwork) -> None:
+    """road.net.xml and road.xodr, as far as they were compiled."""
+    for name, text in (("road.net.xml", network.net_xml), ("road.xodr", network.xodr)):
+        if text is not None:
+            (folder / name).write_text(text, encoding="utf-8")
+
+
+def write_scenario(folder: Path, scenario: Scenario) -> None:
+    """scenario.xosc or scenario.rou.xml."""
+    for name, text in (("scenario.xosc", scenario.xosc), ("scenario.rou.xml", scenario.routes_xml)):
+        if text is not None:
+            (folder / name).write_text(text, encoding="utf-8")
+
+
+def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
+    """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together."""
+    rows = [
+        (float(t), k, f"{t:.2f},{track.actor},{x:.6f},{y:.6f},{heading:.7f},{speed:.4f}\n")
+        for k, track in enumerate(trajectories)
+        for t, x, y, heading, speed in zip(
+            track.t_s, track.x_m, track.y_m, track.heading_rad, track.speed_mps, strict=True
+        )
+    ]
+    with file.open("w", encoding="utf-8", newline="") as out:
+        out.write("t_s,actor,x_m,y_m,heading_rad,speed_mps\n")
+        out.writelines(row for _, _, row in sorted(rows))
+
+
+def write_json(file: Path, content: Any) -> None:
+    """Indented UTF-8 JSON; NaN and infinities are refused (no strict reader takes them)."""
+    file.write_text(json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")

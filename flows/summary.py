@@ -1,0 +1,122 @@
+"""What a person sees of a batch: a progress bar while it runs, a short table at its end. Writes to stderr
+what is progress and to stdout what is the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from flows.batch import Batch, Job
+from flows.chain import Ending
+from flows.tracking import OnEnding
+from sgcad_core.result import STATUSES
+
+MAX_REASONS = 10
+"""Reasons printed at the end; all of them stand in the result.json files."""
+
+TABLE_WIDTH = 96
+"""Columns where the output is no terminal; rich would take 80 and drop a column."""
+
+
+@dataclass
+class Tally:
+    """Endings of a batch, counted config by config."""
+
+    batch: Batch
+    endings: list[tuple[Job, Ending]] = field(default_factory=list)
+    untracked: list[str] = field(default_factory=list)
+
+    def add(self, job: Job, ending: Ending, untracked: str = "") -> None:
+        """Count one ending."""
+        self.endings.append((job, ending))
+        if untracked:
+            self.untracked.append(f"{job.name}: {untracked}")
+
+    def exit_code(self) -> int:
+        """1 if a case failed or was exhausted, else 0."""
+        return int(any(e.result["status"] in ("failed", "exhausted") for _, e in self.endings))
+
+    def told(self) -> str:
+        """Counts of the statuses so far, in words."""
+        counts = {s: sum(e.result["status"] == s for _, e in self.endings) for s in STATUSES}
+        return ", ".join(f"{n} {status}" for status, n in counts.items() if n)
+
+    def of(self, config: str) -> list[Ending]:
+        """Endings of one config."""
+        return [ending for job, ending in self.endings if job.config.name == config]
+
+    def first_player(self) -> str | None:
+        """Path of the first player.html, in the order of the cases."""
+        pages = (job.folder.path / "player.html" for job in self.batch.plan())
+        return next((str(page) for page in pages if page.is_file()), None)
+
+
+@contextmanager
+def progress(tally: Tally) -> Iterator[OnEnding]:
+    """A bar on stderr; what is yielded counts an ending and moves the bar."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True, emoji=False), transient=True) as bar:
+        cases = bar.add_task("starting", total=len(tally.batch.configs) * len(tally.batch.cases))
+
+        def on_ending(job: Job, ending: Ending, untracked: str) -> None:
+            tally.add(job, ending, untracked)
+            bar.update(cases, advance=1, description=escape(tally.told()))
+
+        yield on_ending
+
+
+def show(tally: Tally) -> None:
+    """Print the table, reasons, and where to look."""
+    console = Console(emoji=False, highlight=False)
+    console.width = max(console.width, TABLE_WIDTH)
+    console.print(_table(tally))
+    for line in _reasons(tally):
+        console.print(escape(line), soft_wrap=True)
+    console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)
+    if page := tally.first_player():
+        console.print(escape(f"look at: {page}"), soft_wrap=True)
+    if tally.untracked:
+        console.print(escape(f"{len(tally.untracked)} not logged, run again to log them; {tally.untracked[0]}"))
+
+
+def _table(tally: Tally) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("config", overflow="fold", min_width=12)
+    for name in (*STATUSES, "as declared", "reused", "s/case"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for config in tally.batch.configs:
+        endings = tally.of(config.name)
+        counts = [str(sum(e.result["status"] == status for e in endings)) for status in STATUSES]
+        reused = sum(e.reused for e in endings)
+        table.add_row(escape(config.name), *counts, _realised(endings), str(reused), _seconds(endings))
+    return table
+
+
+def _realised(endings: list[Ending]) -> str:
+    """Of the executed cases that declare a contact, how many had it first and where declared."""
+    declared = [e for e in endings if e.result["status"] == "generated" and e.result["collision"]["declared"]]
+    hits = sum(e.result["collision"]["realised"] for e in declared)
+    return f"{hits}/{len(declared)}" if declared else "-"
+
+
+def _seconds(endings: list[Ending]) -> str:
+    spent = [sum(e.result["seconds"].values()) for e in endings]
+    return f"{sum(spent) / len(spent):.2f}" if spent else "-"
+
+
+def _reasons(tally: Tally) -> list[str]:
+    """Why cases ended otherwise, the first few."""
+    told = [
+        f"{job.name}: {ending.result['status']}: {ending.result['reason']}"
+        for job, ending in tally.endings
+        if ending.result["status"] != "generated"
+    ]
+    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
+    return [line[:400] for line in told[:MAX_REASONS]] + more

@@ -1,0 +1,133 @@
+"""What a case looks like: everything that the player and the picture show, in plain values.
+
+Knows records and the network drawing; no HTML, no matplotlib.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flows.drawing import Drawing, drawing_of
+from sgcad_core.geometry import Box, overlap_polygon
+from sgcad_core.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
+from sgcad_core.result import CaseRecord
+
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
+"""Okabe and Ito's palette (told apart by color-blind readers), strongest first."""
+DIAGRAM_LIMIT = 3
+"""Diagrams shown beside a player."""
+
+
+@dataclass(frozen=True)
+class Mover:
+    """One actor with its motion and color."""
+
+    info: ActorInfo
+    track: Trajectory
+    color: str
+
+
+@dataclass(frozen=True)
+class View:
+    """One executed case."""
+
+    record: CaseRecord
+    report: CrashReport
+    metrics: Mapping[str, Any]
+    result: Mapping[str, Any]
+    drawing: Drawing
+    movers: tuple[Mover, ...]
+
+    @staticmethod
+    def of(record: CaseRecord, report: CrashReport, metrics: Mapping[str, Any], result: Mapping[str, Any]) -> View:
+        """Gather what is shown. Raises InvalidOutput where the network cannot be read."""
+        network, scenario, execution = record.network, record.scenario, record.execution
+        if not (network and network.net_xml and scenario and execution):
+            raise ValueError(f"case {record.case}: nothing was executed, so there is nothing to show")
+        infos = {actor.id: actor for actor in scenario.actors}
+        movers = tuple(
+            Mover(infos[track.actor], track, COLORS[k % len(COLORS)])
+            for k, track in enumerate(execution.trajectories)
+            if track.actor in infos
+        )
+        return View(record, report, metrics, result, drawing_of(network.net_xml), movers)
+
+    def contact_point(self) -> tuple[float, float] | None:
+        """Middle of the first overlap, metres; None if nothing touched."""
+        contact = self.record.execution.contact if self.record.execution else None
+        boxes = [self._box(actor, contact.t_s) for actor in (contact.actor, contact.other)] if contact else []
+        if len(boxes) != 2 or boxes[0] is None or boxes[1] is None:
+            return None
+        middle = overlap_polygon(boxes[0], boxes[1]).mean(axis=0)
+        return float(middle[0]), float(middle[1])
+
+    def _box(self, actor: str, t_s: float) -> Box | None:
+        mover = next((m for m in self.movers if m.info.id == actor), None)
+        if mover is None:
+            return None
+        track = mover.track
+        k = int(np.abs(track.t_s - t_s).argmin())
+        pose = float(track.x_m[k]), float(track.y_m[k]), float(track.heading_rad[k])
+        return Box(*pose, mover.info.length_m, mover.info.width_m)
+
+    def as_json(self) -> dict[str, Any]:
+        """What the page's script reads; centimetres and milliradians are kept, no more."""
+        contact = dict(self.result["collision"]["observed"] or {})
+        if point := self.contact_point():
+            contact |= {"x": round(point[0], 2), "y": round(point[1], 2)}
+        return {
+            "case": self.record.case,
+            "config": self.record.config,
+            "status": self.result["status"],
+            "collision": {**self.result["collision"], "observed": contact or None},
+            "network": self.result["network"],
+            "drawing": _drawing(self.drawing),
+            "actors": [_actor(mover) for mover in self.movers],
+            "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
+            "conditions": _conditions(self.record.scenario),
+            "narrative": self.report.narrative,
+            "diagrams": [_data_url(d.png) for d in self.report.diagrams[:DIAGRAM_LIMIT]],
+            "metrics": self.metrics,
+            "grounding": self.result["grounding"],
+            "attempts": self.result["attempts"],
+            "seconds": self.result["seconds"],
+        }
+
+
+def _actor(mover: Mover) -> dict[str, Any]:
+    track = mover.track
+    return {
+        **mover.info.model_dump(),
+        "color": mover.color,
+        "x": _rounded(track.x_m, 2),
+        "y": _rounded(track.y_m, 2),
+        "heading": _rounded(track.heading_rad, 3),
+        "speed": _rounded(track.speed_mps, 2),
+    }
+
+
+def _drawing(drawing: Drawing) -> dict[str, Any]:
+    return {
+        "areas": [_rounded(a.ravel(), 2) for a in drawing.areas],
+        "strips": [[round(s.width_m, 2), int(s.cars), _rounded(s.points.ravel(), 2)] for s in drawing.strips],
+        "lines": [[line.style, _rounded(line.points.ravel(), 2)] for line in drawing.lines],
+    }
+
+
+def _conditions(scenario: Scenario | None) -> dict[str, str]:
+    behavior = scenario.behavior if scenario else None
+    found = {"light": behavior.light, "weather": behavior.weather, "surface": behavior.surface} if behavior else {}
+    return {name: str(value) for name, value in found.items() if value}
+
+
+def _rounded(values: Floats, digits: int) -> list[float]:
+    return [round(v, digits) for v in values.tolist()]
+
+
+def _data_url(png: bytes) -> str:
+    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")
