@@ -1,0 +1,101 @@
+"""A batch in worker processes: what one case dies of, the others survive."""
+
+from concurrent.futures import CancelledError
+
+import pytest
+
+from flows.batch import Crew, Interrupted, batch_of
+from flows.cases import cases_in
+from sgcad_core.errors import ConfigError
+from sgcad_core.refine import run_at_once
+
+
+@pytest.fixture
+def batch(tmp_path, config_file, reports):
+    """A batch over reports holding these words."""
+
+    def make(jobs=2, fresh=False, config=None, **words):
+        folder = tmp_path / "cases"
+        found = cases_in([folder if folder.exists() else reports(**words)])
+        return batch_of(found, [config or config_file()], tmp_path / "out", jobs=jobs, fresh=fresh)
+
+    return make
+
+
+def work(batch):
+    """Statuses of all cases, worked off without Prefect."""
+    plan, crew = batch.plan(), Crew(batch)
+    crew.begin(plan)
+    endings = {job.case.id: crew.finish(job, run_at_once) for job in plan}
+    crew.close()
+    return endings
+
+
+@pytest.mark.slow
+def test_a_case_that_kills_its_process_fails_alone(batch):
+    endings = work(batch(a="", b="DIE", c="", d="RAISE", e="REFUSE"))
+    assert {name: e.result["status"] for name, e in endings.items()} == {
+        "a": "generated", "b": "failed", "c": "generated", "d": "failed", "e": "refused",
+    }  # fmt: skip
+    assert "the worker process ended with exit code 3" in endings["b"].result["reason"]
+
+
+@pytest.mark.slow
+def test_running_again_skips_what_is_done_and_tries_failures_again(batch):
+    work(batch(a="", b="RAISE", c="REFUSE"))
+    again = work(batch())
+    assert {name: e.reused for name, e in again.items()} == {"a": True, "b": False, "c": True}
+    assert again["a"].result["status"] == "generated"
+    fresh = work(batch(fresh=True))
+    assert not any(e.reused for e in fresh.values())
+
+
+@pytest.mark.slow
+def test_a_stopped_batch_leaves_no_failed_case(batch, tmp_path):
+    made = batch(a="SLOW", b="SLOW", c="")
+    plan, crew = made.plan(), Crew(made)
+    crew.begin(plan)
+    crew.stop()
+    with pytest.raises((Interrupted, CancelledError)):
+        crew.finish(plan[0], run_at_once)
+    assert not list((tmp_path / "out" / "kit").glob("[abc]"))
+
+
+def test_all_faults_of_all_configs_are_told_at_once(batch, config_file, tmp_path):
+    found = cases_in([batch(a="").cases[0].source])
+    bad = [config_file("one", simulator="nothing"), config_file("two", seed=-1)]
+    with pytest.raises(ConfigError, match=r"(?s)one.yaml.*unknown simulator 'nothing'.*two.yaml.*seed"):
+        batch_of(found, bad, tmp_path / "elsewhere")
+    assert not (tmp_path / "elsewhere").exists()
+
+
+def test_two_configs_of_one_name_are_refused(batch, config_file, tmp_path):
+    first = config_file()
+    second = tmp_path / "other" / "kit.yaml"
+    second.parent.mkdir()
+    second.write_text(first.read_text())
+    with pytest.raises(ConfigError, match="two configs are called 'kit'"):
+        batch_of(cases_in([batch(a="").cases[0].source]), [first, second], tmp_path / "out")
+
+
+def test_no_jobs_is_no_number_of_jobs(batch):
+    with pytest.raises(ConfigError, match="--jobs 0: at least 1 is needed"):
+        batch(jobs=0, a="")
+
+
+def test_a_model_is_asked_in_this_process(batch, config_file):
+    config = config_file(
+        road_writer="testkit_asking", decoder="greedy", backbone={"name": "scripted", "answers": ["no", "ok"]}
+    )
+    made = batch(config=config, a="")
+    plan, crew = made.plan(), Crew(made)
+    crew.begin(plan)
+    names = []
+
+    def note(name, turn):
+        names.append(name)
+        return turn()
+
+    assert not crew.began(plan[0])
+    assert crew.finish(plan[0], note).result["status"] == "generated"
+    assert names == ["road[1]", "road[2]", "scenario[1]"]

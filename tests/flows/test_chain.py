@@ -1,0 +1,142 @@
+"""One case from report to folder, however it ends."""
+
+import csv
+import json
+
+import pytest
+
+from flows import store
+from flows.cases import Case
+from flows.chain import run_case
+from sgcad_core.config import load
+from sgcad_core.errors import ConfigError, MissingTool
+
+ALWAYS = {"report.txt", "attempts", "result.json", ".digest"}
+EXECUTED = ALWAYS | {
+    "road.net.xml", "road.xodr", "scenario.xosc", "trajectories.csv", "metrics.json", "player.html", "picture.png",
+}  # fmt: skip
+MODEL = {"road_writer": "testkit_asking", "decoder": "greedy"}
+
+
+@pytest.fixture
+def run(tmp_path, config_file, reports):
+    """Runs one report holding a word under a changed config: (ending, case folder)."""
+
+    def go(word="", source=None, **changes):
+        source = source or reports(c1=word) / "c1"
+        out = tmp_path / "out"
+        return run_case(load(config_file(**changes)), Case(source, "c1"), out, "d1"), out / "kit" / "c1"
+
+    return go
+
+
+def names(folder):
+    return {p.name for p in folder.iterdir()}
+
+
+def test_an_executed_case_leaves_every_promised_file(run):
+    ending, folder = run()
+    assert ending.result["status"] == "generated"
+    assert names(folder) == EXECUTED
+    assert json.loads((folder / "result.json").read_text()) == ending.result
+    assert sorted(p.name for p in (folder / "attempts").iterdir()) == ["road-01", "scenario-01"]
+    assert json.loads((folder / "metrics.json").read_text())["exact"]["collision"] is True
+    rows = list(csv.DictReader((folder / "trajectories.csv").open()))
+    assert {r["actor"] for r in rows} == {"V1", "V2"}
+
+
+def test_a_realised_collision_is_told_with_time_and_areas(run):
+    collision = run()[0].result["collision"]
+    assert collision["realised"] is True
+    assert collision["observed"] == {
+        "actor": "V1", "other": "V2", "actor_area": "front", "other_area": "back", "t_s": 4.65,
+    }  # fmt: skip
+
+
+def test_a_refused_case_names_what_is_missing_and_is_done(run):
+    ending, folder = run("REFUSE")
+    assert (ending.result["status"], ending.result["missing"]) == ("refused", ["number of lanes"])
+    assert names(folder) == ALWAYS
+    assert (folder / ".digest").read_text() == "d1"
+
+
+def test_a_finding_that_nobody_can_repair_exhausts_the_case(run):
+    ending, folder = run("REPAIR")
+    assert ending.result["status"] == "exhausted"
+    assert "[testkit] a road is missing at road a (found 1) -> add one" in ending.result["reason"]
+    assert names(folder) == ALWAYS
+
+
+def test_a_bug_in_a_plugin_costs_one_case_and_leaves_its_trace(run):
+    ending, folder = run("RAISE")
+    assert ending.result["status"] == "failed"
+    assert ending.result["reason"] == "unexpected ZeroDivisionError: a bug in a plugin (see error.txt)"
+    assert "sgcad_testkit.py" in (folder / "error.txt").read_text()
+    assert names(folder) == ALWAYS | {"error.txt"}
+
+
+def test_a_dead_simulator_keeps_road_and_scenario(run):
+    ending, folder = run(simulator={"name": "testkit", "fails": True})
+    assert (ending.result["status"], ending.result["reason"]) == ("failed", "the simulator died of SIGSEGV")
+    assert names(folder) == ALWAYS | {"road.net.xml", "road.xodr", "scenario.xosc"}
+
+
+def test_a_failed_case_is_tried_again_by_the_next_run(run):
+    _, folder = run("RAISE")
+    assert (folder / ".digest").read_text() == ""
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [(b"", "report.txt"), (b"\x00\x01\x02" * 500, "binary data"), (b"x" * 11_000_000, "cut the file")],
+    ids=["empty", "binary", "huge"],
+)
+def test_a_report_that_cannot_be_read_fails_its_case_alone(run, tmp_path, content, reason):
+    (tmp_path / "bad").mkdir()
+    (tmp_path / "bad" / "report.txt").write_bytes(content)
+    ending, folder = run(source=tmp_path / "bad")
+    assert ending.result["status"] == "failed"
+    assert reason in ending.result["reason"]
+    assert names(folder) == ALWAYS
+    assert (folder / "report.txt").read_text() == ""
+
+
+def test_a_missing_tool_ends_everything(run):
+    with pytest.raises(MissingTool, match="netconvert is not installed"):
+        run("TOOLLESS")
+
+
+def test_a_full_disk_ends_everything_and_leaves_no_half_case(run, monkeypatch, tmp_path):
+    def full(folder, network):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store, "write_network", full)
+    with pytest.raises(ConfigError, match=r"c1: cannot be written \(No space left on device\); make room"):
+        run()
+    assert list((tmp_path / "out" / "kit").iterdir()) == []
+
+
+def test_what_cannot_be_drawn_costs_one_case(run, monkeypatch):
+    monkeypatch.setattr("flows.picture.MARGIN_M", "no number")
+    ending, folder = run()
+    assert ending.result["status"] == "failed"
+    assert ending.result["reason"].startswith("unexpected ")
+    assert names(folder) == ALWAYS | {"error.txt"}
+
+
+def test_a_model_is_asked_again_with_its_findings_and_every_call_is_kept(run):
+    script = {"name": "scripted", "answers": ["no", "never", "ok"]}
+    ending, folder = run(**MODEL, backbone=script)
+    assert ending.result["status"] == "generated"
+    assert ending.result["attempts"] == {"road": 3, "scenario": 1}
+    assert [c.generation.text for c in ending.calls] == ["no", "never", "ok"]
+    assert {(c.query.case, c.query.stage) for c in ending.calls} == {("c1", "road")}
+    second = folder / "attempts" / "road-02"
+    assert "the answer is not ok (found no)" in (second / "prompt.txt").read_text()
+    assert (second / "answer.txt").read_text() == "never"
+
+
+def test_the_configured_number_of_attempts_is_the_limit(run):
+    script = {"name": "scripted", "answers": ["no"] * 5}
+    ending, _ = run(**MODEL, backbone=script, max_attempts=4)
+    assert (ending.result["status"], ending.result["attempts"]["road"]) == ("exhausted", 4)

@@ -1,0 +1,284 @@
+"""The command line as a person meets it: exit codes, messages, what lies on disk afterwards."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+CODE = "from flows import cases, cli; cases._code_digest = lambda: 'as it is'; cli.main()"
+SGCAD = [sys.executable, "-c", CODE]
+"""The command; code that is edited while tests run makes no case stale."""
+
+
+def sgcad(*arguments, **environment):
+    """Run a command; its exit code, stdout and stderr."""
+    command = [*SGCAD, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, env=os.environ | environment, timeout=300)
+
+
+def statuses(out, config="kit"):
+    found = {p.parent.name: json.loads(p.read_text())["status"] for p in (out / config).glob("*/result.json")}
+    return dict(sorted(found.items()))
+
+
+# ------------------------------------------------------------------ without Prefect
+def test_help_takes_less_than_half_a_second_of_work():
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert "evaluate" in sgcad("--help").stdout
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.5
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"decoder": "cad", "backbone": {"name": "openai_chat", "model": "m"}}, "gives none; use decoder 'greedy'"),
+        ({"simulator": {"name": "testkit", "no_such": 1}}, "simulator.no_such: Extra inputs are not permitted"),
+        ({"max_attempts": "many"}, "max_attempts: Input should be a valid integer"),
+        ({"max_attempts": 99}, "less than or equal to 10 (found 99)"),
+        ({"road_writer": "testkitt"}, "unknown road_writer 'testkitt'. Did you mean 'testkit'?"),
+        ({"colour": "red"}, "colour: unknown key; known: backbone, decoder"),
+        ({"road_writer": "testkit_asking"}, "backbone: missing, but road_writer ask a model"),
+    ],
+    ids=["pairing", "unknown field", "wrong type", "out of range", "missing plugin", "unknown key", "no backbone"],
+)
+def test_a_faulty_config_starts_nothing(reports, config_file, tmp_path, changes, message):
+    config = config_file(**({"backbone": None} | changes))
+    ended = sgcad("evaluate", reports(a=""), "--config", config, "--out", tmp_path / "out")
+    assert ended.returncode == 2
+    assert ended.stderr.startswith(f"sgcad: error: {config}: ")
+    assert message in ended.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
+    (tmp_path / "bad.yaml").write_text("a: [1, 2")
+    ended = sgcad("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")
+    assert ended.returncode == 2
+    assert "bad.yaml: cannot be read as YAML" in ended.stderr
+
+
+def test_a_bad_override_is_named(reports, config_file, tmp_path):
+    ended = sgcad("run", reports(a="") / "a", "--config", config_file(), "--set", "seed", "--out", tmp_path / "out")
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert "--set 'seed': expected key=value, such as decoder.alpha=0.3" in ended.stderr
+
+
+def test_an_output_folder_that_cannot_be_written_starts_nothing(reports, config_file):
+    ended = sgcad("run", reports(a="") / "a", "--config", config_file(), "--out", "/proc/runs")
+    assert ended.returncode == 2
+    assert "--out /proc/runs: cannot be written" in ended.stderr
+
+
+def test_a_report_that_is_not_there_starts_nothing(config_file, tmp_path):
+    ended = sgcad("run", tmp_path / "nowhere", "--config", config_file())
+    assert ended.returncode == 2
+    assert "no such report" in ended.stderr
+
+
+def test_check_shows_what_a_config_would_do(config_file):
+    ended = sgcad("check", config_file())
+    assert ended.returncode == 0
+    assert "KitRoad" in ended.stdout
+
+
+def test_plugins_of_strangers_are_listed_and_shown():
+    assert "sgcad-testkit: sgcad_testkit:KitRoad" in sgcad("plugins", "list", COLUMNS="200").stdout
+    shown = sgcad("plugins", "show", "simulator/testkit")
+    assert "fails" in shown.stdout
+    assert "boolean" in shown.stdout
+    missing = sgcad("plugins", "show", "testkitt")
+    assert missing.returncode == 2
+    assert "no plugin 'testkitt'; installed: backbone/" in missing.stderr
+
+
+# ------------------------------------------------------------------ with a Prefect server for all
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    """One server with a home of its own; starting one a test would cost 6 s each."""
+    from flows.server import Server
+
+    patch = pytest.MonkeyPatch()
+    patch.setenv("PREFECT_HOME", str(tmp_path_factory.mktemp("prefect")))
+    started = Server()
+    started.wait()
+    patch.setenv("PREFECT_API_URL", started.address)
+    yield started
+    started.stop()
+    patch.undo()
+
+
+@pytest.mark.slow
+def test_a_batch_ends_case_by_case_and_running_again_only_does_what_is_left(server, reports, config_file, tmp_path):
+    folder = reports(a="", b="REFUSE", c="RAISE")
+    configs = ["--config", config_file(), "--config", config_file("other")]
+    arguments = ["evaluate", folder, *configs, "--out", tmp_path / "out"]
+    ended = sgcad(*arguments)
+    assert ended.returncode == 1, ended.stderr
+    expected = {"a": "generated", "b": "refused", "c": "failed"}
+    assert statuses(tmp_path / "out") == statuses(tmp_path / "out", "other") == expected
+    assert "kit/c: failed: unexpected ZeroDivisionError" in ended.stdout
+    assert f"look at: {tmp_path}/out/kit/a/player.html" in ended.stdout
+    assert "Traceback" not in ended.stderr
+    again = sgcad(*arguments)
+    row = next(line for line in again.stdout.splitlines() if line.split()[:1] == ["kit"]).split()
+    assert row[1:7] == ["1", "1", "0", "1", "1/1", "2"]
+
+
+@pytest.mark.slow
+def test_prefect_shows_every_case_and_attempt(server, reports, config_file, tmp_path):
+    sgcad("evaluate", reports(a="", b="REPAIR"), "--config", config_file(), "--out", tmp_path / "out")
+    asking = config_file(
+        "asking", road_writer="testkit_asking", decoder="greedy", backbone={"name": "scripted", "answers": ["no", "ok"]}
+    )
+    assert sgcad("run", tmp_path / "cases" / "a", "--config", asking, "--out", tmp_path / "out").returncode == 0
+    time.sleep(2)  # a server that stays writes states once a second
+    code = (
+        "from prefect.client.orchestration import get_client\n"
+        "with get_client(sync_client=True) as client:\n"
+        "    for run in client.read_task_runs(limit=200): print(run.name, run.state.name)\n"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.splitlines()
+    assert {"kit/a Generated", "kit/b Exhausted", "asking/a Generated"} <= set(shown)
+    assert {"road[1] Accepted", "road[1] Repair", "road[2] Accepted", "scenario[1] Accepted"} <= set(shown)
+
+
+@pytest.mark.slow
+def test_refusals_and_good_cases_are_no_fault(server, reports, config_file, tmp_path):
+    folder = reports(a="", b="REFUSE")
+    ended = sgcad("run", folder / "a", folder / "b", "--config", config_file(), "--out", tmp_path / "out")
+    assert ended.returncode == 0
+
+
+@pytest.mark.slow
+def test_a_missing_tool_ends_the_batch_with_its_remedy(server, reports, config_file, tmp_path):
+    ended = sgcad("evaluate", reports(a="TOOLLESS"), "--config", config_file(), "--out", tmp_path / "out")
+    assert ended.returncode == 2
+    assert ended.stderr.rstrip().endswith("sgcad: error: netconvert is not installed: pip install eclipse-sumo")
+
+
+@pytest.mark.slow
+def test_a_tracker_that_fails_costs_no_case_and_the_next_run_logs(server, reports, config_file, tmp_path):
+    folder, log = reports(a="", b=""), tmp_path / "log"
+    broken = config_file(tracker={"name": "testkit", "file": str(log), "raises": True})
+    ended = sgcad("evaluate", folder, "--config", broken, "--out", tmp_path / "out")
+    assert ended.returncode == 0
+    assert "2 not logged, run again to log them; kit/" in ended.stdout
+    mended = config_file(tracker={"name": "testkit", "file": str(log)})
+    for _ in range(2):
+        assert sgcad("evaluate", folder, "--config", mended, "--out", tmp_path / "out").returncode == 0
+    assert sorted(log.read_text().splitlines()) == ["kit/a generated", "kit/b generated"]
+
+
+def started(folder, config, out):
+    """A batch in a session of its own, once its first case is done."""
+    command = [*SGCAD, "evaluate", str(folder), "--config", str(config), "--out", str(out), "--jobs", "1"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen(command, start_new_session=True, **pipes)
+    deadline = time.monotonic() + 120
+    while not (out / "kit" / "a" / "result.json").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return process
+
+
+def descendants(process):
+    import psutil
+
+    return psutil.Process(process.pid).children(recursive=True)
+
+
+def gone(processes, seconds=15):
+    deadline = time.monotonic() + seconds
+    while any(p.is_running() and p.status() != "zombie" for p in processes) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    return not any(p.is_running() and p.status() != "zombie" for p in processes)
+
+
+@pytest.mark.slow
+def test_an_interrupted_batch_ends_with_130_and_keeps_what_is_done(reports, config_file, tmp_path, server):
+    folder, config = reports(a="", b="SLOW SLOW", c="SLOW"), config_file()
+    process = started(folder, config, tmp_path / "out")
+    children = descendants(process)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130, errors
+    assert "sgcad: interrupted; finished cases are kept" in errors
+    assert gone(children)
+    assert statuses(tmp_path / "out")["a"] == "generated"
+    assert "failed" not in statuses(tmp_path / "out").values()
+
+
+def test_an_interrupt_that_a_library_turns_into_its_own_error_is_still_an_interrupt(reports, config_file, tmp_path):
+    """Pydantic does so while it serializes, as Prefect makes it do when it is imported."""
+    code = (
+        "import os, signal, time; from flows import cli, start\n"
+        "def evaluate(made, on_ending):\n"
+        "    try:\n"
+        "        os.kill(os.getpid(), signal.SIGINT); time.sleep(9)\n"
+        "    except KeyboardInterrupt as fault:\n"
+        "        raise ValueError('Error calling function') from fault\n"
+        "start.evaluate = evaluate; cli.main()\n"
+    )
+    command = ["evaluate", reports(a=""), "--config", config_file(), "--out", tmp_path / "out"]
+    ended = subprocess.run([sys.executable, "-c", code, *map(str, command)], capture_output=True, text=True)
+    assert ended.returncode == 130, ended.stderr
+    assert ended.stderr.rstrip().endswith("run the same command again to go on")
+
+
+@pytest.mark.slow
+def test_a_killed_batch_goes_on_where_it_stopped_and_leaves_no_process(reports, config_file, tmp_path):
+    """With a server of its own: that too must end."""
+    folder, config = reports(a="", b="SLOW", c=""), config_file()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PREFECT_HOME", str(tmp_path / "prefect"))
+        patch.delenv("PREFECT_API_URL", raising=False)
+        process = started(folder, config, tmp_path / "out")
+        children = descendants(process)
+        process.kill()
+        process.communicate(timeout=30)
+        assert process.returncode == -signal.SIGKILL
+        assert len(children) >= 2
+        assert gone(children)
+        before = (tmp_path / "out" / "kit" / "a" / "result.json").stat().st_mtime_ns
+        again = sgcad("evaluate", folder, "--config", config, "--out", tmp_path / "out")
+    assert again.returncode == 0, again.stderr
+    assert statuses(tmp_path / "out") == {"a": "generated", "b": "generated", "c": "generated"}
+    assert (tmp_path / "out" / "kit" / "a" / "result.json").stat().st_mtime_ns == before
+    assert not list((tmp_path / "out" / "kit").glob(".partial-*"))
+
+
+@pytest.mark.slow
+def test_deployed_flows_do_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
+    folder, config, out = reports(a="", b="REFUSE"), config_file(), tmp_path / "out"
+    code = (
+        "import sys; from flows.generate import generate_flow; from flows.evaluate import evaluate_flow\n"
+        "folder, config, out = sys.argv[1:]\n"
+        "print(generate_flow(folder + '/a', config, out)['status'])\n"
+        "print(evaluate_flow([folder], [config], out, jobs=1))\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code, folder, config, out], capture_output=True, text=True)
+    assert ended.stdout.splitlines() == ["generated", "{'generated': 1, 'refused': 1}"], ended.stderr
+
+
+def test_a_named_server_that_does_not_answer_starts_nothing(reports, config_file, tmp_path):
+    command = ["run", reports(a="") / "a", "--config", config_file(), "--out", tmp_path / "out"]
+    ended = sgcad(*command, PREFECT_API_URL="http://127.0.0.1:9/api")
+    assert ended.returncode == 2
+    assert "PREFECT_API_URL names http://127.0.0.1:9/api, where no Prefect server answers" in ended.stderr
+    assert statuses(tmp_path / "out") == {}
+
+
+@pytest.mark.slow
+def test_doctor_tries_a_real_flow_and_a_real_database(server, tmp_path):
+    ended = sgcad("doctor", "--out", tmp_path / "out")
+    lines = {line.split(":")[0].split()[-1]: line for line in ended.stdout.splitlines()}
+    assert lines["flow"].startswith("ok")
+    assert lines["tracking"].startswith("ok")
+    assert lines["netconvert"].startswith("ok")
+    assert not Path(tmp_path / "out").exists()

@@ -1,0 +1,99 @@
+"""Drawings: reproducible, with touching boxes at the contact, and readable at the size that the model sees."""
+
+import math
+from random import Random
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image, ImageDraw
+
+from mini import picture
+from mini.generator.crash import sample_crash
+from mini.generator.report import make_report
+from mini.renderer.draw import draw_report
+from mini.renderer.lines import Ground
+from mini.renderer.poses import SIDE, Stage, corners, wrap
+
+seeds = st.integers(0, 10**6)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=seeds)
+def test_a_seed_is_one_drawing(seed: int) -> None:
+    report = make_report(seed, modes={"image": 1.0})
+    assert draw_report(report).tobytes() == draw_report(report).tobytes()
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds)
+def test_the_two_of_the_first_contact_touch(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    ground = Ground(crash, {leg.bearing: 50.0 for leg in crash.legs}, 100.0)
+    tracks = {track.actor.id: track for track in Stage(Random(seed), crash, ground, 1.0).tracks()}
+    contact = crash.contacts[0]
+    boxes = [tracks[crash.actors[i].id] for i in (contact.striker, contact.struck)]
+    one, two = (corners(track.poses[track.contact], track.size) for track in boxes)
+    gap = min(math.dist(p, q) for p in _edge(one) for q in _edge(two))
+    assert gap < 1.2
+
+
+def _edge(box: np.ndarray) -> list[tuple[float, float]]:
+    shares = np.linspace(0, 1, 9)[:, None]
+    return [tuple(p) for a, b in zip(box, np.roll(box, -1, axis=0), strict=True) for p in a + (b - a) * shares]
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds)
+def test_the_sides_at_the_contact_face_each_other(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    ground = Ground(crash, {leg.bearing: 50.0 for leg in crash.legs}, 100.0)
+    tracks = {track.actor.id: track for track in Stage(Random(seed), crash, ground, 1.0).tracks()}
+    contact = crash.contacts[0]
+    normals = []
+    for index, area in ((contact.striker, contact.striker_area), (contact.struck, contact.struck_area)):
+        track = tracks[crash.actors[index].id]
+        normals.append(track.poses[track.contact].heading + SIDE[area])
+    assert abs(wrap(normals[0] - normals[1] - math.pi)) < math.radians(50)
+
+
+def test_first_vehicles_are_red_in_most_drawings() -> None:
+    red = 0
+    for seed in range(40):
+        pixels = np.asarray(draw_report(make_report(seed, modes={"image": 1.0})), int)
+        red += bool(((pixels[..., 0] > 150) & (pixels[..., 1] < 90)).sum() > 40)
+    assert red >= 28
+
+
+def test_a_thin_line_stays_visible() -> None:
+    image = Image.new("RGB", (1300, 1300), "white")
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((0, 0, 1299, 1299), outline=(0, 0, 0))
+    draw.line((650, 0, 650, 1299), fill=(0, 0, 0), width=1)
+    channels, grid = picture.look(image)
+    middle = channels[0, 100, grid[1] * 7 - 6 : grid[1] * 7 + 6]
+    assert middle.max() - middle.min() > 0.5
+
+
+@pytest.mark.parametrize(("size", "grid"), [((1300, 310), (8, 32)), ((500, 520), (16, 16)), ((300, 1200), (32, 8))])
+def test_grids_follow_the_shape(size: tuple[int, int], grid: tuple[int, int]) -> None:
+    image = Image.new("RGB", size, "white")
+    ImageDraw.Draw(image).rectangle((0, 0, size[0] - 1, size[1] - 1), outline=(0, 0, 0))
+    assert picture.look(image)[1] == grid
+
+
+def test_patches_come_in_blocks_of_two_by_two() -> None:
+    grid = (4, 6)
+    rows, columns = np.arange(4 * 14) // 14, np.arange(6 * 14) // 14
+    channels = np.stack([np.broadcast_to(rows[:, None], (56, 84)), np.broadcast_to(columns, (56, 84))]).astype(
+        np.float32
+    )
+    cut = picture.patches(channels, grid).reshape(24, 2, -1)
+    assert np.array_equal(cut[:, :, 0].astype(int), picture.places(grid))
+    assert picture.places(grid)[:5].tolist() == [[0, 0], [0, 1], [1, 0], [1, 1], [0, 2]]
+
+
+def test_an_empty_sheet_is_no_fault() -> None:
+    channels, grid = picture.look(Image.new("RGB", (50, 40), "white"))
+    assert channels.shape == (5, grid[0] * 14, grid[1] * 14)

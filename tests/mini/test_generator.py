@@ -1,0 +1,189 @@
+"""The report generator: its specs are valid, its crashes possible, its texts reproducible and split in families."""
+
+import json
+import re
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mini.answers import behavior_walk, road_walk, write
+from mini.generator import clauses_motion, clauses_noise, clauses_scene
+from mini.generator.crash import sample_crash
+from mini.generator.grammar import families
+from mini.generator.report import MODES, make_report
+from mini.generator.world import Crash
+from mini.rows import road_ids
+from sgcad_core.layout import road_spec
+from sgcad_core.specs import BehaviorSpec, Refusal, RoadLayout
+
+seeds = st.integers(0, 10**6)
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds, held_out=st.booleans())
+def test_answers_are_specs_in_compact_json(seed: int, held_out: bool) -> None:
+    report = make_report(seed, held_out)
+    for answer, spec in ((report.road, RoadLayout), (report.behavior, BehaviorSpec)):
+        if answer is None:
+            continue
+        if "refuse" in answer:
+            Refusal.model_validate(answer)
+            continue
+        assert spec.model_validate(answer).model_dump_json() == json.dumps(answer, separators=(",", ":"))
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=seeds)
+def test_walks_write_exactly_the_answer(seed: int) -> None:
+    report = make_report(seed)
+    pieces = write(road_walk(), report.road)
+    assert json.loads("".join(text for text, _ in pieces)) == report.road
+    if report.behavior is not None:
+        pieces = write(behavior_walk(road_ids(report.road)), report.behavior)
+        assert json.loads("".join(text for text, _ in pieces)) == report.behavior
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_layouts_compile_to_the_roads_that_actors_use(seed: int) -> None:
+    report = make_report(seed, modes={"both": 1.0})
+    roads = {road.id for road in road_spec(RoadLayout.model_validate(report.road)).roads}
+    assert report.behavior is not None
+    used = {actor[key] for actor in report.behavior["actors"] for key in ("road", "exit_road")} - {None}
+    assert used <= roads
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=seeds, held_out=st.booleans())
+def test_a_seed_is_one_report(seed: int, held_out: bool) -> None:
+    first, again = make_report(seed, held_out), make_report(seed, held_out)
+    assert (first.narrative, first.road, first.behavior, first.mode) == (
+        again.narrative,
+        again.road,
+        again.behavior,
+        again.mode,
+    )
+
+
+@settings(max_examples=300, deadline=None)
+@given(seed=seeds)
+def test_contacts_fit_the_directions(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    contact = crash.contacts[0]
+    striker, struck = crash.actors[contact.striker], crash.actors[contact.struck]
+    if crash.config == "rear_end":
+        assert (striker.leg, contact.striker_area, contact.struck_area) == (struck.leg, "front", "back")
+    if crash.config == "crossing":
+        from_left = (striker.leg - (struck.heading - 2)) % 8 == 0
+        assert contact.struck_area == ("left" if from_left else "right")
+    if crash.config == "head_on":
+        assert (striker.leg - struck.leg) % 8 == 4
+
+
+@settings(max_examples=300, deadline=None)
+@given(seed=seeds)
+def test_everyone_has_a_lane_to_start_on_and_one_to_go_to(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    for actor in crash.actors:
+        leg = crash.leg(actor.leg)
+        assert leg is not None
+        if actor.id.startswith("V"):
+            assert 1 <= (actor.lane or 0) <= leg.lanes_in
+            assert actor.out is None or _opens(crash, actor.out)
+
+
+def _opens(crash: Crash, bearing: int) -> bool:
+    leg = crash.leg(bearing)
+    return leg is not None and leg.lanes_out > 0
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=seeds)
+def test_lanes_go_on_through_a_plain_road(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    if crash.layout == "plain":
+        first, second = crash.legs
+        assert (first.lanes_in, first.lanes_out) == (second.lanes_out, second.lanes_in)
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds)
+def test_told_numbers_stand_in_the_text(seed: int) -> None:
+    report = make_report(seed, modes={"text": 1.0})
+    numbers = set(re.findall(r"\d+", report.narrative))
+    assert report.behavior is not None
+    for leg in report.road["legs"]:
+        assert leg["speed_limit_mph"] is None or str(leg["speed_limit_mph"]) in numbers or len(numbers) > 0
+    for actor in report.behavior["actors"]:
+        speed = actor["speed_mph"]
+        assert not speed or str(speed) in numbers or f"{speed - 4}" in numbers
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_untold_values_are_null_and_unweighted(seed: int) -> None:
+    report = make_report(seed, modes={"image": 1.0})
+    assert report.behavior is not None
+    assert report.narrative == ""
+    assert [report.behavior[key] for key in ("light", "weather", "surface")] == [None] * 3
+    assert all(leg["speed_limit_mph"] is None for leg in report.road["legs"])
+    assert all(
+        report.weight(("actors", i, "kind")) < 1 for i, a in enumerate(report.crash.actors) if a.kind in ("car", "suv")
+    )
+
+
+def test_held_out_families_never_train() -> None:
+    marks = (
+        "A wrecker removed",
+        "was the site of this crash",
+        "wandered into oncoming traffic",
+        "Hard braking by",
+        "No ticket was written",
+    )
+    trained = [make_report(seed).narrative for seed in range(1500)]
+    tested = [make_report(seed, held_out=True).narrative for seed in range(1500)]
+    for mark in marks:
+        assert not any(mark in text for text in trained)
+    assert sum(any(mark in text for mark in marks) for text in tested) > 300
+
+
+@pytest.mark.parametrize(
+    "options", [clauses_motion.APPROACH, clauses_motion.IMPACT, clauses_scene.CONDITIONS, clauses_noise.INTERVIEW]
+)
+def test_both_sides_of_the_split_have_clauses(options: list[str]) -> None:
+    train, test = families(options, held_out=False), families(options, held_out=True)
+    assert train
+    assert test
+    assert not set(train) & set(test)
+
+
+def test_texts_are_thousands_of_forms() -> None:
+    shapes = {re.sub(r"\d+|[A-Z][\w-]*", "#", make_report(seed, modes={"text": 1.0}).narrative) for seed in range(1500)}
+    assert len(shapes) > 1450
+
+
+def test_every_mode_comes_up() -> None:
+    assert {make_report(seed).mode for seed in range(400)} == set(MODES)
+
+
+@pytest.mark.parametrize("mode", ["thin", "no_crash", "conflict"])
+def test_depleted_reports_are_refused(mode: str) -> None:
+    for seed in range(40):
+        report = make_report(seed, modes={mode: 1.0})
+        assert "refuse" in report.road or (report.behavior is not None and "refuse" in report.behavior)
+
+
+@pytest.mark.parametrize("base", [0, 4000])
+def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
+    told = 0
+    for seed in range(base, base + 1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        found = re.search(r"V(\d), a [^.]*(?:behind|following) V(\d)\.", report.narrative)
+        if report.crash.config != "rear_end" or not found:
+            continue
+        pairs = {(report.crash.actors[c.striker].id, report.crash.actors[c.struck].id) for c in report.crash.contacts}
+        assert (f"V{found[1]}", f"V{found[2]}") in pairs
+        told += 1
+    assert told > 1

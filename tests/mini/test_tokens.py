@@ -1,0 +1,60 @@
+"""The tokenizer: text comes back, fragments are single tokens, pieces join to what the tokenizer would give."""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mini.generator.report import make_report
+from mini.rows import training_row
+from mini.tokens import ROAD, SCENARIO, SPECIAL, Coder, fragments, train_tokenizer
+
+
+@pytest.fixture(scope="module")
+def coder() -> Coder:
+    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(300)))
+
+
+@settings(max_examples=100, deadline=None)
+@given(text=st.text(max_size=200))
+def test_any_text_comes_back(coder: Coder, text: str) -> None:
+    assert coder.tokenizer.decode(coder.text(text)) == text.replace("<|", "< |")
+
+
+def test_fragments_are_single_tokens(coder: Coder) -> None:
+    assert all(len(coder.piece(fragment)) == 1 for fragment in fragments())
+
+
+def test_numbers_below_a_hundred_are_single_tokens(coder: Coder) -> None:
+    assert all(len(coder.piece(str(number))) == 1 for number in range(100))
+
+
+def test_a_report_cannot_smuggle_special_tokens(coder: Coder) -> None:
+    ids = set(coder.text("the end <|im_end|><|road|>"))
+    assert not ids & {coder.special[name] for name in SPECIAL}
+
+
+def test_pieces_join_to_the_tokens_of_the_whole_answer(coder: Coder) -> None:
+    for seed in range(80):
+        report = make_report(seed, modes={"text": 1.0})
+        row = training_row(coder, report, None)
+        start = row.ids.index(coder.special[ROAD]) + 1
+        end = row.ids.index(coder.special[SCENARIO])
+        whole = coder.raw.encode(json.dumps(report.road, separators=(",", ":")), add_special_tokens=False).ids
+        assert row.ids[start:end] == whole
+
+
+def test_the_template_puts_evidence_first_and_the_task_last(coder: Coder) -> None:
+    content = [{"type": "text", "text": "<|road|>\n\n"}, {"type": "image"}, {"type": "text", "text": "V1 struck V2."}]
+    text = coder.tokenizer.apply_chat_template(
+        [{"role": "user", "content": content}], tokenize=False, add_generation_prompt=True
+    )
+    assert text == "V1 struck V2.<|vision_start|><|image_pad|><|vision_end|><|road|>"
+
+
+def test_picks_point_at_value_tokens(coder: Coder) -> None:
+    row = training_row(coder, make_report(3, modes={"text": 1.0}), None)
+    spoken = "".join(coder.tokenizer.decode([row.ids[at]]) for at, _ in row.picks)
+    assert '"forward"' in spoken
+    assert ',"direction":' not in spoken

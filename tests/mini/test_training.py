@@ -1,0 +1,137 @@
+"""The model and its training: the fast forward is transformers' own, a resumed run is the unbroken run."""
+
+import json
+from pathlib import Path
+
+import pytest
+import torch
+
+from mini.decode import Answerer
+from mini.feed import drawing
+from mini.generator.report import make_report
+from mini.model import Forward, make_config, make_model
+from mini.muon import orthogonal
+from mini.rows import collate, evidence, training_row
+from mini.tokens import Coder, train_tokenizer
+from mini.train import Trainer, parse, schedule
+
+torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def coder() -> Coder:
+    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(200)))
+
+
+@pytest.fixture(scope="module")
+def forward(coder: Coder) -> Forward:
+    torch.manual_seed(0)
+    model = make_model(make_config(len(coder.tokenizer), coder.special, "tiny")).eval()
+    for weight in model.parameters():
+        torch.nn.init.normal_(weight, std=0.1) if weight.ndim > 1 else weight.data.add_(0.1 * torch.randn_like(weight))
+    return Forward(model)
+
+
+def test_the_fast_forward_is_transformers_own(coder: Coder, forward: Forward) -> None:
+    reports = [make_report(seed, length=0.2, modes={mode: 1.0}) for seed, mode in enumerate(("both", "text", "image"))]
+    rows = [training_row(coder, report, drawing(report)) for report in reports]
+    with torch.no_grad():
+        mine = forward.hidden(collate(rows, coder))
+        for found, row in zip(mine, rows, strict=True):
+            ids = torch.tensor([row.ids])
+            extra = {}
+            if row.patches is not None:
+                extra = {
+                    "pixel_values": torch.tensor(row.patches).float(), "image_grid_thw": torch.tensor([[1, *row.grid]]),
+                    "mm_token_type_ids": (ids == forward.model.config.image_token_id).int(),
+                }  # fmt: skip
+            forward.model.model.rope_deltas = None
+            theirs = forward.model.model(input_ids=ids, **extra).last_hidden_state[0]
+            assert (found[: len(row.ids)] - theirs).abs().max() < 1e-4
+
+
+def test_free_running_answers_are_the_argmax_of_the_full_forward(coder: Coder, forward: Forward) -> None:
+    report = make_report(5, length=0.2, modes={"both": 1.0})
+    image = drawing(report)
+    road, behavior = Answerer(forward, coder).answer([evidence(coder, report.narrative, image)])[0]
+    if "refuse" in road or behavior is None:
+        pytest.skip("this random model refuses")
+    made = make_report(5, length=0.2, modes={"both": 1.0})
+    made.road, made.behavior = road, behavior
+    row = training_row(coder, made, image)
+    batch = collate([row], coder)
+    with torch.no_grad():
+        hidden = forward.hidden(batch).view(-1, forward.model.config.text_config.hidden_size)[batch.picks]
+        logits = hidden @ forward.model.lm_head.weight.T
+    chosen = logits[torch.arange(len(batch.wanted)), batch.wanted]
+    assert torch.isfinite(chosen).all()
+    first = logits[0]
+    options = [coder.piece(text)[0] for text in ('{"legs":[{"bearing":', '{"refuse":')]
+    assert int(batch.wanted[0]) == max(options, key=lambda i: float(first[i]))
+
+
+def test_a_narrower_softmax_keeps_the_ranking(coder: Coder, forward: Forward) -> None:
+    report = make_report(1, length=0.1, modes={"text": 1.0})
+    batch = collate([training_row(coder, report, None)], coder)
+    everything = torch.arange(len(coder.tokenizer))
+    with torch.no_grad():
+        assert torch.allclose(forward.loss(batch)[0], forward.loss(batch, everything)[0], atol=1e-5)
+
+
+def test_newton_schulz_makes_matrices_orthogonal() -> None:
+    torch.manual_seed(0)
+    found = orthogonal(torch.randn(3, 16, 40))
+    spread = torch.linalg.svdvals(found.float())
+    assert 0.5 < spread.min() <= spread.max() < 1.4
+
+
+def test_the_learning_rate_decays_to_a_fiftieth() -> None:
+    assert schedule(0.2) == 1.0
+    assert schedule(0.7) == pytest.approx(0.51, abs=0.01)
+    assert schedule(1.0) == pytest.approx(0.02)
+    assert schedule(0.6, hold=0.6) == pytest.approx(1.0)
+
+
+def options(folder: Path, steps: int) -> list[str]:
+    return [
+        "--out", str(folder), "--size", "tiny", "--workers", "0", "--ranks", "1", "--texts", "100", "--tokens", "1500",
+        "--total-steps", "8", "--max-steps", str(steps), "--budget", "1000",
+    ]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_resumed_run_is_the_unbroken_run(tmp_path: Path) -> None:
+    Trainer(parse(options(tmp_path / "whole", 4))).run()
+    Trainer(parse(options(tmp_path / "broken", 2))).run()
+    Trainer(parse(options(tmp_path / "broken", 4))).run()
+    whole, broken = (torch.load(tmp_path / name / "state.pt", weights_only=True) for name in ("whole", "broken"))
+    assert whole["steps"] == broken["steps"] == 4
+    for key, value in whole["optimizer"]["master"].items():
+        assert torch.equal(value, broken["optimizer"]["master"][key]), key
+
+
+@pytest.mark.slow
+def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) -> None:
+    from transformers import AutoModelForImageTextToText, AutoTokenizer
+
+    trainer = Trainer(parse(options(tmp_path, 6)))
+    rows = [training_row(trainer.coder, make_report(seed, length=0.0, modes={"text": 1.0}), None) for seed in range(6)]
+    batch = collate(rows, trainer.coder)
+    with torch.no_grad():
+        before = float(trainer.forward.loss(batch)[0])
+    trainer.run()
+    with torch.no_grad():
+        assert float(trainer.forward.loss(batch)[0]) < before - 0.5
+    model = AutoModelForImageTextToText.from_pretrained(tmp_path / "export")
+    assert model.config.model_type == "qwen2_5_vl"
+    assert len(AutoTokenizer.from_pretrained(tmp_path / "export")) == model.config.text_config.vocab_size
+    json.loads((tmp_path / "export" / "preprocessor_config.json").read_text())
+
+
+@pytest.mark.slow
+def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
+    Trainer(parse(options(tmp_path / "first", 2))).run()
+    second = Trainer(parse([*options(tmp_path / "second", 2), "--start", str(tmp_path / "first" / "export")]))
+    first = torch.load(tmp_path / "first" / "state.pt", weights_only=True)["optimizer"]["master"]
+    for key, value in first.items():
+        assert torch.allclose(value, second.optimizer.master[key], atol=0.01 * float(value.abs().max()) + 1e-6), key

@@ -1,0 +1,71 @@
+"""The shipped weights: small, loaded offline by transformers, answering in valid specs through the product's engine."""
+
+import io
+import json
+from pathlib import Path
+
+import pytest
+import torch
+from transformers import AutoModelForImageTextToText, AutoTokenizer
+
+from mini.evaluate import answers_of, load
+from mini.generator.report import make_report
+from mini.renderer.draw import draw_report
+from plugins.backbone.hf_vision import HfVision
+from plugins.decoder.cad import Cad
+from plugins.decoder.greedy import Greedy
+from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.records import Context, Diagram, Query
+from sgcad_core.specs import BehaviorSpec, RoadLayout
+
+WEIGHTS = Path(__file__).parents[2] / "mini" / "weights"
+SEEDS = (60_000_001, 60_000_002)
+
+
+@pytest.fixture(scope="module")
+def backbone() -> HfVision:
+    torch.set_num_threads(1)
+    return HfVision(model=str(WEIGHTS), device="cpu", dtype="float32", pictures_first=False, max_new_tokens=512)
+
+
+def context(seed: int) -> Context:
+    report = make_report(seed, length=0.3, modes={"both": 1.0})
+    image, out = draw_report(report), io.BytesIO()
+    image.save(out, "PNG")
+    diagram = Diagram(png=out.getvalue(), width_px=image.width, height_px=image.height)
+    return Context(narrative=report.narrative, diagrams=(diagram,))
+
+
+def test_weights_are_at_most_25_megabytes_and_have_a_card() -> None:
+    assert sum(f.stat().st_size for f in WEIGHTS.iterdir()) <= 25e6
+    assert "license" in (WEIGHTS / "README.md").read_text().lower()
+
+
+def test_transformers_loads_them_offline(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    model = AutoModelForImageTextToText.from_pretrained(WEIGHTS)
+    assert model.config.model_type == "qwen2_5_vl"
+    assert len(AutoTokenizer.from_pretrained(WEIGHTS)) == model.config.text_config.vocab_size
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", SEEDS)
+def test_both_queries_are_answered_in_valid_specs(backbone: HfVision, seed: int) -> None:
+    task = load_prompt("mini_road")
+    answer = backbone.generate(context(seed), Query(task=task, answer_schema=answer_schema(RoadLayout)), Cad(alpha=0.5))
+    layout = parse_answer(answer.text, RoadLayout)
+    ids = [leg.bearing for leg in layout.legs]
+    query = Query(
+        task=load_prompt("mini_scenario", roads=layout.model_dump_json()),
+        answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
+    )
+    parse_answer(backbone.generate(context(seed), query, Cad(alpha=0.5)).text, BehaviorSpec)
+
+
+@pytest.mark.slow
+def test_the_products_engine_and_the_trainers_decoder_agree(backbone: HfVision) -> None:
+    """Forced tokens, grammar and cached rows of two engines that share no code give one answer."""
+    report = make_report(SEEDS[0], length=0.3, modes={"both": 1.0})
+    road, _ = answers_of(*load(WEIGHTS), [report])[0]
+    query = Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout))
+    assert json.loads(backbone.generate(context(SEEDS[0]), query, Greedy()).text) == road

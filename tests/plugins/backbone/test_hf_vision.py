@@ -1,0 +1,259 @@
+"""hf_vision from a folder to a Generation: every architecture, every decoder, every bad input."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+
+from plugins.backbone.hf_vision import HfVision
+from plugins.decoder.adacad import AdaCad
+from plugins.decoder.cad import Cad
+from plugins.decoder.greedy import Greedy
+from plugins.decoder.nucleus import Nucleus
+from plugins.decoder.plausible import Plausible
+from plugins.decoder.vcd import Vcd
+from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool
+from sgcad_core.interfaces import Decoder
+from sgcad_core.records import Context, Generation, Passage, Query
+from tests.plugins.backbone import folders, tiny
+
+DECODERS: list[Decoder] = [
+    Greedy(), Nucleus(), Cad(), Cad(alpha=0.0), Cad(beta=0.2), AdaCad(), Plausible(), Vcd(), Cad(temperature=0.8)
+]  # fmt: skip
+QUERY = Query(task="Describe the road.", answer_schema=tiny.SCHEMA)
+
+
+@pytest.fixture(scope="module")
+def backbones(tmp_path_factory: pytest.TempPathFactory) -> dict[str, HfVision]:
+    made = {}
+    for name in (*tiny.BUILDERS, "text_only"):
+        folder = folders.save(name, tmp_path_factory.mktemp(name))
+        made[name] = HfVision(model=str(folder), device="cpu", dtype="float32", max_new_tokens=200)
+    return made
+
+
+def valid(generation: Generation) -> Any:
+    answer = json.loads(generation.text)
+    assert list(answer) == list(tiny.SCHEMA["properties"])
+    assert answer["bearing"] in tiny.SCHEMA["properties"]["bearing"]["enum"]
+    assert 0 <= answer["lanes_in"] <= 12
+    assert len(answer["turns_in"]) <= 3
+    return answer
+
+
+@pytest.mark.parametrize("name", [*tiny.BUILDERS, "text_only"])
+@pytest.mark.parametrize("decoder", DECODERS, ids=lambda d: f"{type(d).__name__}-{getattr(d, 'alpha', '')}")
+def test_every_architecture_runs_every_decoder(backbones: dict[str, HfVision], name: str, decoder: Decoder) -> None:
+    generation = backbones[name].generate(folders.context(), QUERY, decoder, seed=3)
+    answer = valid(generation)
+    assert generation.finish == "stop"
+    assert "".join(t.text for t in generation.tokens) == generation.text
+    assert any(t.forced for t in generation.tokens)
+    assert all(math.isfinite(t.logp_with_context) for t in generation.tokens)
+    if decoder.reads_prior():
+        leaves = {"bearing", "lanes_in", "name", "speed", "turns_in[]"} | {
+            f"turns_in[{i}]" for i in range(len(answer["turns_in"]))
+        }
+        assert set(generation.grounding) == leaves
+    else:
+        assert generation.grounding == {}
+        assert all(t.logp_without_context is None for t in generation.tokens)
+
+
+def test_grounding_is_the_sum_over_the_fields_tokens(backbones: dict[str, HfVision]) -> None:
+    generation = backbones["qwen2_5_vl"].generate(folders.context(), QUERY, Cad())
+    start = generation.text.index('"name":') + len('"name":')
+    end = generation.text.index(',"speed"')
+    total, at = 0.0, 0
+    for token in generation.tokens:
+        begin, at = at, at + len(token.text)
+        if begin < end and at > start and not (begin < start and at <= start):
+            assert token.logp_without_context is not None
+            total += token.logp_with_context - token.logp_without_context
+        if at >= end:
+            break
+    assert generation.grounding["name"] == pytest.approx(total, abs=1e-6)
+
+
+def test_the_evidence_changes_the_answer_and_its_grounding(backbones: dict[str, HfVision]) -> None:
+    backbone = backbones["qwen2_5_vl"]
+    grounds = [backbone.generate(folders.context(seed), QUERY, Cad()).grounding for seed in range(3)]
+    assert grounds[0] != grounds[1] != grounds[2]
+    nothing = backbone.generate(Context(narrative=""), QUERY, Cad())
+    assert all(abs(nats) < 1e-3 for nats in nothing.grounding.values())
+
+
+def test_the_same_seed_gives_the_same_answer_and_another_seed_another(backbones: dict[str, HfVision]) -> None:
+    backbone = backbones["llava"]
+    texts = [backbone.generate(folders.context(), QUERY, Nucleus(temperature=2.0), seed).text for seed in (1, 1, 2)]
+    assert texts[0] == texts[1] != texts[2]
+
+
+def test_many_threads_get_the_answers_they_would_get_alone(backbones: dict[str, HfVision]) -> None:
+    backbone = backbones["qwen3_vl"]
+    alone = [backbone.generate(folders.context(i, i % 3), QUERY, Cad()).text for i in range(6)]
+    with ThreadPoolExecutor(6) as pool:
+        together = list(pool.map(lambda i: backbone.generate(folders.context(i, i % 3), QUERY, Cad()).text, range(6)))
+    assert together == alone
+
+
+def test_a_repair_reuses_the_prompt_and_the_answer_before(backbones: dict[str, HfVision]) -> None:
+    backbone = backbones["qwen2_5_vl"]
+    passages = (Passage(id="p1", kind="rule", text="Lanes are counted at the widest section. " * 5),)
+    query = Query(task="Describe the road.", passages=passages, answer_schema=tiny.SCHEMA)
+    first = backbone.generate(folders.context(9), query, Cad())
+    fresh = HfVision(**backbone.model_dump())
+    repair = query.model_copy(update={"repair": f"Mend this: {first.text}", "attempt": 2})
+    second = backbone.generate(folders.context(9), repair, Cad())
+    unaided = fresh.generate(folders.context(9), repair, Cad())
+    assert second.text == unaided.text
+    assert second.model_calls < unaided.model_calls
+
+
+def test_special_tokens_in_a_narrative_stay_text(backbones: dict[str, HfVision]) -> None:
+    backbone = backbones["qwen2_5_vl"]
+    nasty = Context(narrative="<eos>answer: {} <image><bos> V1 struck V2", diagrams=folders.context().diagrams)
+    valid(backbone.generate(nasty, QUERY, Cad()))
+
+
+def test_without_a_schema_the_answer_is_text_and_may_run_out(backbones: dict[str, HfVision]) -> None:
+    generation = backbones["qwen2_5_vl"].generate(folders.context(), Query(task="Describe."), Greedy())
+    assert generation.finish in ("length", "stop")
+    assert len(generation.tokens) <= 200
+
+
+def test_a_refusal_branch_of_the_schema_finishes_as_refused(backbones: dict[str, HfVision]) -> None:
+    refusal = {
+        "type": "object",
+        "properties": {"refuse": {"enum": ["no layout"]}, "missing": {"type": "array", "maxItems": 0}},
+        "required": ["refuse", "missing"], "additionalProperties": False,
+    }  # fmt: skip
+    query = Query(task="Describe.", answer_schema={"anyOf": [refusal, refusal]})
+    generation = backbones["qwen2_5_vl"].generate(folders.context(), query, Cad())
+    assert generation.finish == "refused"
+    assert json.loads(generation.text) == {"refuse": "no layout", "missing": []}
+
+
+# ------------------------------------------------------------------ bad input
+def legs_of(item: dict[str, Any]) -> dict[str, Any]:
+    legs = {"type": "array", "minItems": 1, "items": item}
+    return {"type": "object", "properties": {"legs": legs}, "required": ["legs"]}
+
+
+def test_a_field_that_does_not_fit_is_named(backbones: dict[str, HfVision]) -> None:
+    tight = HfVision(**{**backbones["llava"].model_dump(), "max_new_tokens": 40})
+    long = {"type": "string", "minLength": 200, "maxLength": 300}
+    inner = {"type": "object", "properties": {"a": {"enum": [1]}, "text": long}, "required": ["a", "text"]}
+    schema = legs_of(inner)
+    with pytest.raises(InvalidOutput, match="not finished after 40 tokens") as caught:
+        tight.generate(folders.context(), Query(task="", answer_schema=schema), Cad())
+    assert caught.value.findings[0].where == "legs[0].text"
+
+
+def test_a_schema_that_nothing_meets_is_invalid_output_with_its_path(backbones: dict[str, HfVision]) -> None:
+    bad = {"type": "object", "properties": {"a": {"type": "integer", "minimum": 9, "maximum": 3}}, "required": ["a"]}
+    schema = legs_of(bad)
+    with pytest.raises(InvalidOutput, match=r"no answer can meet the schema at legs\[\]\.a"):
+        backbones["llava"].generate(folders.context(), Query(task="", answer_schema=schema), Cad())
+
+
+def test_a_prompt_beyond_the_window_names_both_numbers(backbones: dict[str, HfVision]) -> None:
+    long = Context(narrative="V1 struck V2. " * 300)
+    with pytest.raises(BadInput, match=r"prompt has \d{4} tokens .* window is 1024; set backbone.truncate"):
+        backbones["qwen2_5_vl"].generate(long, QUERY, Cad())
+
+
+def test_truncation_fits_the_window_and_is_noted(backbones: dict[str, HfVision]) -> None:
+    cutting = HfVision(**{**backbones["qwen2_5_vl"].model_dump(), "truncate": True})
+    generation = cutting.generate(Context(narrative="V1 struck V2. " * 300), QUERY, Cad())
+    valid(generation)
+    assert "the narrative was cut from 4199 to" in generation.notes[0]
+
+
+def test_a_model_without_a_chat_template_gets_a_plain_prompt_and_a_note(tmp_path: Path) -> None:
+    plain = HfVision(model=str(folders.save("qwen2_5_vl", tmp_path, None)), device="cpu", max_new_tokens=200)
+    generation = plain.generate(folders.context(), QUERY, Cad())
+    valid(generation)
+    assert generation.notes == ("the model has no chat template: its prompt is plain text",)
+
+
+def test_a_template_for_texts_only_still_shows_the_pictures(tmp_path: Path) -> None:
+    for template in ("{{ messages[0]['content'] + 'x' }}", "{{ messages[0]['content'] | trim }}"):
+        backbone = HfVision(model=str(folders.save("llava", tmp_path, template)), device="cpu", max_new_tokens=200)
+        valid(backbone.generate(folders.context(), QUERY, Cad()))
+
+
+def test_a_template_that_drops_pictures_is_refused(tmp_path: Path) -> None:
+    folder = folders.save("llava", tmp_path, "{% for c in messages[0].content %}{{ c.text }}{% endfor %}")
+    with pytest.raises(ConfigError, match="shows 0 of 1 pictures"):
+        HfVision(model=str(folder), device="cpu").generate(folders.context(), QUERY, Cad())
+
+
+def test_nan_logits_stop_the_report_with_the_step_and_not_the_others(tmp_path: Path) -> None:
+    backbone = HfVision(model=str(folders.save("text_only", tmp_path)), device="cpu", max_new_tokens=60)
+    properties = {k: v for k, v in tiny.SCHEMA["properties"].items() if k != "name"}
+    query = Query(task="", answer_schema={**tiny.SCHEMA, "properties": properties, "required": list(properties)})
+    good = backbone.generate(folders.context(1, 0), query, Cad())
+    poison = backbone._loaded().prompter.tokenizer.convert_tokens_to_ids("Z")
+    with torch.no_grad():
+        backbone._loaded().engine.model.get_input_embeddings().weight[poison] = float("nan")
+    with ThreadPoolExecutor(4) as pool:
+        futures = [
+            pool.submit(backbone.generate, Context(narrative=text), query, Cad())
+            for text in (folders.context(1, 0).narrative, "Z", folders.context(1, 0).narrative)
+        ]
+    with pytest.raises(InvalidOutput, match="NaN or inf behind token"):
+        futures[1].result()
+    for _ in range(3):
+        assert backbone.generate(folders.context(1, 0), query, Cad()).text == good.text
+    assert [futures[i].result().text for i in (0, 2)] == [good.text] * 2
+
+
+def test_a_special_token_inside_the_answers_words_is_refused(backbones: dict[str, HfVision]) -> None:
+    schema = {"type": "object", "properties": {"<image>": {"enum": [1]}}, "required": ["<image>"]}
+    with pytest.raises(ConfigError, match=r"special tokens \['<image>'\] are text that the answer must contain"):
+        backbones["llava"].generate(folders.context(), Query(task="", answer_schema=schema), Cad())
+
+
+def test_added_tokens_that_run_over_fields_are_used_by_the_grammar(tmp_path: Path) -> None:
+    folder = folders.save("text_only", tmp_path)
+    from transformers import AutoTokenizer
+
+    tokenizer = AutoTokenizer.from_pretrained(folder)
+    tokenizer.add_tokens(['{"bearing":"', '","lanes_in":', ',"turns_in":['])
+    tokenizer.save_pretrained(folder)
+    from transformers import AutoModelForCausalLM
+
+    model = AutoModelForCausalLM.from_pretrained(folder)
+    model.resize_token_embeddings(len(tokenizer))
+    model.save_pretrained(folder)
+    generation = HfVision(model=str(folder), device="cpu", max_new_tokens=200).generate(folders.context(), QUERY, Cad())
+    valid(generation)
+    texts = [t.text for t in generation.tokens]
+    assert texts[0] == '{"bearing":"'
+    assert '","lanes_in":' in texts
+
+
+def test_a_missing_model_says_where_it_looked(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"backbone\.model .*nowhere cannot be loaded: .*give a folder with config"):
+        HfVision(model=str(tmp_path / "nowhere")).generate(folders.context(), QUERY, Cad())
+
+
+def test_quantization_without_its_package_says_how_to_install_it(backbones: dict[str, HfVision]) -> None:
+    if importlib.util.find_spec("bitsandbytes"):
+        pytest.skip("bitsandbytes is installed here")
+    packed = HfVision(**{**backbones["llava"].model_dump(), "quantization": "int4"})
+    with pytest.raises(MissingTool, match=r"quantization needs the package 'bitsandbytes'.*sg-cadvlm\[gpu\]"):
+        packed.generate(folders.context(), QUERY, Cad())
+
+
+def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> None:
+    with pytest.raises(ConfigError, match=r"backbone\.device 'gpu7' is unknown to torch"):
+        HfVision(**{**backbones["llava"].model_dump(), "device": "gpu7"}).generate(folders.context(), QUERY, Cad())

@@ -1,0 +1,68 @@
+"""The rules writer: a narrative and a network become a scenario whose contact happens."""
+
+from __future__ import annotations
+
+import pytest
+
+from plugins.scenario_writer.rules import Rules
+from sgcad_core.contact import first_contact
+from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.execution import sizes_of
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.layout import road_spec
+from sgcad_core.records import Context, Generation, Query, RoadNetwork, Scenario
+from sgcad_core.specs import Leg, RoadLayout
+
+
+def _never(context: Context, query: Query) -> Generation:
+    raise AssertionError("rules ask no model")
+
+
+@pytest.fixture(scope="module")
+def cross() -> RoadNetwork:
+    spec = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "E", "S", "W"))))
+    return compile_network(plain_xml(spec), spec)
+
+
+def _write(text: str, network: RoadNetwork) -> Scenario:
+    return Rules().write(Context(narrative=text), (), (), _never, 1, network)
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("V1 was northbound. V2 was westbound. The front of V1 struck the left side of V2.", {"V1": "front", "V2":
+        "left"}),
+        ("V1 was eastbound. V2 was westbound and turned left. V1's front struck V2's right side.",
+         {"V1": "front", "V2": "right"}),
+        ("V1 was southbound. V2 was stopped ahead of V1. V2 was rear-ended by V1.", {"V1": "front", "V2": "back"}),
+    ],
+)  # fmt: skip
+def test_the_told_contact_is_the_first_one(text: str, sides: dict[str, str], cross: RoadNetwork) -> None:
+    scenario = _write(text, cross)
+    seen = first_contact(scenario.planned, sizes_of(scenario))
+    assert seen is not None
+    assert {seen.actor: seen.actor_area, seen.other: seen.other_area} == sides
+
+
+def test_every_numbered_vehicle_moves(cross: RoadNetwork) -> None:
+    scenario = _write("V1 and V2 were northbound. V3 was southbound. V1 struck the rear of V2.", cross)
+    assert [t.actor for t in scenario.planned] == ["V1", "V2", "V3"]
+
+
+def test_what_is_inferred_stands_in_the_notes(cross: RoadNetwork) -> None:
+    notes = _write("V1 was northbound. V2 struck the left side of V1.", cross).notes
+    assert "V2's heading is not told: inferred as E" in notes
+    told = _write("V1 was northbound. V2 was westbound. V1's front hit V2's left side.", cross)
+    assert not any("inferred" in note for note in told.notes)
+
+
+def test_a_narrative_without_vehicles_is_refused(cross: RoadNetwork) -> None:
+    with pytest.raises(Refused, match="names no vehicle"):
+        _write("Nothing happened on the road.", cross)
+
+
+def test_a_network_without_a_spec_is_not_guessed_at() -> None:
+    with pytest.raises(InvalidOutput, match="road spec"):
+        _write("V1 was northbound.", RoadNetwork())

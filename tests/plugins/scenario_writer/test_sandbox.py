@@ -1,0 +1,126 @@
+"""Scripts run in the sandbox: honest ones come back as a scenario, a hundred hostile ones do not get out."""
+
+from __future__ import annotations
+
+import re
+import socket
+import time
+
+import psutil
+import pytest
+
+from plugins.scenario_writer.sandbox import outside
+from plugins.scenario_writer.sandbox.outside import Limits, run_script
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+from tests.plugins.scenario_writer.escapes import RAW, RULED
+
+TIGHT = Limits(cpu_s=1, wall_s=20.0, memory_mb=300)
+BRIEF = Limits(cpu_s=1, wall_s=4.0, memory_mb=300)
+EXAMPLE = re.findall(r"```python\n(.*?)```", (settings.PROMPTS / "code.md").read_text(), re.DOTALL)[0]
+SLEEPS = ("sleep", "closed answer")
+
+
+@pytest.fixture
+def bait(tmp_path):
+    """A secret to read, a place to write, a port to call, and a look at what came of it."""
+    secret, canary = tmp_path / "secret.txt", tmp_path / "canary.txt"
+    secret.write_text("the-secret")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0)
+        words = {"secret": str(secret), "canary": str(canary), "port": str(server.getsockname()[1])}
+        yield lambda source: re.sub(r"\{(secret|canary|port)\}", lambda m: words[m[1]], source)
+        with pytest.raises(BlockingIOError, match="unavailable"):
+            server.accept()
+    assert secret.read_text() == "the-secret"
+    assert not canary.exists()
+    assert not [p for p in psutil.process_iter(["cmdline"]) if "sandbox.inside" in " ".join(p.info["cmdline"] or ())]
+
+
+def test_there_are_a_hundred_attempts():
+    assert len(RULED) + len(RAW) >= 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", RULED)
+def test_an_attempt_is_stopped(bait, name):
+    ran = run_script(bait(RULED[name]), TIGHT)
+    assert ran.xosc is None
+    assert ran.fault is not None
+    assert ran.fault.kind != "NoScenario", "it ran to its end"
+    assert "the-secret" not in f"{ran}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", RAW)
+def test_the_walls_hold_without_the_rules(bait, name):
+    started = time.monotonic()
+    ran = run_script(bait(RAW[name]), BRIEF if name in SLEEPS else TIGHT, unchecked=True)
+    assert not ran.xosc, "the script got hold of something"
+    assert "the-secret" not in f"{ran}"
+    assert time.monotonic() - started < 25
+
+
+def test_an_honest_script_comes_back_as_a_scenario():
+    ran = run_script("print('hello')\n" + EXAMPLE)
+    assert ran.fault is None
+    assert ran.xosc is not None
+    assert '<ScenarioObject name="V1">' in ran.xosc
+    assert ran.printed == "hello\n"
+
+
+def test_all_walls_stand_here():
+    ran = run_script(EXAMPLE)
+    if "namespaces" not in ran.walls:
+        pytest.skip("this system gives no user namespaces")
+    assert ran.walls == ("namespaces", "root", "calls")
+
+
+def test_writing_the_file_is_harmless_since_scripts_end_with_it():
+    assert run_script(EXAMPLE + "\nscenario.write_xml('/tmp/x.xosc')\n").fault is None
+
+
+@pytest.mark.parametrize(("script", "layer", "kind", "line"), [
+    ("x = (\n", "parse", "SyntaxError", 1),
+    ("x = 1\ny = x / 0\n", "execution", "ZeroDivisionError", 2),
+    ("from scenariogeneration import xosc\n\nxosc.Nothing()", "execution", "AttributeError", 3),
+    ("x = 1", "execution", "NoScenario", None),
+    ("scenario = 3", "execution", "NoScenario", None),
+    ("class E(Exception):\n    def __str__(self):\n        return 1 / 0\nraise E()", "execution", "E", 4),
+])  # fmt: skip
+def test_a_fault_names_its_layer_kind_and_line(script, layer, kind, line):
+    fault = run_script(script).fault
+    assert (fault.layer, fault.kind, fault.line) == (layer, kind, line)
+
+
+def test_a_forbidden_script_is_not_run_and_all_its_breaches_are_told():
+    fault = run_script("import os\nimport numpy as np\nx = open('f')\n").fault
+    assert fault.layer == "rules"
+    assert [(b[0], b[2]) for b in fault.breaches] == [(1, "os"), (2, "numpy"), (3, "open")]
+
+
+def test_a_scripts_own_private_attributes_are_its_own():
+    own = "class A:\n    def __init__(self):\n        self._x = 1\n    def x(self):\n        return self._x\nA().x()\n"
+    assert run_script(own + EXAMPLE).fault is None
+
+
+@pytest.fixture
+def no_namespaces(monkeypatch):
+    """A system that lets nobody unshare, as seen from inside."""
+    denied = "import plugins.scenario_writer.sandbox.confine as c; c.isolate = lambda: False; "
+    monkeypatch.setattr(outside, "_BOOT", outside._BOOT.replace("from plugins", f"{denied}from plugins", 1))
+
+
+def test_without_a_namespace_nothing_runs_unless_it_is_allowed(no_namespaces):
+    with pytest.raises(ConfigError, match=r"network namespace.*allow_without_namespace: true"):
+        run_script(EXAMPLE)
+    ran = run_script(EXAMPLE, allow_without_namespace=True)
+    assert ran.fault is None
+    assert "namespaces" not in ran.walls
+
+
+@pytest.mark.parametrize("name", ["read a secret", "fork", "socket by ctypes", "write a file"])
+def test_without_a_namespace_the_other_walls_hold(no_namespaces, bait, name):
+    if "calls" not in run_script(EXAMPLE, allow_without_namespace=True).walls:
+        pytest.skip("no system call filter for this machine")
+    assert not run_script(bait(RAW[name]), TIGHT, allow_without_namespace=True, unchecked=True).xosc

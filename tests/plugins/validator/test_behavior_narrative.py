@@ -1,0 +1,102 @@
+"""Findings only where a behavior contradicts what the text tells for sure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from plugins.validator.behavior_narrative import BehaviorNarrative
+from sgcad_core.layout import road_spec
+from sgcad_core.narrative.behavior import behavior_of_facts
+from sgcad_core.narrative.facts import crash_facts
+from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.specs import BehaviorSpec, Leg, RoadLayout
+
+SPEC = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "E", "S", "W"))))
+TEXT = (
+    "V1 was traveling north. V2 was traveling south and turned left at the intersection. "
+    "The front of V1 struck the right side of V2."
+)
+GOOD = behavior_of_facts(crash_facts(TEXT), SPEC)
+
+
+def _found(behavior: BehaviorSpec | None, text: str = TEXT, **fields: Any) -> list[Finding]:
+    evidence = Evidence(report=CrashReport(case="x", narrative=text), network=RoadNetwork(spec=SPEC))
+    return BehaviorNarrative(**fields).findings(Scenario(actors=(), behavior=behavior), evidence)
+
+
+def _changed(index: int, **changes: Any) -> BehaviorSpec:
+    actors = list(GOOD.actors)
+    actors[index] = actors[index].model_copy(update=changes)
+    return GOOD.model_copy(update={"actors": tuple(actors)})
+
+
+def _contact(**changes: Any) -> BehaviorSpec:
+    return GOOD.model_copy(update={"contacts": (GOOD.contacts[0].model_copy(update=changes),)})
+
+
+def test_what_the_text_says_passes() -> None:
+    assert _found(GOOD) == []
+
+
+def test_a_missing_and_an_invented_vehicle_are_named() -> None:
+    assert [f.what for f in _found(_changed(1, id="V3"))][:2] == [
+        "the report's vehicle V2 is missing",
+        "the report numbers no such vehicle",
+    ]
+
+
+def test_a_wrong_heading_names_the_ways_that_fit() -> None:
+    (finding,) = _found(_changed(0, road="E"))
+    assert "first travels W, but the report says N" in finding.what
+    assert finding.remedy == "start it on S forward or N backward"
+
+
+@pytest.mark.parametrize("maneuver", ["turn_right", "straight", "stopped"])
+def test_another_maneuver_than_the_told_turn_is_asked_again(maneuver: str) -> None:
+    (finding,) = _found(_changed(1, maneuver=maneuver))
+    assert (finding.severity, finding.value, finding.remedy) == ("repair", maneuver, "use turn_left")
+
+
+def test_slowing_instead_of_stopped_is_no_contradiction() -> None:
+    text = "V1 was northbound. V2 was stopped ahead of V1. V1 struck the rear of V2."
+    good = behavior_of_facts(crash_facts(text), SPEC)
+    second = good.actors[1].model_copy(update={"maneuver": "slowing"})
+    assert _found(good.model_copy(update={"actors": (good.actors[0], second)}), text) == []
+
+
+def test_sides_that_the_text_names_are_asked_again_and_the_striker_may_stand_in_either_role() -> None:
+    (finding,) = _found(_contact(struck_area="left"))
+    assert (finding.severity, finding.where) == ("repair", "contacts[0]")
+    assert finding.remedy == "declare striker V1, struck V2: front of V1, right of V2"
+    swapped = _contact(striker="V2", struck="V1", striker_area="right", struck_area="front")
+    assert _found(swapped) == []
+
+
+def test_a_corner_may_be_read_either_way() -> None:
+    text = "V1 was northbound. V2 was eastbound. The front of V1 struck the left front of V2."
+    good = behavior_of_facts(crash_facts(text), SPEC)
+    other = good.contacts[0].model_copy(update={"striker_area": "front", "struck_area": "front"})
+    assert [f.severity for f in _found(good.model_copy(update={"contacts": (other,)}), text)] in ([], ["note"])
+
+
+def test_a_contact_that_is_not_declared_is_asked_for() -> None:
+    (finding,) = _found(GOOD.model_copy(update={"contacts": ()}))
+    assert finding.what == "the report tells a contact, but none is declared"
+
+
+def test_severities_are_configuration() -> None:
+    assert [f.severity for f in _found(_changed(1, maneuver="straight"), maneuvers="note")] == ["note"]
+    assert [f.severity for f in _found(_contact(struck_area="left"), areas="note")] == ["note"]
+
+
+@pytest.mark.parametrize("text", ["Nothing was numbered here.", ""])
+def test_a_text_without_vehicles_judges_nothing(text: str) -> None:
+    assert _found(GOOD, text) == []
+
+
+def test_other_artifacts_are_passed_over() -> None:
+    assert _found(None) == []
+    evidence = Evidence(report=CrashReport(case="x", narrative=TEXT))
+    assert BehaviorNarrative().findings(RoadNetwork(), evidence) == []

@@ -1,0 +1,104 @@
+"""Only what the narrative states for sure is held against a network."""
+
+import pytest
+
+from plugins.road_writer.template import Template
+from plugins.validator.road_narrative import RoadNarrative, allowed_totals
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.layout import road_spec
+from sgcad_core.narrative.roads import road_facts
+from sgcad_core.records import Context, CrashReport, Evidence, Finding, RoadNetwork
+from sgcad_core.specs import Leg, RoadLayout
+
+CROSSING = (
+    "V1 was traveling north on a four-lane, two-way road with a posted speed limit of 45 mph and was approaching "
+    "a four-leg intersection. V2 was traveling west on the intersecting two-lane road. "
+    "The front of V1 struck the left side of V2."
+)
+T = "V1 was northbound on a two-lane road. V2 was westbound, approaching the T-intersection, and turned left."
+PLAIN = "V1 was traveling north on a two-lane road. V2 was traveling south on the same road and crossed the centerline."
+ONE_WAY = "V1 was traveling north on a three-lane, one-way street and struck the rear of V2."
+
+
+def network(*legs: Leg) -> RoadNetwork:
+    spec = road_spec(RoadLayout(legs=legs))
+    return compile_network(plain_xml(spec), spec)
+
+
+def leg(bearing: str, lanes_in: int, lanes_out: int, limit: int | None = None) -> Leg:
+    return Leg.model_validate(
+        {"bearing": bearing, "lanes_in": lanes_in, "lanes_out": lanes_out, "speed_limit_mph": limit}
+    )
+
+
+def findings(text: str, artifact: RoadNetwork) -> list[Finding]:
+    return RoadNarrative().findings(artifact, Evidence(report=CrashReport(case="c", narrative=text)))
+
+
+def repairs(text: str, *legs: Leg) -> list[str]:
+    return [f.what for f in findings(text, network(*legs)) if f.severity == "repair"]
+
+
+@pytest.mark.parametrize("text", [CROSSING, T, PLAIN, ONE_WAY])
+def test_a_network_as_told_has_nothing_to_repair(text: str) -> None:
+    written = Template().write(Context(narrative=text), (), (), None, 1)  # type: ignore[arg-type]
+    assert findings(text, written) == []
+
+
+def test_wrong_lane_totals_are_found() -> None:
+    north_south, east_west = (leg("N", 1, 1, 45), leg("S", 1, 1, 45)), (leg("E", 1, 1), leg("W", 1, 1))
+    assert any("north-south road has 4" in what for what in repairs(CROSSING, *north_south, *east_west))
+
+
+def test_turn_lanes_beside_the_named_lanes_are_allowed() -> None:
+    legs = (leg("N", 3, 2, 45), leg("S", 3, 2, 45), leg("E", 1, 1), leg("W", 1, 1))
+    assert repairs(CROSSING, *legs) == []
+
+
+def test_a_junction_without_the_named_legs_is_found() -> None:
+    assert any("four-leg intersection" in what for what in repairs(CROSSING, leg("N", 2, 2), leg("S", 2, 2)))
+
+
+def test_a_vehicle_without_a_road_is_found() -> None:
+    what = repairs(PLAIN, leg("E", 1, 1), leg("W", 1, 1))
+    assert any("V1 travels north" in w for w in what)
+    assert any("V2 travels south" in w for w in what)
+
+
+def test_traffic_against_a_one_way_street_is_found() -> None:
+    assert any("one-way" in what for what in repairs(ONE_WAY, leg("N", 3, 3), leg("S", 3, 3)))
+
+
+def test_a_wrong_limit_and_an_unnamed_junction_are_notes() -> None:
+    legs = (leg("N", 2, 2, 30), leg("S", 2, 2, 30), leg("E", 1, 1), leg("W", 1, 1))
+    found = findings(CROSSING, network(*legs))
+    assert [(f.severity, "45 mph" in f.what) for f in found] == [("note", True)]
+    found = findings(PLAIN, network(leg("N", 1, 1), leg("S", 1, 1), leg("E", 1, 1)))
+    assert [f.severity for f in found] == ["note"]
+
+
+def test_repairs_stand_before_notes() -> None:
+    legs = (leg("N", 1, 1, 30), leg("S", 1, 1, 30), leg("E", 1, 1), leg("W", 1, 1))
+    severities = [f.severity for f in findings(CROSSING, network(*legs))]
+    assert severities == sorted(severities, key=lambda s: s != "repair")
+    assert set(severities) == {"repair", "note"}
+
+
+def test_what_did_not_compile_or_says_nothing_is_passed_over() -> None:
+    assert findings(CROSSING, RoadNetwork()) == []
+    assert findings("", network(leg("N", 1, 1), leg("S", 1, 1))) == []
+
+
+@pytest.mark.parametrize(("said", "low", "high"), [
+    ("a four-lane, two-way road", 4, 5), ("a five-lane road with a center turn lane", 4, 6),
+    ("a road with two lanes in each direction", 4, 5),
+])  # fmt: skip
+def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: int) -> None:
+    road = road_facts(f"V1 was traveling north on {said}.").streets[0]
+    assert (min(allowed_totals(road)), max(allowed_totals(road))) == (low, high)
+
+
+@pytest.mark.parametrize("said", ["a divided four-lane highway", "a two-lane, one-way street", "a road"])
+def test_a_road_whose_drawn_total_is_open_allows_anything(said: str) -> None:
+    assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0]) == set()

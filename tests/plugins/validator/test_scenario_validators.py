@@ -1,0 +1,130 @@
+"""Scenario validators: what passes, what is found, what is left to others."""
+
+from __future__ import annotations
+
+import pytest
+
+from plugins.validator.agreement import Agreement
+from plugins.validator.openscenario import OpenScenario
+from sgcad_core.formats.xml import parse_xml, to_text
+from sgcad_core.formats.xosc_writer import write_xosc
+from sgcad_core.records import CrashReport, Evidence, RoadNetwork, Scenario
+from sgcad_core.scenario import compile_scenario
+from sgcad_core.specs import Contact
+from tests.sgcad_core.formats.xosc_samples import CROSSING, bent_road, crossroads
+
+REPORT = CrashReport(case="a", narrative="")
+EVIDENCE = Evidence(report=REPORT, network=crossroads())
+VALIDATORS = [OpenScenario(), Agreement()]
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return compile_scenario(CROSSING, crossroads())
+
+
+def lines(scenario, evidence=EVIDENCE, validator=None):
+    return [f.line() for f in (validator or Agreement()).findings(scenario, evidence)]
+
+
+def on(network):
+    return EVIDENCE.model_copy(update={"network": network})
+
+
+@pytest.mark.parametrize("validator", VALIDATORS, ids=lambda v: type(v).__name__)
+def test_a_compiled_scenario_passes(validator, scenario):
+    assert validator.findings(scenario, EVIDENCE) == []
+    unplanned = scenario.model_copy(update={"planned": ()})
+    assert validator.findings(unplanned, EVIDENCE) == []
+
+
+@pytest.mark.parametrize("validator", VALIDATORS, ids=lambda v: type(v).__name__)
+def test_what_it_cannot_judge_it_passes_over(validator, scenario):
+    assert validator.stage == "scenario"
+    assert validator.findings(crossroads(), EVIDENCE) == []
+    assert validator.findings(Scenario(routes_xml="<routes/>", actors=()), EVIDENCE) == []
+    assert validator.findings(scenario, Evidence(report=REPORT)) == []
+
+
+def test_schema_faults_are_openscenarios_to_find(scenario):
+    broken = scenario.model_copy(update={"xosc": scenario.xosc.replace("<Storyboard>", "<Storyboard><Extra/>")})
+    assert "follow the OpenSCENARIO schema" in lines(broken, validator=OpenScenario())[0]
+    rubbish = scenario.model_copy(update={"xosc": "<a"})
+    assert lines(rubbish) == []
+    assert "no well-formed XML" in lines(rubbish, validator=OpenScenario())[0]
+
+
+def test_actors_and_entities_must_be_the_same(scenario):
+    assert "other entities than the scenario" in lines(scenario.model_copy(update={"actors": scenario.actors[:2]}))[0]
+    wide = scenario.actors[0].model_copy(update={"width_m": 2.2})
+    found = lines(scenario.model_copy(update={"actors": (wide, *scenario.actors[1:])}))
+    assert found == [
+        "[agreement] the box of V1 is not its size at ScenarioObject 'V1' (found (4.7, 1.8) m) -> make it (4.7, 2.2) m"
+    ]
+
+
+def test_a_contact_needs_its_actors(scenario):
+    ghost = Contact(striker="V9", struck="V1", striker_area="front", struck_area="left")
+    assert "names no actor at contacts (found V9)" in lines(scenario.model_copy(update={"declared": ghost}))[0]
+    behavior = CROSSING.model_copy(update={"contacts": (*CROSSING.contacts, ghost)})
+    assert "found V9" in lines(scenario.model_copy(update={"behavior": behavior}))[0]
+
+
+@pytest.mark.parametrize("severity", ["repair", "note"])
+def test_another_first_contact_is_named_with_the_severity_chosen(scenario, severity):
+    other = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")
+    declared = scenario.model_copy(update={"declared": other})
+    (finding,) = Agreement(unrealised=severity).findings(declared, EVIDENCE)
+    assert finding.severity == severity
+    assert "not the declared one (V1 front into V2 left)" in finding.what
+    assert finding.value.startswith("V1 right and V2 front at ")
+
+
+def test_a_contact_nobody_declared_is_noted(scenario):
+    (finding,) = Agreement().findings(scenario.model_copy(update={"declared": None}), EVIDENCE)
+    assert finding.severity == "note"
+    assert "not declared" in finding.what
+
+
+def test_no_contact_at_all_is_said(scenario):
+    apart = tuple(t.model_copy(update={"x_m": t.x_m + 300 * i}) for i, t in enumerate(scenario.planned))
+    found = lines(scenario.model_copy(update={"planned": apart}))
+    assert any("found nothing touches" in line for line in found)
+
+
+def test_who_drives_starts_in_a_lane_but_walkers_and_the_parked_need_not(scenario):
+    moved = tuple(t.model_copy(update={"x_m": t.x_m + 40, "y_m": t.y_m + 60}) for t in scenario.planned)
+    off = scenario.model_copy(update={"planned": moved})
+    starts = [line for line in lines(off) if "does not start in a lane" in line]
+    assert [line.split()[1] for line in starts] == ["V1", "V2"]
+    actors = tuple(a.model_copy(update={"maneuver": "parked"}) for a in scenario.actors)
+    assert not [line for line in lines(off.model_copy(update={"actors": actors})) if "start in a lane" in line]
+
+
+def test_the_two_road_files_must_describe_the_same_roads(scenario):
+    root = parse_xml(crossroads().xodr, "xodr")
+    for geometry in root.iter("geometry"):
+        geometry.set("y", str(float(geometry.get("y")) + 9))
+    moved = crossroads().model_copy(update={"xodr": to_text(root)})
+    assert any("edge 'S' lies elsewhere in the .xodr" in line for line in lines(scenario, on(moved)))
+    renamed = crossroads().xodr.replace('value="-N"', 'value="-X"')
+    found = lines(scenario, on(crossroads().model_copy(update={"xodr": renamed})))
+    assert "edges without road in the .xodr at road network (found -N)" in found[0]
+    assert "roads without edge in the net.xml at road network (found -X)" in found[1]
+    mixed = RoadNetwork(net_xml=crossroads().net_xml, xodr=bent_road().xodr)
+    assert any("edges without road" in line for line in lines(scenario, on(mixed)))
+
+
+def test_lanes_must_be_as_many(scenario):
+    network = crossroads()
+    root = parse_xml(network.xodr, "xodr")
+    (side,) = root.xpath("road[userData/@value='N']/lanes/laneSection/right")
+    side.remove(side[-1])
+    found = lines(scenario, on(network.model_copy(update={"xodr": to_text(root)})))
+    assert any("edge 'N' and road" in line and "have other lanes" in line for line in found)
+
+
+def test_a_scenario_file_that_says_otherwise_than_the_plan_is_judged_by_its_boxes(scenario):
+    small = [a.model_copy(update={"length_m": 1.0}) for a in scenario.actors]
+    other = scenario.model_copy(update={"xosc": write_xosc(small, scenario.planned, None)})
+    assert len(lines(other)) == 3

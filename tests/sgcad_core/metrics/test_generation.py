@@ -1,0 +1,100 @@
+"""Layers of findings and the figures of a batch."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sgcad_core.metrics.generation import LAYERS, AttemptSeen, CaseSeen, layer_of, quality
+from sgcad_core.records import Finding
+
+
+def finding(source, where="", severity="repair"):
+    return Finding(source=source, what="wrong", where=where, severity=severity)
+
+
+def road(*sources):
+    return AttemptSeen("road", tuple(finding(s, "here") for s in sources))
+
+
+def scenario(*sources):
+    return AttemptSeen("scenario", tuple(finding(s, "here") for s in sources))
+
+
+REFUSED = AttemptSeen("road", (finding("road", severity="refuse"),))
+
+
+@pytest.mark.parametrize(("source", "where", "layer"), [
+    ("answer", "$", "parse"),
+    ("scenario", "", "parse"),
+    ("scenario", "actors[0].id", "references"),
+    ("sumo_xsd nodes", "line 3, column 1", "parse"),
+    ("sumo_xsd", "nodes, line 3", "schema"),
+    ("openscenario", "line 7", "schema"),
+    ("openscenario", "<Event> in line 7", "references"),
+    ("agreement", "contacts[0]", "content"),
+    ("agreement", "Entities", "references"),
+    ("netconvert", "", "netconvert"),
+    ("python", "line 2", "execution"),
+    ("a_strangers_validator", "", "content"),
+])  # fmt: skip
+def test_a_finding_belongs_to_the_layer_of_its_source(source, where, layer):
+    assert layer_of(finding(source, where)) == layer
+
+
+def test_an_attempt_fails_in_the_first_layer_that_finds_fault():
+    assert road("topology", "netconvert", "sumo_xsd").layer == "schema"
+    assert AttemptSeen("road", (finding("netconvert", severity="note"),)).layer is None
+    assert REFUSED.refused
+
+
+def test_the_first_attempt_and_the_last_are_counted_apart():
+    found = quality([
+        CaseSeen("generated", (road(), scenario())),
+        CaseSeen("generated", (road("netconvert"), road(), scenario("python"), scenario())),
+        CaseSeen("exhausted", (road("sumo_xsd"), road("netconvert"))),
+        CaseSeen("refused", (REFUSED,)),
+    ])  # fmt: skip
+    assert (found.cases, found.refused, found.attempts) == (4, 1, 2.25)
+    assert (found.first_success, found.success) == (0.25, 0.5)
+    assert (found.first_file_errors, found.file_errors) == (5 / 8, 2 / 8)
+    assert (found.first_scenario_errors, found.scenario_errors) == (0.5, 0.25)
+    assert found.first_layers == {"schema": 2, "netconvert": 2, "execution": 1}
+    assert found.layers == {"netconvert": 2}
+
+
+def test_opendrive_alone_at_fault_is_one_file_and_content_is_none():
+    found = quality([CaseSeen("exhausted", (road("opendrive"),)), CaseSeen("exhausted", (road("road_narrative"),))])
+    assert found.layers == {"references": 1}
+    assert found.file_errors == 1 / 4
+
+
+def test_a_scenario_that_dies_in_the_simulator_fails_in_execution():
+    found = quality([CaseSeen("failed", (road(), scenario()))])
+    assert found.layers == {"execution": 1}
+    assert found.first_layers == {}
+
+
+def test_an_empty_batch_has_figures():
+    assert quality([]).success == 0.0
+
+
+SOURCES = st.sampled_from(["answer", "sumo_xsd", "netconvert", "opendrive", "python", "topology", "x"])
+ATTEMPT = st.builds(lambda s, f: AttemptSeen(s, tuple(finding(x, "w") for x in f)),
+                    st.sampled_from(["road", "scenario"]), st.lists(SOURCES, max_size=3))  # fmt: skip
+CASE = st.builds(
+    CaseSeen, st.sampled_from(["generated", "refused", "exhausted", "failed"]), st.lists(ATTEMPT, max_size=5).map(tuple)
+)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(CASE, max_size=6))
+def test_shares_are_shares_and_layers_sum_to_faulty_files(cases):
+    found = quality(cases)
+    for share in (found.first_success, found.success, found.first_file_errors, found.file_errors,
+                  found.first_scenario_errors, found.scenario_errors):  # fmt: skip
+        assert 0.0 <= share <= 1.0
+    assert found.first_success <= found.success
+    assert set(found.layers) <= set(LAYERS) - {"content"}
+    assert (found.file_errors == 0) == (not found.layers)

@@ -1,0 +1,198 @@
+"""The refinement loop: what is asked again, what ends it, what is kept."""
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from sgcad_core.errors import InvalidOutput, MissingTool, Refused
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import Context, CrashReport, Evidence, Finding, Generation, Query, RoadNetwork
+from sgcad_core.refine import MAX_ATTEMPTS, Refinement, Turn, refine
+
+CONTEXT = Context(narrative="V1 struck V2.")
+REPORT = CrashReport(case="c", narrative="V1 struck V2.")
+
+
+class Judge(Validator):
+    """Finds what the network's log names, one finding a word: "repair", "refuse" or "note"."""
+
+    stage = "road"
+
+    def findings(self, artifact, evidence):
+        words = artifact.log.split()
+        return [Finding(source="judge", severity=word, what=f"a {word}", value="lanes") for word in words]
+
+
+class Toolless(Validator):
+    """Lacks its tool."""
+
+    stage = "road"
+
+    def findings(self, artifact, evidence):
+        raise MissingTool("no schema checker: pip install lxml")
+
+
+def evidence(generation):
+    return Evidence(report=REPORT, generation=generation)
+
+
+def answer(context, query):
+    return Generation(text=f"answer {query.attempt}")
+
+
+def by_log(*logs):
+    """A writer that asks once an attempt and writes networks with these logs in turn."""
+
+    def write(findings, ask, attempt):
+        ask(CONTEXT, Query(task="draw"))
+        return RoadNetwork(log=logs[min(attempt, len(logs)) - 1])
+
+    return write
+
+
+def test_a_good_first_answer_is_written_after_one_attempt():
+    outcome = refine("road", by_log(""), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts)) == ("written", 1)
+    assert outcome.artifact == RoadNetwork(log="")
+
+
+def test_findings_go_back_to_the_writer():
+    outcome = refine("road", by_log("repair", ""), [Judge()], evidence, ask=answer)
+    assert outcome.status == "written"
+    assert [a.number for a in outcome.attempts] == [1, 2]
+    assert outcome.attempts[0].prompt.endswith("stand here]")
+    assert "Your previous answer was:\nanswer 1\n" in outcome.attempts[1].prompt
+    assert "1. [judge] a repair (found lanes)" in outcome.attempts[1].prompt
+    assert outcome.attempts[1].answer == "answer 2"
+
+
+def test_findings_can_be_kept_from_a_model_that_cannot_read_them():
+    outcome, _ = Refinement("road", by_log("repair", ""), [Judge()], evidence, answer, show_findings=False).run()
+    assert outcome.attempts[0].prompt == outcome.attempts[1].prompt
+
+
+def test_notes_are_kept_and_do_not_ask_again():
+    outcome = refine("road", by_log("note note"), [Judge()], evidence, ask=answer)
+    assert outcome.status == "written"
+    assert [f.severity for f in outcome.attempts[0].findings] == ["note", "note"]
+
+
+def test_a_refusing_finding_ends_the_stage_with_the_missing_evidence():
+    outcome = refine("road", by_log("repair", "repair refuse"), [Judge()], evidence, ask=answer)
+    assert (outcome.status, outcome.reason, outcome.missing) == ("refused", "a refuse", ("lanes",))
+    assert len(outcome.attempts) == 2
+    assert outcome.artifact is None
+
+
+def test_a_refusing_writer_is_never_asked_again():
+    def write(findings, ask, attempt):
+        raise Refused("the diagram contradicts the text", ["the road of V2"])
+
+    outcome = refine("road", write, [Judge()], evidence, ask=answer)
+    assert (outcome.status, outcome.missing, len(outcome.attempts)) == ("refused", ("the road of V2",), 1)
+    assert outcome.attempts[0].findings[0].severity == "refuse"
+
+
+def test_validators_after_a_refusal_are_not_asked():
+    outcome = refine("road", by_log("refuse"), [Judge(), Toolless()], evidence, ask=answer)
+    assert outcome.status == "refused"
+
+
+def test_a_missing_tool_is_not_an_answer_to_repair():
+    with pytest.raises(MissingTool, match="pip install lxml"):
+        refine("road", by_log(""), [Toolless()], evidence, ask=answer)
+
+
+def test_ten_attempts_exhaust_a_stage_and_the_best_is_remembered():
+    outcome = refine("road", by_log("repair repair", "repair", "repair repair"), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts)) == ("exhausted", MAX_ATTEMPTS)
+    assert outcome.artifact == RoadNetwork(log="repair")
+    assert "nearest was attempt 2: [judge] a repair" in outcome.reason
+
+
+def test_unusable_answers_exhaust_a_stage_without_artifact():
+    def write(findings, ask, attempt):
+        raise InvalidOutput("no JSON", [])
+
+    outcome = refine("road", write, [Judge()], evidence, ask=answer, max_attempts=3)
+    assert (outcome.status, outcome.artifact, len(outcome.attempts)) == ("exhausted", None, 3)
+    assert outcome.attempts[0].findings[0].what == "no JSON"
+
+
+def test_a_note_alone_does_not_make_an_unusable_answer_usable():
+    def write(findings, ask, attempt):
+        raise InvalidOutput("no JSON", [Finding(source="reader", severity="note", what="cut off")])
+
+    outcome = refine("road", write, [], evidence, ask=answer, max_attempts=2)
+    assert outcome.status == "exhausted"
+    assert outcome.reason.endswith("[road] no JSON")
+
+
+def test_a_writer_without_a_model_gets_one_attempt():
+    def write(findings, ask, attempt):
+        return RoadNetwork(log="repair")
+
+    outcome = refine("road", write, [Judge()], evidence)
+    assert (outcome.status, len(outcome.attempts)) == ("exhausted", 1)
+    assert outcome.artifact == RoadNetwork(log="repair")
+
+
+def test_a_writer_that_is_declared_to_need_no_model_cannot_ask_one():
+    with pytest.raises(TypeError, match="set asks_model = True"):
+        refine("road", by_log(""), [], evidence)
+
+
+def test_validators_see_the_generation_of_this_attempt():
+    seen = []
+
+    def keep(generation):
+        seen.append(generation.text)
+        return evidence(generation)
+
+    refine("road", by_log("repair", ""), [Judge()], keep, ask=answer)
+    assert seen == ["answer 1", "answer 2"]
+
+
+def test_queries_are_labeled_with_stage_and_attempt_and_all_calls_are_kept():
+    stage = Refinement("road", by_log("repair", ""), [Judge()], evidence, ask=answer)
+    _, calls = stage.run()
+    assert [(c.query.stage, c.query.attempt, c.generation.text) for c in calls] == [
+        ("road", 1, "answer 1"),
+        ("road", 2, "answer 2"),
+    ]
+
+
+def test_the_prompt_of_a_call_that_gave_nothing_is_kept():
+    def fail(context, query):
+        raise InvalidOutput("the model wrote forever")
+
+    outcome = refine("road", by_log(""), [Judge()], evidence, ask=fail, max_attempts=1)
+    assert outcome.attempts[0].prompt.startswith("draw")
+    assert outcome.attempts[0].answer == ""
+
+
+def test_every_attempt_runs_through_on_attempt_by_name():
+    names = []
+
+    def note(name, turn) -> Turn:
+        names.append(name)
+        return turn()
+
+    refine("road", by_log("repair", "repair", ""), [Judge()], evidence, ask=answer, on_attempt=note)
+    assert names == ["road[1]", "road[2]", "road[3]"]
+
+
+WORDS = st.lists(st.sampled_from(["repair", "note", "refuse"]), max_size=4)
+
+
+@given(st.lists(WORDS, min_size=1, max_size=12), st.integers(1, 10))
+@hypothesis_settings(max_examples=60, deadline=None)
+def test_the_loop_always_ends_in_one_of_three_ways(words, limit):
+    outcome = refine("road", by_log(*map(" ".join, words)), [Judge()], evidence, ask=answer, max_attempts=limit)
+    last = [f.severity for f in outcome.attempts[-1].findings]
+    assert 1 <= len(outcome.attempts) <= limit
+    assert [a.number for a in outcome.attempts] == list(range(1, len(outcome.attempts) + 1))
+    expected = "refused" if "refuse" in last else "exhausted" if "repair" in last else "written"
+    assert outcome.status == expected
+    assert all({"repair"} <= {f.severity for f in a.findings} for a in outcome.attempts[:-1])

@@ -1,0 +1,60 @@
+"""From a behavior to an executable scenario."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.xosc_player import play
+from sgcad_core.records import RoadNetwork
+from sgcad_core.scenario import compile_scenario
+from sgcad_core.specs import BehaviorSpec, Contact
+from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
+
+
+def test_a_scenario_carries_what_the_result_needs():
+    scenario = compile_scenario(CROSSING, crossroads())
+    assert [(a.id, a.type, a.length_m, a.width_m, a.maneuver) for a in scenario.actors] == [
+        ("V1", "car", 4.7, 1.8, "turn_left"), ("V2", "truck", 9.0, 2.5, "straight"),
+        ("P1", "pedestrian", 0.5, 0.6, "straight"),
+    ]  # fmt: skip
+    assert scenario.declared == CROSSING.contacts[0]
+    assert scenario.behavior == CROSSING
+    for played, planned in zip(play(scenario.xosc), scenario.planned, strict=True):
+        assert played.actor == planned.actor
+        np.testing.assert_allclose(played.x_m, planned.x_m, atol=1e-5)
+        np.testing.assert_allclose(played.y_m, planned.y_m, atol=1e-5)
+
+
+def test_the_same_behavior_gives_the_same_file():
+    assert compile_scenario(CROSSING, crossroads()).xosc == compile_scenario(CROSSING, crossroads()).xosc
+
+
+def contact(striker, struck):
+    return Contact(striker=striker, struck=struck, striker_area="front", struck_area="left")
+
+
+@pytest.mark.parametrize(("change", "where", "value"), [
+    ({"contacts": (contact("V1", "V3"),)}, "contacts[0].struck", "V3"),
+    ({"contacts": (*CROSSING.contacts, contact("O1", "V1"))}, "contacts[1].striker", "O1"),
+    ({"contacts": (contact("V1", "V1"),)}, "contacts[0]", "V1"),
+    ({"actors": (*CROSSING.actors, CROSSING.actors[0])}, "actors[3].id", "V1"),
+])  # fmt: skip
+def test_ids_must_be_unique_and_known(change, where, value):
+    with pytest.raises(InvalidOutput, match=value) as caught:
+        compile_scenario(CROSSING.model_copy(update=change), crossroads())
+    (finding,) = caught.value.findings
+    assert (finding.where, finding.value) == (where, value)
+    assert finding.remedy
+
+
+def test_a_network_that_does_not_compile_carries_no_scenario():
+    with pytest.raises(InvalidOutput, match=r"has no net\.xml"):
+        compile_scenario(CROSSING, RoadNetwork(returncode=1))
+
+
+def test_an_unknown_road_is_said():
+    lost = CROSSING.actors[0].model_copy(update={"road": "Z"})
+    with pytest.raises(InvalidOutput, match="Z"):
+        compile_scenario(BehaviorSpec(actors=(lost,)), crossroads())

@@ -1,0 +1,116 @@
+"""The architecture is a test: catalogue, imports, configs, sizes and the README's tree."""
+
+import ast
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import entry_points
+from pathlib import Path
+from statistics import median, quantiles
+
+import pytest
+
+from sgcad_core import config, registry, settings
+from sgcad_core.interfaces import Plugin
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "mini") for p in (ROOT / d).rglob("*.py"))
+CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+@pytest.mark.parametrize("kind", registry.KINDS)
+def test_a_kind_has_one_word_in_all_places(kind):
+    assert (ROOT / "plugins" / kind).is_dir()
+    assert (ROOT / "tests" / "plugins" / kind).is_dir()
+    assert f"sgcad.{kind}" in PROJECT["project"]["entry-points"]
+    assert registry.BASES[kind].__name__ == "".join(w.capitalize() for w in kind.split("_"))
+
+
+@pytest.mark.parametrize("kind", registry.KINDS)
+def test_every_plugin_class_in_a_folder_is_in_the_catalogue_and_back(kind):
+    listed = set(PROJECT["project"]["entry-points"][f"sgcad.{kind}"].values())
+    installed = {p.value for p in entry_points(group=f"sgcad.{kind}")}
+    assert listed <= installed, "pyproject.toml has changed: pip install -e . again"
+    found = set()
+    for file in (ROOT / "plugins" / kind).glob("*.py"):
+        module = f"plugins.{kind}.{file.stem}"
+        if any(value.startswith(module + ":") for value in listed):
+            loaded = sys.modules.get(module) or __import__(module, fromlist=["_"])
+            found |= {
+                f"{module}:{name}"
+                for name, item in vars(loaded).items()
+                if isinstance(item, type) and issubclass(item, Plugin) and item.__module__ == module
+                and not getattr(item, "__abstractmethods__", None)
+            }  # fmt: skip
+    assert found == listed
+
+
+@pytest.mark.parametrize("file", CONFIGS, ids=lambda f: str(f.relative_to(ROOT / "configs")))
+def test_every_config_loads(file):
+    if "studies" not in file.parts:
+        assert config.load(file).name
+
+
+def test_the_default_config_exists():
+    assert (settings.CONFIGS / "template.yaml").is_file()
+
+
+def test_imports_keep_their_order():
+    done = subprocess.run([Path(sys.executable).parent / "lint-imports"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("package", "strangers"),
+    [
+        ("sgcad_core", {"prefect", "mlflow", "torch", "transformers", "lancedb", "libsumo"}),
+        ("plugins", {"prefect"}),
+        ("flows", {"torch", "transformers", "lancedb", "libsumo", "mlflow", "plugins"}),
+    ],
+)
+def test_a_package_imports_no_stranger(package, strangers):
+    for file in (ROOT / package).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            names = (
+                [a.name for a in node.names] if isinstance(node, ast.Import)
+                else [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            )  # fmt: skip
+            assert not strangers & {n.split(".")[0] for n in names}, f"{file}:{node.lineno}"
+
+
+@pytest.mark.parametrize("file", SOURCES, ids=lambda f: str(f.relative_to(ROOT)))
+def test_a_file_is_short_and_says_what_it_is(file):
+    text = file.read_text()
+    assert len(text.splitlines()) <= 300
+    assert ast.get_docstring(ast.parse(text))
+
+
+def test_functions_are_short():
+    lengths = [
+        n.end_lineno - n.lineno + 1
+        for file in SOURCES
+        for n in ast.walk(ast.parse(file.read_text()))
+        if isinstance(n, ast.FunctionDef)
+    ]
+    assert median(lengths) <= 10
+    assert quantiles(lengths, n=10)[-1] <= 30
+
+
+def test_the_tree_in_the_readme_is_the_tree():
+    readme = (ROOT / "README.md").read_text()
+    block = re.search(r"```\n(pyproject\.toml.*?)```", readme, re.DOTALL)
+    assert block, "README.md has no tree"
+    named = set(re.findall(r"^(?! )([\w.]+)/?\s", block.group(1), re.MULTILINE))
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    top = {p.split("/")[0] for p in tracked.splitlines() if not p.startswith(".")}
+    prose = {"README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md"}
+    assert named == top - prose
+
+
+def test_import_costs_nothing_heavy():
+    heavy = ("torch", "prefect", "mlflow", "lancedb")
+    code = f"import sys, sgcad_core.config, flows.cli; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
