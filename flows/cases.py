@@ -91,12 +91,12 @@ def digest_of(case: Case, config: Config) -> str:
 
 
 def config_digest(config: Config) -> str:
-    """Fingerprint of an experiment without its reports and its tracker."""
+    """Fingerprint of an experiment without its reports and its tracker. Raises ConfigError: an index is missing."""
     raw = {key: value for key, value in config.raw.items() if key != "tracker"}
     about = {
         "raw": raw,
         "name": config.name,
-        "plugins": {_qualified(p): type(p).version for p in _plugins(config)},
+        "plugins": {_qualified(p): (type(p).version, p.stamp) for p in _plugins(config)},
         "files": sorted(set(_named_digests(raw))),
         "package": version("sg-cadvlm"),
         "code": _prompts_digest() if config.backbone else _code_digest(),

@@ -40,6 +40,11 @@ class Plugin(BaseModel, ABC):
     version: ClassVar[str] = "1"
     """Part of every cache key: raise it when the same inputs give another result."""
 
+    @property
+    def stamp(self) -> str:
+        """Fingerprint of what the plugin reads beside its fields, such as an index; part of every cache key."""
+        return ""
+
 
 class ReportReader(Plugin):
     """Files to evidence."""

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from flows import cases
 from flows.cases import Case, cases_in, cases_of, digest_of, safe_id
 from sgcad_core.config import load
 from sgcad_core.errors import ConfigError
@@ -152,3 +153,21 @@ def test_an_unreadable_report_has_a_digest(reports, config_file):
     folder = reports(c1="") / "c1"
     (folder / "report.txt").chmod(0)
     assert digest(folder, config_file())
+
+
+def test_an_index_built_anew_changes_the_digest_and_a_missing_one_is_said_at_once(reports, config_file, tmp_path):
+    from plugins.retriever.knowledge.manifest import MANIFEST, Manifest
+
+    folder, index = reports(c1="") / "c1", tmp_path / "index"
+    file = config_file(retriever={"name": "lancedb", "folder": str(index)})
+    with pytest.raises(ConfigError, match="sgcad index build"):
+        digest(folder, file)
+    about = {"embedder": "", "dimension": 0, "chunks": 1, "kinds": {}, "sources": {}, "written": "now"}
+    index.mkdir()
+    seen = set()
+    for number, content in ((1, "aaaa"), (2, "bbbb")):
+        made = Manifest(number=number, tag=f"kb-v{number}", content=content, table_version=number, **about)
+        (index / MANIFEST).write_text(made.model_dump_json())
+        seen.add(cases.config_digest(load(file)))
+        seen.add(cases.config_digest(load(file)))
+    assert len(seen) == 2
