@@ -9,6 +9,13 @@ from __future__ import annotations
 from mini.generator.grammar import clauses
 
 APPROACH = clauses("""
+The driver of {Vf} was [traveling|driving|going] {xb} [in the {lane}|on {road}|]{appr}
+{Vf} was in the {lane}[ of {road}|], traveling {dir}{appr}
+{Vf} was occupying the {lane} [while |]traveling {dir}{appr}
+{Vf} continued {dir} [in the {lane}|on {road}|]{appr}
+[Prior to the crash|Before the crash|Just prior to impact|Initially], {Vf} was traveling {dir} [in the {lane}|on {road}]{appr}
+[Meanwhile|At the same time], {Vf} was [traveling|heading] {xb} [in the {lane}|on {road}]{appr}
+{Vf} was {xb} and occupied the {lane}{appr}
 {Vf} was traveling {dir} in the {lane} of {road}{appr}
 {Vf} was traveling {dir} [on|along] {road}{appr}
 {Vf} was traveling {xb} in the {lane}[ of {road}|]{appr}
@@ -23,6 +30,10 @@ APPROACH = clauses("""
 """{appr} may be empty."""
 
 APPROACH_STOPPED = clauses("""
+The driver of {Vf} was stopped {xb} [in the {lane}|]{why}
+{Vf} was [waiting|at a stop] in the {lane}, {xb}{why}
+{Vf} had been traveling {dir} and was now stopped{why}
+{Vf} came to a [complete |full |]stop [in the {lane}|] [while {xb}|facing {dir}]{why}
 {Vf} was stopped {xb} in the {lane}{why}
 {Vf} was stopped [facing {dir}|in the {xb} lane][ of {road}|]{why}
 {Vf} was stopped in the {lane} of {road}, facing {dir}{why}
@@ -33,6 +44,8 @@ APPROACH_STOPPED = clauses("""
 """)
 
 APPROACH_SLOWING = clauses("""
+{Vf} was traveling {dir} and [slowed down|reduced its speed|had slowed]{why}
+The driver of {Vf}, {xb}, [applied the brakes|slowed the vehicle]{why}
 {Vf} was traveling {dir} [in the {lane}|on {road}] and was [slowing|decelerating|slowing down|braking]{why}
 {Vf} was {xb} [in the {lane} |]and [began to slow|slowed|was slowing]{why}
 ~{Vf}, {xb}, was losing speed [in the {lane}|]{why}
@@ -59,6 +72,9 @@ WHY = {
 }
 
 SAME = clauses("""
+{Vf} was [directly |]behind {W} [in the {lane}|], [traveling {dir}|{xb}]
+{Vf} followed {W} [in the same lane|in the {lane}]
+{W} was followed by {Vf}[ in the {lane}|]
 {Vf} was [also |]traveling {dir} [in the {lane}|on the same road[way|]] [directly |]behind {W}
 {Vf} was {xb} [in the same lane|on the same roadway] [behind|following] {W}
 {Vf} was following {W}[ {dir}| in the {lane}|]
@@ -68,6 +84,8 @@ SAME = clauses("""
 """)
 
 AHEAD = clauses("""
+{Vf} was the [first|lead] vehicle, {xb} [in the {lane}|in front of {W}]
+Ahead of {W}, {Vf} was traveling {dir}
 {Vf} was [also |]{xb} [in the same lane|on the same roadway] [directly |]ahead of {W}
 {Vf} was traveling {dir} ahead of {W}[ in the {lane}|]
 ~In front of {W} was {Vf}[, also {xb}|]
@@ -82,6 +100,11 @@ INTENT = {
 
 CRITICAL = {
     "crossing": clauses("""
+{V} did not stop [for the stop sign|for the signal|] and entered the intersection
+{V} drove straight into the intersection [as {W} was crossing|in front of {W}|]
+The driver of {V} thought the way was clear and [started|continued|proceeded] across
+{V} [started|attempted] to cross the [road|roadway|street|intersection]
+{V} entered the intersection and the driver of {W} did not have time to stop
 [Both vehicles|{V} and {W}] entered the intersection [at the same time|at approximately the same time|]
 {V} entered the intersection [and failed to yield to {W}|against the red light|without stopping|]
 The driver of {V} [failed to stop at the stop sign|proceeded through the intersection|ran the red light|attempted to cross the intersection]
@@ -91,6 +114,11 @@ As {V} was crossing the intersection, {W} [also entered|entered the intersection
 ~{V} drove through the intersection and {W} could not stop
 """),
     "left_opposite": clauses("""
+{V} was making a left turn when {W} [entered the intersection|came from the other direction|approached]
+The driver of {V} thought there was enough time and turned left
+{V} turned left [at the intersection|at the green light|on a green signal] [in front of|across the lane of] {W}, which was [going straight|approaching from the opposite direction]
+{W} was coming from the opposite direction as {V} turned left
+In the middle of the left turn, {V} was in the lane of {W}
 {V} attempted to turn left [at the intersection|in front of {W}|across the path of {W}|]
 The driver of {V} [attempted|began] to [make a left turn|turn left] [at the intersection |]and failed to yield to {W}
 As {W} was going straight, {V} turned left across its path
@@ -100,6 +128,10 @@ As {W} was going straight, {V} turned left across its path
 ~Making a left, {V} cut off {W}
 """),
     "turn_left": clauses("""
+{V} was making a left turn when {W} approached
+{V} pulled [out|away] from the stop and turned left
+The driver of {V} entered the road to go left and did not see {W}
+{V} started out, turning left in front of {W}
 {V} [attempted|began|started] to [turn left|make a left turn] [onto the {axis2} road[way|]|at the intersection|]
 {V} pulled out [of the driveway |]to turn left [in front of|into the path of] {W}
 The driver of {V} attempted to turn left [and|but] failed to yield to {W}
@@ -109,6 +141,9 @@ The driver of {V} attempted to turn left [and|but] failed to yield to {W}
 ~Making a left, {V} cut off {W}
 """),
     "turn_right": clauses("""
+{V} was making a right turn when {W} approached
+{V} pulled [out|away] and turned right
+The driver of {V} turned right without seeing {W}
 {V} [attempted|began|started] to [turn right|make a right turn] [onto the {axis2} road[way|]|at the intersection|]
 {V} pulled out [of the driveway |]to turn right [in front of|into the path of] {W}
 {V} turned right [in front of|into the path of] {W}
@@ -116,12 +151,21 @@ The driver of {V} attempted to turn left [and|but] failed to yield to {W}
 ~{V} nosed out to go right and got in the way of {W}
 """),
     "rear_end": clauses("""
+{V} approached {W} from the rear
+The driver of {V} looked [away|down|to the {anyside}] and did not [see|notice] that {W} had stopped
+Traffic slowed and {V} was following too closely
+{V} was going too fast to stop behind {W}
+The driver of {V} braked but could not avoid {W}
 The driver of {V} [did not see|failed to notice] {W} [stopped|slowing] ahead
 {V} [did not slow|was unable to stop in time|failed to stop|could not stop]
 {W} [slowed|was stopped] and {V} [did not|failed to slow]
 ~{V} did not brake soon enough
 """),
     "head_on": clauses("""
+{V} [left|departed] its lane to the left and entered the opposing lane
+{V} went left over the center line and was in the lane of {W}
+The driver of {V} fell asleep and [crossed the center line|crossed into opposing traffic]
+{V} slid across the center line [toward|in front of] {W}
 {V} [crossed|crossed over|drifted across|went over] the [centerline|center line|double yellow line][ into the {opp} lane| and entered the {opp} lane|]
 For an unknown reason, {V} [drifted|veered] to the left [and into|into] the {opp} lane
 The driver of {V} lost control [on the {surf0} road |]and [crossed the centerline|entered the {opp} lane|drove left-of-center]
@@ -130,12 +174,19 @@ The driver of {V} lost control [on the {surf0} road |]and [crossed the centerlin
 ~{V} wandered into oncoming traffic
 """),
     "lane_change": clauses("""
+{V} [merged|shifted|steered] into the {turn} lane
+The driver of {V} was changing lanes [to the {turn}|from one lane to the {turn} lane] and did not check the mirror
+{V} steered {turn} into the lane that {W} occupied
 {V} [attempted to change|changed|began to change] lanes to the {turn}
 {V} moved [to the {turn}|into the {turn} lane|{turn} into the lane of {W}]
 The driver of {V} did not see {W} and [changed lanes|moved over] to the {turn}
 ~{V} slid over to the {turn}[, where {W} was|]
 """),
     "departure": clauses("""
+{V} drove off the {turn} road edge
+{V} traveled off the {turn} edge of the road[way|]
+The vehicle steered {turn} and [departed|left] the road[way|][ on the {turn} side|]
+{V} failed to [follow|negotiate] the road and went off to the {turn}
 {V} [departed|ran off|went off|drifted off] the {turn} side of the road[way|]
 The driver of {V} lost control and [departed|ran off|left] the road[way|] [to|on] the {turn}[ side|]
 {V} drifted to the {turn} and [departed|left] the road[way|]
@@ -151,16 +202,21 @@ The driver of {V} lost control and [departed|ran off|left] the road[way|] [to|on
 ~{V} came too close to the curb
 """),
     "u_turn": clauses("""
+{V} was [making|starting] a U-turn when {W} approached
 {V} [attempted|began|started] [to make a|a] U-turn [in front of {W}|]
 The driver of {V} made a U-turn [into|across] the path of {W}
 ~{V} tried to turn around in front of {W}
 """),
     "backing": clauses("""
+{V} was in reverse [and entered the road|leaving a driveway]
+The driver of {V} backed up and did not see {W}
 {V} [was backing|backed] out of [the|a] driveway [into|in] the path of {W}
 {V} was backing [onto the road[way|]|from a driveway]
 ~{V} reversed into the [road|street] ahead of {W}
 """),
     "merge": clauses("""
+{V} was entering from the ramp and moved into the lane of {W}
+The driver of {V} was merging and did not see {W}
 {V} [attempted to merge|merged|was merging] [into traffic|onto the highway|into the lane of {W}|from the ramp]
 ~{V} tried to squeeze in from the ramp
 """),
@@ -170,85 +226,3 @@ The driver of {V} made a U-turn [into|across] the path of {W}
 ~{V} pulled out to get around a slow vehicle
 """),
 }
-
-AVOID = clauses("""
-The driver of {W} [braked|steered {anyside}|braked and steered {anyside}|swerved to the {anyside}] but [was unable to|could not] avoid [contact|the collision|{V}]
-The driver of {V} did not take any avoidance actions
-Neither driver attempted any [evasive|avoidance] actions
-{W} [braked|applied the brakes][ with lockup|] and steered {anyside}
-~Hard braking by {W} did not help
-~{W} swerved {anyside}
-""")
-
-IMPACT = clauses("""
-The {sa} of {S} [struck|struck|struck|impacted|contacted|hit|made contact with|collided with] the {ta} of {T}
-The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type configuration| in an offset-frontal mode| in the {xb} lane|]
-{S} [struck|hit|impacted|contacted] {T} [in|on] the {ta} with its {sa}
-{S}'s {sa} [struck|impacted|contacted|hit] {T}'s {ta}
-{S}'s {sa} [struck|impacted|made contact with] the {ta} of {T}
-{T} was [struck|hit|impacted|struck] [in|on] the {ta} by the {sa} of {S}
-{T}'s {ta} was [struck|contacted|impacted] by [the {sa} of {S}|{S}'s {sa}]
-The {ta} of {T} was [struck|hit|impacted|contacted] by the {sa} of {S}
-The {sa} of {S} [and|came into contact with|contacted] the {ta} of {T}[ made contact|]
-{S} [struck|impacted] the {ta} of {T} with [its|it's] {sa}
-{T} [was then|was] [struck|contacted] [in|on] its {ta} by {S}[ with its {sa}|]
-~Contact was made between the {sa} of {S} and the {ta} of {T}
-~{T} took the {sa} of {S} in its {ta}
-~The {ta} of {T} met the {sa} of {S}
-~With its {sa}, {S} ran into the {ta} of {T}
-~Into the {ta} of {T} went the {sa} of {S}
-""")
-
-IMPACT_REAR = clauses("""
-{S} rear-ended {T}
-{S} [struck|hit|impacted] {T} from behind
-{T} was [rear-ended|struck from behind|hit from behind] by {S}
-{S} collided with the back of {T}
-~{S} ran into {T} from behind
-~{T} was bumped from the rear by {S}
-""")
-
-IMPACT_BARE = clauses("""
-{S} [struck|hit|impacted|collided with] {T}
-{T} was [struck|hit] by {S}
-The vehicles collided
-~{S} crashed into {T}
-~{T} got hit by {S}
-""")
-
-SWIPE = clauses("""
-{S} and {T} sideswiped, {S}'s {sa} [side |]against {T}'s {ta} side
-The {sa} [side |]of {S} sideswiped the {ta} side of {T}
-The {sa} [side |]of {S} [struck|contacted|made contact with] the {ta} side of {T}
-~{S} scraped its {sa} side along the {ta} side of {T}
-""")
-
-THEN = clauses("""
-The {sa} of {S} then [struck|impacted|contacted] the {ta} of {T}
-{T} was then [struck|hit] [in|on] the {ta} by {S}
-{S} was pushed [forward |]and its {sa} [struck|contacted] the {ta} of {T}
-~Next, {S} ran its {sa} into the {ta} of {T}
-""")
-THEN_REAR = clauses("""
-{S} was pushed [forward |]into [the rear of |the back of |]{T}
-The front of {S} then [struck|impacted] the [rear|back] of {T}
-~This knocked {S} into the vehicle in front of it, {T}
-""")
-
-AREA = {
-    "front": "front|front|front|front end|[left|right] front|front [left|right]|~nose|~front bumper",
-    "back": "back|rear|rear|rear end|back end|[left|right] rear|rear [left|right] corner|~tail|~rear bumper",
-    "left": "left side|left side|left side|left|driver's side|driver side|left front side|left-side|~left flank|~driver's door",
-    "right": "right side|right side|right side|right|passenger side|passenger's side|right front side|right-side|~right flank|~passenger door",
-}
-
-REST = clauses("""
-{V} [rotated|spun] [clockwise|counterclockwise|counter-clockwise][ {deg} degrees|] and came to [rest|final rest] [in the intersection|off the roadway|on the roadway|in the road][ facing {any8}|]
-Both vehicles came to [rest|final rest] [in the intersection|near impact|on the roadway|off the road][ facing {any8}|]
-{V} came to [rest|final rest] facing {any8}[; {W} came to final rest facing {any8b}|]
-{V} continued {any8} and came to rest [{m}m|{m} meters|{m} feet] {any8b} of impact
-The impact caused {V} to [rotate|spin] [clockwise|counterclockwise] and [depart the road|come to rest facing {any8}]
-There was no physical evidence to [support|substantiate] the final rest positions
-{V} was pushed [off the road|into the next lane|into a driveway] before coming to rest
-~After that {V} rolled to a stop facing {any8}
-""")

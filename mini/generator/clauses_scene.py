@@ -48,6 +48,11 @@ OPENING_MERGE = clauses("""
 """)
 
 ROAD = clauses("""
+This [road|roadway|street|highway] was {roadbare}[, with a limit of {lim}|]
+The crash site was {roadbare}
+The {axis} road[way|] was [straight|level|straight and level] with a speed limit of {lim}
+{Road} [was posted at|had a limit of|carried a limit of] {lim}
+The area had a speed limit of {lim}
 The [roadway|road] was [straight and level|level|straight] [and|with] [had |]a posted speed limit of {lim}
 The posted speed limit [was|is] {lim}[ on both roads|]
 The speed limit [was|is] posted at {lim}[ and the road was [level|straight]|]
@@ -61,6 +66,9 @@ It [consisted of|was] {roadbare}[ and had a speed limit of {lim}|]
 """)
 
 ROAD2 = clauses("""
+The {axis2} [roadway|road|street] was {road2bare}
+The [other|second|intersecting] [roadway|road|street], which ran {axis2}, had a speed limit of {lim2}
+It intersected with {road2full}
 The intersecting [roadway|road|street] [was|is] {road2bare}[ with a speed limit of {lim2}|]
 The [secondary|cross|side] street [was|is] {road2bare}
 The {axis2} [roadway|road] [was|is] {road2bare}[ and had a posted speed limit of {lim2}|]
@@ -70,6 +78,8 @@ The posted speed limit [was|is] {lim} for the {axis} road[way|] and {lim2} for t
 """)
 
 CURVE = clauses("""
+The road[way|] was curved to the {curve} for {xb} traffic
+{V} was in a curve to the {curve}
 The [roadway|road] curve[s|d] to the {curve} for {xb} traffic[ with a radius of {radius} meters|]
 The {xb} [roadway|lane] [curves|curved] to the {curve}[ with a radius of curvature of {radius} m|]
 There [is|was] a curve to the {curve} for {xb} vehicles
@@ -78,12 +88,19 @@ There [is|was] a curve to the {curve} for {xb} vehicles
 
 CONTROL = {
     "signal": clauses("""
+A [three-phase |three-color |]traffic signal [was present|controlled traffic|was in operation] at the intersection
+[Traffic|All traffic] was controlled by an operating traffic signal
+{V} had a [green|red] light[ at the signal|]
+The intersection was signalized
 The intersection [was|is] controlled by [traffic signals|a traffic signal|a traffic light|traffic control signals|a tri-colored traffic signal]
 [Traffic signals|Traffic lights] [controlled|control] the intersection
 There [was|is] a [functioning |working |]traffic [control |]signal at the intersection
 ~[All|The] approaches [had|have] [tri-colored|red, yellow and green] lights
 """),
     "stop": clauses("""
+There [was|is] a stop sign for {cxb} traffic
+A stop sign faced {cxb} traffic
+The {caxis} road[way|] was controlled by stop signs
 The intersection [was|is] controlled by [a stop sign|stop signs] for {cxb} traffic
 The {cxb} [travel |]lane[s|] [was|were] controlled by a stop sign
 {Cxb} traffic [was|is] controlled by [a stop sign|stop signs][ at this intersection|]
@@ -91,6 +108,8 @@ The {cxb} [travel |]lane[s|] [was|were] controlled by a stop sign
 ~A driver who is {cxb} [must|has to] stop at a [posted |]stop sign
 """),
     "all": clauses("""
+It was a four way stop
+There were stop signs [on all sides|for all traffic|at all corners]
 The intersection [was|is] [a four-way stop|an all-way stop|controlled by stop signs in all directions|controlled by stop signs on all legs]
 Stop signs [controlled|control] [all directions|every approach|all approaches] of the intersection
 ~[Each|Every] [approach|leg] [had|has] a stop sign
@@ -101,11 +120,14 @@ There [was|is] a flashing [signal|light|yellow light] at the intersection
 ~A blinking [light|beacon] hung over the intersection
 """),
     "yield": clauses("""
+A yield sign controlled {cxb} traffic
 {Cxb} traffic [was|is] controlled by a yield sign
 There [was|is] a yield sign for {cxb} traffic
 ~{Cxb} drivers [must|have to] yield
 """),
     "none": clauses("""
+There was no traffic [control|signal|control device] [at this intersection|here|present]
+The intersection had no controls
 There [were|are] no traffic control[s| devices] [at the intersection|at this location|associated with this roadway|present]
 The intersection [was|is] uncontrolled
 ~No [sign|signal or sign] [regulated|controlled] traffic here
@@ -113,6 +135,12 @@ The intersection [was|is] uncontrolled
 }
 
 CONDITIONS = clauses("""
+The crash [occurred|happened] [in|under] {light} conditions; it was {wx} and the road was {surf}
+The [environmental |weather |]conditions were {wx}, {light} and {surf}
+[Roads|The roads|Road surfaces] were {surf}, the weather [was |]{wx} and the lighting [was |]{light}
+At the time of the crash it was {light} and {wx}, with a {surf} road surface
+Lighting was {light}, weather was {wx}, road surface was {surf}
+It was {wx} and {light} and the [asphalt|concrete|pavement] was {surf}
 It was {light}, [the sky was|the weather was] {wx}, and the [bituminous|concrete|asphalt|] road[way|] [surface |]was {surf}
 It was {light}, {wx}, and the [bituminous |concrete |]road[s were|way was|surface was| was] {surf}
 [The weather was|Weather was|It was] {wx}, the road[way|] [was|surface was|] {surf} and it was {light}[ at the time of the crash|]
@@ -128,23 +156,23 @@ It was {light} [in the {tod}|] and {wx}
 """)
 
 LIGHT = {
-    "day": "daylight|daylight|daylight|daytime|during daylight hours|~full daylight|~light out",
-    "dusk": "dusk|dusk|~getting dark",
-    "dawn": "dawn|dawn|~early dawn",
-    "dark": "dark|dark, unlighted|dark with no streetlights|dark and unlit|dark, there were no streetlights|~nighttime without street lights|~pitch dark",
-    "dark_lit": "dark with artificial illumination|dark with streetlights|dark, but lighted|dark but lighted|dark with lights|illuminated|~night, with street lamps lit|~dark though the street lights were on",
+    "day": "daylight|light|day time|during the day|daylight conditions|daylight|daylight|daytime|during daylight hours|~full daylight|~light out",
+    "dusk": "dusk|twilight|at dusk|dusk|~getting dark",
+    "dawn": "dawn|at dawn|just before sunrise|dawn|~early dawn",
+    "dark": "dark|dark with no lights|dark with no artificial lighting|after dark on an unlit road|dark and not lighted|dark, unlighted|dark with no streetlights|dark and unlit|dark, there were no streetlights|~nighttime without street lights|~pitch dark",
+    "dark_lit": "dark with overhead lighting|dark with street lights|lit by overhead lights|dark with artificial lighting|dark and lighted|dark with artificial illumination|dark with streetlights|dark, but lighted|dark but lighted|dark with lights|illuminated|~night, with street lamps lit|~dark though the street lights were on",
 }
 WEATHER = {
-    "clear": "clear|clear|clear|clear with no adverse conditions|clear and sunny|~sunny|~fair",
-    "cloudy": "cloudy|cloudy|overcast|partly cloudy|~gray and clouded",
-    "rain": "raining|raining|rainy|raining lightly|raining heavily|~wet with a steady rain|~drizzling",
-    "snow": "snowing|snowing|snowing lightly|~snowy with flakes falling",
-    "sleet": "sleeting|sleeting|~freezing rain and sleet",
-    "fog": "foggy|foggy|~misty with fog",
+    "clear": "clear|clear skies|with no adverse weather|without precipitation|good|clear|clear|clear with no adverse conditions|clear and sunny|~sunny|~fair",
+    "cloudy": "cloudy|cloudy skies|mostly cloudy|overcast skies|cloudy|overcast|partly cloudy|~gray and clouded",
+    "rain": "raining|rain|light rain|heavy rain|showers|pouring rain|raining|rainy|raining lightly|raining heavily|~wet with a steady rain|~drizzling",
+    "snow": "snowing|snow|light snow|heavy snow|blowing snow|snowing|snowing lightly|~snowy with flakes falling",
+    "sleet": "sleeting|sleet|a wintry mix|sleeting|~freezing rain and sleet",
+    "fog": "foggy|fog|dense fog|hazy|foggy|~misty with fog",
 }
 SURFACE = {
-    "dry": "dry|dry|dry|~dry and clean",
-    "wet": "wet|wet|wet|wet from rain|~damp|~slick and wet",
-    "snow": "snow covered|snow-covered|covered with snow|~under packed snow",
-    "ice": "icy|icy|ice covered|~iced over|~slick with ice",
+    "dry": "dry|dry and level|free of moisture|dry|dry|~dry and clean",
+    "wet": "wet|wet with rain|rain soaked|wet and slippery|moist|wet|wet|wet from rain|~damp|~slick and wet",
+    "snow": "snow covered|snowy|covered in snow|slushy|snow-covered|covered with snow|~under packed snow",
+    "ice": "icy|covered with ice|glazed with ice|slippery with ice|icy|ice covered|~iced over|~slick with ice",
 }

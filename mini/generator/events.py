@@ -8,6 +8,7 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
+from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
 from mini.generator.grammar import choose, clauses, families
 from mini.generator.world import Contact, Crash
@@ -51,12 +52,12 @@ class EventsMixin:
                 *({f"man.{self.id_of(w)}"} if config in ("crossing", "head_on") else ()),
             }
         if rng.random() < (0.12 if self.ciren else 0.4):
-            out.append(self.say(motion.AVOID, v, w))
+            out.append(self.say(told.AVOID, v, w))
         for number, contact in enumerate(self.crash.contacts):
             out.append(self._impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        return out + [self.say(motion.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+        return out + [self.say(told.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _turn(self, index: int) -> str:
         maneuver = self.crash.actors[index].maneuver
@@ -66,23 +67,23 @@ class EventsMixin:
         rear = contact.striker_area == "front" and contact.struck_area == "back"
         swipe = {contact.striker_area, contact.struck_area} <= {"left", "right"}
         later = number > 0
-        options, areas = (motion.THEN if later else motion.IMPACT), True
+        options, areas = (told.THEN if later else told.IMPACT), True
         if swipe and self.rng.random() < 0.6:
-            options = motion.SWIPE
+            options = told.SWIPE
         elif rear and self.rng.random() < 0.3:
-            options = motion.THEN_REAR if later else motion.IMPACT_REAR
+            options = told.THEN_REAR if later else told.IMPACT_REAR
         elif self.rng.random() < 0.06 and not later:
-            options, areas = motion.IMPACT_BARE, False
+            options, areas = told.IMPACT_BARE, False
         self.told |= {f"contact.{number}"} | ({f"areas.{number}"} if areas else set())
         if self.crash.actors[contact.struck].kind in ("object", "pedestrian", "bicycle"):
             options = clauses(_FIXED)
-        sides = ("left", "right", "left", "right") if options is motion.SWIPE else None
+        sides = ("left", "right", "left", "right") if options is told.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area)
         ta = contact.struck_area if sides else self._area(contact.struck_area)
         return self.say(options, contact.striker, contact.struck, sa=sa, ta=ta)
 
     def _area(self, area: str) -> str:
-        return choose(self.rng, self.rng.choice(families(_split_top(motion.AREA[area]), self.held_out)))
+        return choose(self.rng, self.rng.choice(families(_split_top(told.AREA[area]), self.held_out)))
 
 
 def _split_top(text: str) -> list[str]:

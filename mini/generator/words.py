@@ -182,5 +182,5 @@ def person(rng: Random) -> dict[str, str]:
     form = rng.choice(("{}-year-old", "{}-year-old", "{}-year old", "{} year old"))
     return {
         "age": form.format(age), "sex": "male" if male else "female", "He": "He" if male else "She",
-        "he": "he" if male else "she", "his": "his" if male else "her",
+        "he": "he" if male else "she", "his": "his" if male else "her", "His": "His" if male else "Her",
     }  # fmt: skip

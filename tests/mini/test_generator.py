@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mini.answers import behavior_walk, road_walk, write
-from mini.generator import clauses_motion, clauses_noise, clauses_scene
+from mini.generator import clauses_contact, clauses_motion, clauses_noise, clauses_scene
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import families
 from mini.generator.report import MODES, make_report
@@ -150,7 +150,7 @@ def test_held_out_families_never_train() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [clauses_motion.APPROACH, clauses_motion.IMPACT, clauses_scene.CONDITIONS, clauses_noise.INTERVIEW]
+    "options", [clauses_motion.APPROACH, clauses_contact.IMPACT, clauses_scene.CONDITIONS, clauses_noise.INTERVIEW]
 )
 def test_both_sides_of_the_split_have_clauses(options: list[str]) -> None:
     train, test = families(options, held_out=False), families(options, held_out=True)
