@@ -11,15 +11,17 @@ import os
 import queue
 import threading
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows import cases, chain, store
+from flows import cases, chain, sharing, store
 from flows.cases import Case
 from flows.chain import Ending
+from flows.sharing import Sharing
 from flows.store import CaseFolder
+from flows.worker import Order
 from sgcad_core.config import Config, load
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.refine import OnAttempt
@@ -39,6 +41,8 @@ class Job:
     case: Case
     digest: str
     folder: CaseFolder
+    sharing: Sharing | None = None
+    """Where its stages are shared with other configs' jobs; None: nowhere."""
 
     @property
     def name(self) -> str:
@@ -51,7 +55,7 @@ class Batch:
     """Everything to do, and where it goes.
 
     `jobs` cases are on their way at a time, those without a model in `processes`. `fresh` does finished cases
-    again.
+    again. `name` is the flow's. `shelf` is the folder where configs share their stages' results; None: they do not.
     """
 
     configs: tuple[Config, ...]
@@ -60,14 +64,21 @@ class Batch:
     jobs: int
     processes: int
     fresh: bool = False
+    name: str = "evaluate"
+    shelf: Path | None = None
 
     def plan(self) -> tuple[Job, ...]:
-        """All jobs, config by config."""
-        return tuple(
-            Job(config, case, cases.digest_of(case, config), CaseFolder(self.out, config.name, case.id))
-            for config in self.configs
-            for case in self.cases
-        )
+        """All jobs, config by config. Every report and every config is fingerprinted once."""
+        sources = {case: cases.source_digest(case.source) for case in self.cases}
+        return tuple(job for config in self.configs for job in self._jobs(config, sources))
+
+    def _jobs(self, config: Config, sources: Mapping[Case, str]) -> Iterator[Job]:
+        digest = cases.config_digest(config)
+        keys = sharing.keys_of(config) if self.shelf else None
+        for case, source in sources.items():
+            shared = Sharing(self.shelf, keys, source) if self.shelf and keys else None
+            folder = CaseFolder(self.out, config.name, case.id)
+            yield Job(config, case, cases.job_digest(source, digest), folder, shared)
 
 
 def batch_of(
@@ -79,16 +90,22 @@ def batch_of(
     fresh: bool = False,
 ) -> Batch:
     """Check a whole batch. Raises ConfigError with every fault; nothing is started or written but `out`."""
-    loaded = _load_all(configs, tuple(overrides))
+    return batch_over(found, _load_all(configs, tuple(overrides)), out, jobs, fresh)
+
+
+def batch_over(
+    found: Sequence[Case], configs: tuple[Config, ...], out: Path, jobs: int | None = None, fresh: bool = False
+) -> Batch:
+    """`batch_of` with configs that are loaded already."""
     if jobs is not None and jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least 1 is needed")
     out = out.resolve()
     store.check_writable(out)
-    for config in loaded:
+    for config in configs:
         store.check_writable(out / config.name)
         store.clear_partial(out / config.name)
-    asks = any(config.backbone for config in loaded)
-    return Batch(loaded, tuple(found), out, jobs or (MAX_JOBS if asks else cores()), jobs or cores(), fresh)
+    asks = any(config.backbone for config in configs)
+    return Batch(configs, tuple(found), out, jobs or (MAX_JOBS if asks else cores()), jobs or cores(), fresh)
 
 
 def _load_all(paths: Sequence[Path], overrides: tuple[str, ...]) -> tuple[Config, ...]:
@@ -130,7 +147,7 @@ class Crew:
         if not waiting:
             return
         count = min(self.batch.processes, len(waiting))
-        self._workers = [Worker("flows.chain:run_in_worker") for _ in range(count)]
+        self._workers = [Worker("flows.worker:run_in_worker") for _ in range(count)]
         for worker in self._workers:
             self._idle.put(worker)
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
@@ -148,7 +165,8 @@ class Crew:
             return self._begun[job.name].result()
         if done := self.reusable(job):
             return done
-        return chain.run_case(job.config, job.case, self.batch.out, job.digest, self._unless_stopped(on_attempt))
+        watched = self._unless_stopped(on_attempt)
+        return chain.run_case(job.config, job.case, self.batch.out, job.digest, watched, sharing=job.sharing)
 
     def began(self, job: Job) -> bool:
         """Whether the job runs in a worker process (its attempts are then reported when it ends)."""
@@ -158,8 +176,8 @@ class Crew:
         self._check()
         worker = self._idle.get()
         try:
-            raw, out = job.config.raw, self.batch.out
-            ending: Ending = worker.call(raw, job.config.name, job.case, out, job.digest, timeout_s=CASE_LIMIT_S)
+            order = Order(job.config.raw, job.config.name, job.case, self.batch.out, job.digest, job.sharing)
+            ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
         except SimulationFailed as death:
             self._check()
             ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))

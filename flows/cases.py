@@ -86,8 +86,12 @@ def digest_of(case: Case, config: Config) -> str:
     The code's own text counts only where no model is asked: there a new run costs a second, and a stale
     result misleads; with a model it costs hours, and plugin versions tell when a result would change.
     """
-    parts = (_source_digest(case.source), config_digest(config))
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    return job_digest(source_digest(case.source), config_digest(config))
+
+
+def job_digest(source: str, config: str) -> str:
+    """`digest_of` from its halves, each of which a batch needs once only."""
+    return hashlib.sha256(f"{source}\n{config}".encode()).hexdigest()
 
 
 def config_digest(config: Config) -> str:
@@ -96,10 +100,10 @@ def config_digest(config: Config) -> str:
     about = {
         "raw": raw,
         "name": config.name,
-        "plugins": {_qualified(p): (type(p).version, p.stamp) for p in _plugins(config)},
-        "files": sorted(set(_named_digests(raw))),
+        "plugins": {qualified(p): (type(p).version, p.stamp) for p in _plugins(config)},
+        "files": sorted(set(named_digests(raw))),
         "package": version("sg-cadvlm"),
-        "code": _prompts_digest() if config.backbone else _code_digest(),
+        "code": code_digest(asks_model=config.backbone is not None),
     }
     return hashlib.sha256(json.dumps(about, sort_keys=True, default=str).encode()).hexdigest()
 
@@ -109,11 +113,16 @@ def _plugins(config: Config) -> Iterator[Plugin]:
         yield from (v for v in (value if isinstance(value, tuple) else (value,)) if isinstance(v, Plugin))
 
 
-def _named_digests(value: object) -> Iterator[str]:
+def code_digest(asks_model: bool) -> str:
+    """Of the prompts and, where no model is asked, of the code; see `digest_of` for why."""
+    return _prompts_digest() if asks_model else _code_digest()
+
+
+def named_digests(value: object) -> Iterator[str]:
     """Of files and folders that a configuration names: a script of answers, a model's weights."""
     if isinstance(value, dict | list):
         for inner in value.values() if isinstance(value, dict) else value:
-            yield from _named_digests(inner)
+            yield from named_digests(inner)
     elif isinstance(value, str) and "\n" not in value and 0 < len(value) < 1000:
         for place in {Path(value), settings.ROOT / value}:
             if place.is_file():
@@ -130,11 +139,13 @@ def _folder_digest(folder: Path) -> str:
     return _files_digest(files, folder) if small else hashlib.sha256(repr(sizes).encode()).hexdigest()
 
 
-def _qualified(plugin: Plugin) -> str:
+def qualified(plugin: Plugin) -> str:
+    """A plugin's class as module:name."""
     return f"{type(plugin).__module__}:{type(plugin).__qualname__}"
 
 
-def _source_digest(source: Path) -> str:
+def source_digest(source: Path) -> str:
+    """Fingerprint of every file of a report."""
     files = sorted(f for f in source.rglob("*") if f.is_file()) if source.is_dir() else [source]
     return _files_digest(files, source)
 

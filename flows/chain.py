@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from flows import picture, player, store
+from flows import picture, player, sharing, store
 from flows.cases import Case
+from flows.sharing import Sharing
 from flows.view import View
-from sgcad_core.config import Config, build
+from sgcad_core.config import Config
 from sgcad_core.errors import BadInput, ConfigError, MissingTool, SgcadError
 from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
@@ -35,13 +36,18 @@ from sgcad_core.records import (
     Stage,
     StageOutcome,
 )
-from sgcad_core.refine import Call, OnAttempt, Refinement, Write, run_at_once
+from sgcad_core.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.result import CaseRecord, result_of
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Ending:
-    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done."""
+    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done.
+
+    Attempts and calls are those made here and now, without the ones taken from a shelf.
+    """
 
     result: dict[str, Any]
     attempts: tuple[Attempt, ...] = ()
@@ -56,12 +62,16 @@ class _Run:
     config: Config
     case: Case
     on_attempt: OnAttempt
+    sharing: Sharing | None = None
     report: CrashReport | None = None
     outcomes: dict[str, StageOutcome] = field(default_factory=dict)
     execution: Execution | None = None
     metrics: dict[str, Any] | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
+    fresh: list[Attempt] = field(default_factory=list)
+    """Attempts made here and now; the others were taken from the shelf, and so were the steps in `shared`."""
+    shared: list[str] = field(default_factory=list)
     failure: str = ""
     trace: str = ""
 
@@ -77,37 +87,50 @@ class _Run:
             self.fail(fault)
 
     def _stages(self) -> None:
-        with self._clock("read"):
-            self.report = report = self.config.report_reader.read(self.case.source)
-        network = self._stage("road", self._road(report))
+        source = self.case.source
+        self.report = report = self._once("read", lambda: self.config.report_reader.read(source), source.name)
+        passages = self._passages(report, "road")
+        network = self._stage(self._road(report, passages), report, passages)
         if isinstance(network, RoadNetwork):
-            scenario = self._stage("scenario", self._scenario(report, network))
+            passages = self._passages(report, "scenario")
+            scenario = self._stage(self._scenario(report, passages, network), report, passages, network)
             if isinstance(scenario, Scenario):
                 self._execute(scenario, network)
 
     def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:
-        with self._clock("simulate"):
-            self.execution = self.config.simulator.execute(scenario, network)
+        simulator = self.config.simulator
+        self.execution = self._once("simulate", lambda: simulator.execute(scenario, network), scenario, network)
         with self._clock("measure"):
             self.metrics = measure(self.execution, scenario)
 
-    def _stage(self, name: str, refinement: Refinement) -> RoadNetwork | Scenario | None:
+    def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
+        """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
+        name = refinement.stage
         with self._clock(name):
-            self.outcomes[name], calls = refinement.run()
-        self.calls += calls
-        outcome = self.outcomes[name]
+            turns, known = sharing.refined(self.sharing, refinement, self.case.id, *content)
+        self.seconds[name] = sum(turn.attempt.seconds for turn in turns)
+        self.calls += [call for turn in turns[known:] for call in turn.calls]
+        self.fresh += [turn.attempt for turn in turns[known:]]
+        self.shared += [name] if known == len(turns) else []
+        self.outcomes[name] = outcome = outcome_of(name, turns)
         return outcome.artifact if outcome.status == "written" else None
 
-    def _road(self, report: CrashReport) -> Refinement:
+    def _once(self, step: str, compute: Callable[[], T], *content: Any) -> T:
+        """A step without attempts."""
+        with self._clock(step):
+            value, seconds, known = sharing.timed(self.sharing, step, compute, self.case.id, *content)
+        self.seconds[step] = seconds
+        self.shared += [step] if known else []
+        return value
+
+    def _road(self, report: CrashReport, passages: tuple[Passage, ...]) -> Refinement:
         writer, context = self.config.road_writer, context_of(report)
-        passages = self._passages(report, "road")
         return self._refinement(
             "road", writer, lambda findings, ask, n: writer.write(context, passages, findings, ask, n), report, None
         )
 
-    def _scenario(self, report: CrashReport, network: RoadNetwork) -> Refinement:
+    def _scenario(self, report: CrashReport, passages: tuple[Passage, ...], network: RoadNetwork) -> Refinement:
         writer, context = self.config.scenario_writer, context_of(report)
-        passages = self._passages(report, "scenario")
         return self._refinement(
             "scenario",
             writer,
@@ -137,6 +160,7 @@ class _Run:
             max_attempts=self.config.max_attempts,
             on_attempt=self.on_attempt,
             case=self.case.id,
+            show_findings=self.config.show_findings,
         )
 
     @contextmanager
@@ -175,6 +199,8 @@ class _Run:
             (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
         self._draw(folder, record)
         result = result_of(self.record())
+        if self.sharing:
+            result["shared"] = self.shared
         store.write_json(folder / "result.json", result)
         return result
 
@@ -209,12 +235,20 @@ def ask_of(config: Config) -> Ask:
     return ask
 
 
-def run_case(config: Config, case: Case, out: Path, digest: str, on_attempt: OnAttempt = run_at_once) -> Ending:
+def run_case(
+    config: Config,
+    case: Case,
+    out: Path,
+    digest: str,
+    on_attempt: OnAttempt = run_at_once,
+    *,
+    sharing: Sharing | None = None,
+) -> Ending:
     """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
-    run = _Run(config, case, on_attempt)
+    run = _Run(config, case, on_attempt, sharing)
     run.go()
     result = _leave(run, store.CaseFolder(out, config.name, case.id), digest)
-    return Ending(result, run.attempts(), tuple(run.calls))
+    return Ending(result, tuple(run.fresh), tuple(run.calls))
 
 
 def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
@@ -248,14 +282,3 @@ def _write(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
         mark = digest if result["status"] != "failed" else ""
         (partial / store.DIGEST).write_text(mark, encoding="utf-8")
     return result
-
-
-# ------------------------------------------------------------------ in a worker process
-_configs: dict[str, Config] = {}
-
-
-def run_in_worker(raw: dict[str, Any], name: str, case: Case, out: Path, digest: str) -> Ending:
-    """`run_case` from what can be pickled; the plugins are built once a process."""
-    if name not in _configs:
-        _configs[name] = build(raw, name, name)
-    return run_case(_configs[name], case, out, digest)

@@ -57,6 +57,11 @@ class Turn:
         """Number of findings that send the writer back."""
         return sum(f.severity == "repair" for f in self.attempt.findings)
 
+    @property
+    def final(self) -> bool:
+        """Whether the stage ends with it, however many attempts are left."""
+        return self.refused is not None or (self.artifact is not None and not self.repairs)
+
 
 OnAttempt = Callable[[str, Callable[[], Turn]], Turn]
 """Runs one attempt, named such as "road[2]": a flow makes it a task run of its own."""
@@ -117,21 +122,31 @@ class Refinement:
         An exhausted stage's artifact is that of the attempt with the fewest repair findings (the first of
         equals), None if no attempt gave one. Raises MissingTool from a validator.
         """
-        turns: list[Turn] = []
-        limit = min(self.max_attempts, MAX_ATTEMPTS) if self.ask else 1
-        findings: tuple[Finding, ...] = ()
-        for number in range(1, limit + 1):
-            previous = turns[-1].attempt.answer if turns else ""
-            repair = repair_text(previous, findings) if findings and self.show_findings else ""
-            turn = self.on_attempt(
-                f"{self.stage}[{number}]",
-                lambda f=findings, n=number, r=repair: self._turn(f, n, r),  # type: ignore[misc]
-            )
-            turns.append(turn)
-            if turn.refused or (turn.artifact is not None and not turn.repairs):
-                break
-            findings = tuple(f for f in turn.attempt.findings if f.severity == "repair")
-        return _outcome(self.stage, turns), tuple(call for turn in turns for call in turn.calls)
+        turns = self.turns()
+        return outcome_of(self.stage, turns), tuple(call for turn in turns for call in turn.calls)
+
+    @property
+    def limit(self) -> int:
+        """The most attempts that this stage may take."""
+        return min(self.max_attempts, MAX_ATTEMPTS) if self.ask else 1
+
+    def ended(self, turns: Sequence[Turn]) -> bool:
+        """Whether nothing comes after these turns."""
+        return bool(turns) and (len(turns) >= self.limit or turns[-1].final)
+
+    def turns(self, earlier: Sequence[Turn] = ()) -> list[Turn]:
+        """All turns to the stage's end, going on from earlier ones of the same stage. Raises MissingTool."""
+        turns = list(earlier)
+        while not self.ended(turns):
+            turns.append(self._next(turns))
+        return turns
+
+    def _next(self, turns: Sequence[Turn]) -> Turn:
+        number = len(turns) + 1
+        last = turns[-1].attempt if turns else None
+        findings = tuple(f for f in last.findings if f.severity == "repair") if last else ()
+        repair = repair_text(last.answer, findings) if last and findings and self.show_findings else ""
+        return self.on_attempt(f"{self.stage}[{number}]", lambda: self._turn(findings, number, repair))
 
     def _turn(self, findings: tuple[Finding, ...], number: int, repair: str) -> Turn:
         started = time.perf_counter()
@@ -214,14 +229,15 @@ def _faults(stage: Stage, fault: InvalidOutput) -> tuple[Finding, ...]:
     return (*fault.findings, Finding(source=stage, what=str(fault) or "unusable answer"))
 
 
-def _outcome(stage: Stage, turns: Sequence[Turn]) -> StageOutcome:
+def outcome_of(stage: Stage, turns: Sequence[Turn]) -> StageOutcome:
+    """How a stage with these turns ended."""
     attempts = tuple(turn.attempt for turn in turns)
     last = turns[-1]
     if last.refused:
         return StageOutcome(
             stage=stage, status="refused", attempts=attempts, reason=last.refused.reason, missing=last.refused.missing
         )
-    if last.artifact is not None and not last.repairs:
+    if last.final:
         return StageOutcome(stage=stage, status="written", artifact=last.artifact, attempts=attempts)
     best = min(turns, key=lambda turn: (turn.artifact is None, turn.repairs))
     return StageOutcome(

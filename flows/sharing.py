@@ -1,0 +1,249 @@
+"""Stages that several configs share: computed once, kept in a folder, taken from there by everyone else.
+
+A stage's key is a fingerprint of all that it depends on: the evidence as the reader gave it, the passages, the
+network for a scenario, and what the config contributes (`Keys`). So two arms that differ in the scenario
+writer share their roads, and ten that differ in the number of attempts share every attempt. The folder is a
+cache and nothing more: whatever is missing, damaged or deleted is computed again and comes out the same.
+
+Knows the file system, configs and refinement; nothing of studies.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import os
+import pickle
+import tempfile
+import time
+import zlib
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
+
+from flows import cases
+from sgcad_core import settings
+from sgcad_core.config import Config
+from sgcad_core.interfaces import Plugin
+from sgcad_core.refine import Refinement, Turn
+
+T = TypeVar("T")
+WAIT_S, LOOK_S = 600.0, 0.05
+"""How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
+UNREADABLE = (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, zlib.error)
+"""What a damaged file, or one of other code, raises: it is computed again."""
+
+
+@dataclass(frozen=True)
+class Keys:
+    """What a config contributes to the keys of its steps."""
+
+    read: str
+    road: str
+    scenario: str
+    simulate: str
+
+
+def keys_of(config: Config) -> Keys:
+    """The fingerprints of a config's steps: plugins with fields and versions, files they name, prompts, code."""
+    return Keys(
+        read=_digest(_about([config.report_reader], asks_model=False)),
+        road=_stage(config, config.road_writer, "road"),
+        scenario=_stage(config, config.scenario_writer, "scenario"),
+        simulate=_digest(_about([config.simulator], asks_model=False)),
+    )
+
+
+def _stage(config: Config, writer: Any, stage: str) -> str:
+    """The number of attempts is no part: fewer attempts are the first of many (see `Shelf.turns`)."""
+    plugins: list[Plugin] = [writer, *config.validators_of(stage)]
+    asked = [p for p in (config.backbone, config.decoder) if p is not None] if writer.asks_model else []
+    about = _about([*plugins, *asked], writer.asks_model)
+    if writer.asks_model:
+        about |= {"seed": config.seed, "show_findings": config.show_findings}
+    return _digest(about | {"stage": stage})
+
+
+def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
+    fields = [p.model_dump(mode="json") for p in plugins]
+    return {
+        "plugins": [(cases.qualified(p), type(p).version) for p in plugins],
+        "fields": fields,
+        "files": sorted(set(cases.named_digests(fields))),
+        "package": version("sg-cadvlm"),
+        "code": cases.code_digest(asks_model),
+        "records": _records_digest(),
+    }
+
+
+@cache
+def _records_digest() -> str:
+    """What is kept is pickled: other records are another cache."""
+    files = (settings.ROOT / "sgcad_core" / f"{name}.py" for name in ("records", "specs", "refine"))
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+
+
+def _digest(content: Any) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
+
+
+def content_of(value: Any) -> str:
+    """Fingerprint of records and plain values by content; arrays count by their bytes."""
+    found = hashlib.sha256()
+    _feed(found, value)
+    return found.hexdigest()
+
+
+def _feed(found: Any, value: Any) -> None:
+    if isinstance(value, BaseModel):
+        value = dict(value)
+    if isinstance(value, dict):
+        value = sorted(value.items())
+    if isinstance(value, list | tuple):
+        found.update(b"(%d" % len(value))
+        for inner in value:
+            _feed(found, inner)
+    else:
+        data = value.tobytes() if hasattr(value, "tobytes") else value if isinstance(value, bytes) else None
+        data = repr(value).encode("utf-8", "surrogatepass") if data is None else data
+        found.update(b"%s %d:" % (type(value).__name__.encode(), len(data)))
+        found.update(data)
+
+
+# ------------------------------------------------------------------ the folder
+@dataclass(frozen=True)
+class Shelf:
+    """Results by key: one file each, appearing whole, checked when read."""
+
+    folder: Path
+
+    def get(self, key: str) -> Any | None:
+        """What was put under a key; None if nothing, or nothing that can be read."""
+        try:
+            check, _, packed = self._file(key).read_bytes().partition(b"\n")
+            if hashlib.sha256(packed).hexdigest().encode() != check:
+                return None
+            return pickle.loads(zlib.decompress(packed))  # noqa: S301 - our own file in the user's output folder
+        except UNREADABLE:
+            return None
+
+    def put(self, key: str, value: Any) -> None:
+        """Keep a value. A full disk or a folder that vanished costs the sharing, not the case."""
+        packed = zlib.compress(pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL), 1)
+        file = self._file(key)
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            made, partial = tempfile.mkstemp(prefix=f"{key}.", suffix=".partial", dir=file.parent)
+            with os.fdopen(made, "wb") as out:
+                out.write(hashlib.sha256(packed).hexdigest().encode() + b"\n" + packed)
+            os.replace(partial, file)
+        except OSError:
+            return
+
+    @contextmanager
+    def alone(self, key: str) -> Iterator[None]:
+        """Keep others from computing the same meanwhile. A lock ends with its process, and patience ends too."""
+        lock = self._file(key).with_suffix(".lock")
+        try:
+            lock.parent.mkdir(parents=True, exist_ok=True)
+            held = os.open(lock, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError:
+            yield
+            return
+        try:
+            _wait_for(held)
+            yield
+            lock.unlink(missing_ok=True)  # who waits for it looks at the shelf first
+        finally:
+            os.close(held)
+
+    def once(self, key: str, compute: Callable[[], Any]) -> tuple[Any, bool]:
+        """A value and whether it was there already."""
+        if (value := self.get(key)) is not None:
+            return value, True
+        with self.alone(key):
+            if (value := self.get(key)) is not None:
+                return value, True
+            value = compute()
+            self.put(key, value)
+            return value, False
+
+    def turns(self, key: str, refinement: Refinement) -> tuple[list[Turn], int]:
+        """A stage's turns, and how many of them were there already.
+
+        Whoever refined longer has refined for the others too; whoever may go on goes on from there.
+        """
+        turns = self._fitting(key, refinement)
+        if refinement.ended(turns):
+            return turns, len(turns)
+        with self.alone(key):
+            found = self._fitting(key, refinement)
+            if refinement.ended(found):
+                return found, len(found)
+            turns = refinement.turns(found)
+            self.put(key, turns)
+            return turns, len(found)
+
+    def _fitting(self, key: str, refinement: Refinement) -> list[Turn]:
+        return list(self.get(key) or ())[: refinement.limit]
+
+    def _file(self, key: str) -> Path:
+        return self.folder / key[:2] / key
+
+
+def _wait_for(lock: int) -> None:
+    deadline = time.monotonic() + WAIT_S
+    while time.monotonic() < deadline:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            time.sleep(LOOK_S)
+        else:
+            return
+
+
+@dataclass(frozen=True)
+class Sharing:
+    """One job's way to the shelf; can be pickled."""
+
+    folder: Path
+    keys: Keys
+    source: str
+    """Fingerprint of the report's files."""
+
+    @property
+    def shelf(self) -> Shelf:
+        """The folder where results are kept."""
+        return Shelf(self.folder)
+
+    def key(self, step: str, *content: Any) -> str:
+        """A step's key: what the config contributes and what it works on."""
+        files = self.source if step == "read" else ""
+        return hashlib.sha256(f"{step} {getattr(self.keys, step)} {files} {content_of(content)}".encode()).hexdigest()
+
+
+def refined(sharing: Sharing | None, refinement: Refinement, *content: Any) -> tuple[list[Turn], int]:
+    """A stage's turns, and how many of them were taken from the shelf."""
+    if sharing is None:
+        return refinement.turns(), 0
+    return sharing.shelf.turns(sharing.key(refinement.stage, *content), refinement)
+
+
+def timed(sharing: Sharing | None, step: str, compute: Callable[[], T], *content: Any) -> tuple[T, float, bool]:
+    """A step's value, the seconds it took whoever computed it, and whether it was taken from the shelf."""
+
+    def work() -> tuple[T, float]:
+        started = time.perf_counter()
+        return compute(), time.perf_counter() - started
+
+    if sharing is None:
+        return (*work(), False)
+    (value, seconds), known = sharing.shelf.once(sharing.key(step, *content), work)
+    return value, seconds, known

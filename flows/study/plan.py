@@ -1,0 +1,194 @@
+"""A study checked whole and laid out: every arm's config, every case, every job, and study.json.
+
+    made = plan(load_study("alpha"), out=Path("runs"), cases=[Path("my-cases")])
+    made.write()                        # runs/studies/alpha/study.json
+    made.batch, made.jobs               # what flows.study.running does, whole or in parts
+
+Starts nothing. The layout depends on the study, the cases and the code only, so that several hosts that plan
+the same study find the same jobs under the same names.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from flows import cases as case_sets
+from flows import store
+from flows.batch import Batch, Job, batch_over
+from flows.cases import Case
+from flows.study import machine
+from flows.study.spec import Arm, Study, told
+from sgcad_core import settings
+from sgcad_core.config import Config, build, load
+from sgcad_core.errors import ConfigError
+
+DOCUMENT = "study.json"
+SHELF = ".stages"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that a study will do. `jobs` are all of its jobs, arm by arm."""
+
+    study: Study
+    batch: Batch
+    jobs: tuple[Job, ...]
+    truth: Path | None = None
+
+    @property
+    def folder(self) -> Path:
+        """Where the study lies: <out>/studies/<name>."""
+        return self.batch.out
+
+    def jobs_named(self, names: Iterable[str]) -> tuple[Job, ...]:
+        """Jobs by name ("<arm>/<case>"), in the study's order. Raises ConfigError for one that is not there."""
+        wanted = set(names)
+        found = tuple(job for job in self.jobs if job.name in wanted)
+        if missing := sorted(wanted - {job.name for job in found}):
+            raise ConfigError(f"study {self.study.name}: no such job: {', '.join(missing)}; jobs are <arm>/<case>")
+        return found
+
+    def document(self) -> dict[str, Any]:
+        """The content of study.json."""
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "reference": self.study.reference,
+            "truth": str(self.truth) if self.truth else None,
+            "cases": [case.id for case in self.batch.cases],
+            "dataset_digest": dataset_digest(self.batch.cases),
+            "arms": [_told_of(*pair) for pair in zip(self.study.arms, self.batch.configs, strict=True)],
+            "package": version("sg-cadvlm"),
+            "git_commit": machine.git_commit(),
+            "hardware": machine.hardware(),
+        }
+
+    def write(self) -> Path:
+        """Write study.json, whole or not at all; its path."""
+        file = self.folder / DOCUMENT
+        partial = self.folder / f".{DOCUMENT}.partial"
+        store.write_json(partial, self.document())
+        partial.replace(file)
+        return file
+
+
+def plan(
+    study: Study,
+    out: Path,
+    *,
+    cases: Sequence[Path] = (),
+    truth: Path | None = None,
+    overrides: Sequence[str] = (),
+    jobs: int | None = None,
+    fresh: bool = False,
+) -> Plan:
+    """Check a study and lay it out. Raises ConfigError with every fault; only empty folders are made.
+
+    `cases` are folders of cases and `truth` a folder of true networks, in place of the study's own. `overrides`
+    hold for all arms, whose own ones come after them.
+    """
+    faults = list(study.faults)
+    found = _cases(study, cases, faults)
+    truth = _truth(study, truth, faults)
+    configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
+    loaded = tuple(config for config in configs if config is not None)
+    if jobs is not None and jobs < 1:
+        faults.append(f"--jobs {jobs}: at least 1 is needed")
+    if faults:
+        raise ConfigError(told(study.file, faults))
+    folder = folder_of(study.name, out)
+    batch = batch_over(found, loaded, folder, jobs, fresh)
+    batch = dataclasses.replace(batch, name=f"study/{study.name}", shelf=folder / SHELF)
+    return Plan(study, batch, batch.plan(), truth)
+
+
+def folder_of(name: str, out: Path) -> Path:
+    """Where a study of this name lies."""
+    return out.resolve() / "studies" / name
+
+
+def dataset_digest(cases: Iterable[Case]) -> str:
+    """Fingerprint of a set of cases: names and every file's content, whatever their order."""
+    lines = sorted(f"{case.id} {case_sets.source_digest(case.source)}\n" for case in cases)
+    return hashlib.sha256("".join(lines).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Config, ...]:
+    """The arms' configs alone, without cases. Raises ConfigError with every fault."""
+    faults = list(study.faults)
+    configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
+    if faults:
+        raise ConfigError(told(study.file, faults))
+    return tuple(config for config in configs if config is not None)
+
+
+def _cases(study: Study, named: Sequence[Path], faults: list[str]) -> tuple[Case, ...]:
+    folders = tuple(named) or study.cases
+    if not folders:
+        faults.append("no cases: give --cases DIR (a folder of case folders), or `cases: [DIR]` in the study")
+        return ()
+    try:
+        return case_sets.cases_in(folders)
+    except ConfigError as fault:
+        faults.append(str(fault))
+        return ()
+
+
+def _truth(study: Study, named: Path | None, faults: list[str]) -> Path | None:
+    truth = named or study.truth
+    if truth is None:
+        return None
+    if not truth.exists():
+        faults.append(f"truth {truth}: no such folder; give the folder with the true networks of the cases")
+    return truth.resolve()
+
+
+def _config(study: Study, arm: Arm, out: Path, overrides: Sequence[str], faults: list[str]) -> Config | None:
+    """An arm's config under the arm's name; None and a fault where it cannot be built."""
+    beside = study.file.parent / arm.config
+    try:
+        config = load(beside if beside.is_file() else arm.config, (*overrides, *arm.set))
+        raw = copy.deepcopy(config.raw)
+        raw["tracker"] = _tracker(config, study, out)
+        return build(raw, arm.name, arm.config)
+    except ConfigError as fault:
+        faults.append(f"arm {arm.name!r}: {fault}")
+        return None
+
+
+def _tracker(config: Config, study: Study, out: Path) -> Any:
+    """The tracker's entry with the study as its experiment, and its database in the output folder unless named."""
+    entry = config.raw["tracker"]
+    entry = {"name": entry} if isinstance(entry, str) else dict(entry)
+    fields = type(config.tracker).model_fields
+    if "experiment" in fields:
+        entry["experiment"] = f"study/{study.name}"
+    if "database" in fields and config.tracker.model_dump().get("database") is None:
+        entry["database"] = str(out.resolve() / "mlflow.db")
+    return entry
+
+
+def _told_of(arm: Arm, config: Config) -> dict[str, Any]:
+    """An arm in study.json."""
+    return {
+        "name": arm.name,
+        "label": arm.label or arm.name,
+        "config": _plain(arm.config),
+        "set": list(arm.set),
+        "digest": case_sets.config_digest(config),
+        "published": arm.published,
+        "factors": dict(arm.factors),
+    }
+
+
+def _plain(config: str) -> str:
+    """A config's path under configs/ where it lies there: no machine's paths."""
+    path = Path(config).resolve()
+    return str(path.relative_to(settings.CONFIGS)) if path.is_relative_to(settings.CONFIGS) else config

@@ -1,0 +1,192 @@
+"""A study file: arms, listed or crossed, over a set of cases.
+
+    title: Alpha sensitivity
+    reference: alpha_0.7                # the arm that others are compared with (optional)
+    arms:                               # an explicit list ...
+      - {name: greedy, config: mini_greedy.yaml, set: ["decoder=greedy"], label: Greedy, published: sg_cadvlm_qwen72b}
+    cross:                              # ... and/or a cross product; names come from the values
+      config: mini.yaml
+      over: {decoder.alpha: [0, 0.3, 0.7], seed: [0, 1]}
+    cases: [my-cases]                   # optional folders; --cases on the command line wins
+    truth: my-truth                     # optional; --truth wins
+
+Knows YAML and the names of arms; builds no config.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from flows.cases import safe_id
+from flows.study import crossing
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+
+STUDIES = settings.CONFIGS / "studies"
+MAX_ARMS = 500
+"""More is a slip of the pen: a cross product grows fast."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Arm(_Part):
+    """One column of a study: a config with overrides, under a name of its own."""
+
+    name: str = Field(min_length=1)
+    config: str = Field(min_length=1)
+    set: tuple[str, ...] = ()
+    """Overrides as on the command line: key=value."""
+    label: str = ""
+    """How tables call it; the name if empty."""
+    published: str | None = None
+    """Row of the published figures that stands beside it."""
+    factors: dict[str, Any] = Field(default_factory=dict, exclude=True)
+    """Key -> value of what a cross product varied; for a listed arm, what its author says that it varies."""
+
+
+class Cross(_Part):
+    """A cross product: every combination of the values is an arm. The key `config` varies the config itself."""
+
+    config: str = ""
+    over: dict[str, tuple[Any, ...]] = Field(min_length=1)
+    set: tuple[str, ...] = ()
+    """Overrides of every arm, before its own values."""
+
+    def arms(self) -> tuple[Arm, ...]:
+        """All combinations, the last key changing fastest."""
+        return tuple(
+            Arm(
+                name=crossing.name_of(factors),
+                config=str(factors.get("config", self.config)),
+                set=(*self.set, *crossing.overrides_of(factors)),
+                label=crossing.label_of(factors),
+                factors=factors,
+            )
+            for factors in crossing.combinations(self.over)
+        )
+
+
+class _File(_Part):
+    """The file's own shape."""
+
+    title: str = Field(min_length=1)
+    reference: str | None = None
+    arms: tuple[Arm, ...] = ()
+    cross: Cross | None = None
+    cases: tuple[Path, ...] = ()
+    truth: Path | None = None
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file as read, its cross product spread out."""
+
+    name: str
+    file: Path
+    title: str
+    arms: tuple[Arm, ...]
+    reference: str | None = None
+    cases: tuple[Path, ...] = ()
+    truth: Path | None = None
+    faults: tuple[str, ...] = ()
+    """What is wrong with the file itself; told together with what is wrong with its arms."""
+
+
+def load_study(path: Path | str) -> Study:
+    """Read a study; its faults stand in it. Raises ConfigError where so little is right that no arm can be told."""
+    file = find_study(Path(path))
+    try:
+        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError, OSError) as fault:
+        raise ConfigError(f"{file}: cannot be read as YAML: {fault}") from fault
+    if not isinstance(raw, dict):
+        raise ConfigError(f"{file}: expected a mapping with `title` and `arms` or `cross`, found {type(raw).__name__}")
+    parsed, faults = _parsed(raw)
+    if parsed is None:
+        raise ConfigError(told(file, faults))
+    arms = (*parsed.arms, *(parsed.cross.arms() if parsed.cross else ()))
+    faults += _faults(parsed, arms)
+    return Study(
+        safe_id(file.stem), file, parsed.title, arms, parsed.reference, parsed.cases, parsed.truth, tuple(faults)
+    )
+
+
+def is_study(path: Path) -> bool:
+    """Whether a YAML is a study rather than a config: it has arms or a cross product."""
+    try:
+        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError, OSError):
+        return False
+    return isinstance(raw, dict) and bool({"arms", "cross"} & set(raw))
+
+
+def told(file: Path, faults: list[str] | tuple[str, ...]) -> str:
+    """All faults of a study, one a line."""
+    return "\n".join([f"{file}: {len(faults)} fault(s)", *(f"  {line}" for f in faults for line in f.splitlines())])
+
+
+def find_study(path: Path) -> Path:
+    """The file that a path or a name under configs/studies/ means. Raises ConfigError naming the ones there are."""
+    for file in (path, STUDIES / path, STUDIES / f"{path}.yaml"):
+        if file.is_file():
+            return file
+    known = ", ".join(sorted(f.stem for f in STUDIES.glob("*.yaml")))
+    raise ConfigError(f"{path}: no such study; in configs/studies/: {known}")
+
+
+def _parsed(raw: dict[str, Any]) -> tuple[_File | None, list[str]]:
+    """The file's content and its faults; unknown keys are told and left out, so that the rest can be checked too."""
+    try:
+        return _File.model_validate(raw), []
+    except ValidationError as fault:
+        errors = fault.errors(include_url=False)
+    faults = [_line(e) for e in errors]
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            _drop(raw, error["loc"])
+    try:
+        return _File.model_validate(raw), faults
+    except ValidationError:
+        return None, faults
+
+
+def _line(error: Any) -> str:
+    place = ".".join(str(p) for p in error["loc"])
+    if error["type"] == "extra_forbidden":
+        part = {"arms": Arm, "cross": Cross}.get(str(error["loc"][0]), _File) if len(error["loc"]) > 1 else _File
+        return f"{place}: unknown key; known: {', '.join(sorted(part.model_fields))}"
+    return f"{place}: {error['msg']} (found {error['input']!r})"
+
+
+def _drop(raw: Any, place: tuple[Any, ...]) -> None:
+    for step in place[:-1]:
+        raw = raw[step]
+    raw.pop(place[-1], None)
+
+
+def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
+    """What pydantic cannot see: names, the reference, an empty study."""
+    faults = [] if arms else ["no arm: give `arms` (a list) or `cross` (`config` and `over`)"]
+    if len(arms) > MAX_ARMS:
+        faults.append(f"{len(arms)} arms; at most {MAX_ARMS}: cross fewer values, or make it several studies")
+    twice = [name for name, n in Counter(arm.name.casefold() for arm in arms).items() if n > 1]
+    faults += [f"arm {name!r} stands twice and would share a folder: give each a name of its own" for name in twice]
+    for arm in arms:
+        if arm.name != safe_id(arm.name) or arm.name.startswith("-"):
+            faults.append(f"arm {arm.name!r} cannot be a folder's name; such as {safe_id(arm.name.lstrip('-'))!r} can")
+    if parsed.reference is not None and parsed.reference not in {arm.name for arm in arms}:
+        names = ", ".join(arm.name for arm in arms)
+        faults.append(f"reference: no arm is called {parsed.reference!r}; there are: {names}")
+    if parsed.cross and not parsed.cross.config and "config" not in parsed.cross.over:
+        faults.append("cross.config: missing; name a config, or vary it: over: {config: [a.yaml, b.yaml]}")
+    if parsed.cross:
+        faults += [f"cross.over.{key}: no values; give a list" for key, v in parsed.cross.over.items() if not v]
+    return faults
