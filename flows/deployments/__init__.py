@@ -1,0 +1,1 @@
+"""What a schedule starts: inbox, nightly, study, reindex. deploy/prefect.yaml serves these flows."""

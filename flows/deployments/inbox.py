@@ -1,0 +1,103 @@
+"""The `inbox` deployment: reports that have come in since become scenarios, as one flow run.
+
+    python -m flows.deployments.inbox s3://reports/new --config template.yaml --out runs
+
+does by hand what the schedule does. Several may run at once, on one machine or many. Import after
+`settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from prefect import flow
+from prefect.task_runners import ThreadPoolTaskRunner
+
+from flows.batch import MAX_JOBS, Crew, Job, batch_of
+from flows.cases import Case
+from flows.chain import Ending
+from flows.deployments.claims import Claims
+from flows.deployments.intake import Do, Intake, OnResult
+from flows.deployments.place import Place
+from flows.evaluate import drive
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+
+DEFAULT_INBOX = "runs/inbox"
+PORTION = 48
+"""Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
+
+
+@flow(name="inbox", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)
+def inbox_flow(
+    address: str | None = None,
+    config: str = "template.yaml",
+    out: str = "runs",
+    overrides: list[str] | None = None,
+    jobs: int | None = None,
+    portion: int = PORTION,
+    settle_s: float = 10.0,
+    lease_s: float = 120.0,
+    wait_s: float = 30.0,
+) -> dict[str, int]:
+    """Turn what lies at an address into scenarios; how many ended how.
+
+    `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as whole when
+    nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
+    when the inbox is empty or nothing could be taken for `wait_s`.
+    """
+    address = address or settings.environment("SGCAD_INBOX") or DEFAULT_INBOX
+    batch_of((), [Path(config)], Path(out), overrides or (), jobs)  # a faulty config claims nothing
+    if min(settle_s, wait_s) < 0 or lease_s <= 0 or portion < 1:
+        raise ConfigError(
+            f"settle_s {settle_s}, wait_s {wait_s} below 0, or lease_s {lease_s}, portion {portion} not above"
+        )
+    place = Place(address)
+    with tempfile.TemporaryDirectory(prefix="sgcad-inbox-") as staging:
+        intake = Intake(place, Claims(place, lease_s), Path(staging), settle_s, config)
+        return intake.work(_by_tasks(config, out, tuple(overrides or ()), jobs), portion, wait_s)
+
+
+def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | None) -> Do:
+    """Runs cases as task runs of the current flow run."""
+
+    def do(cases: Sequence[Case], on_result: OnResult) -> None:
+        batch = batch_of(cases, [Path(config)], Path(out), overrides, jobs)
+        plan, crew = batch.plan(), Crew(batch)
+
+        def ended(job: Job, ending: Ending, untracked: str) -> None:
+            on_result(job.case, ending.result)
+
+        crew.begin(plan)
+        drive(plan, crew, ended)
+        crew.close()
+
+    return do
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """One run by hand, with a Prefect server for its length where none is named."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("address")
+    parser.add_argument("--config", default="template.yaml")
+    parser.add_argument("--out", default="runs")
+    parser.add_argument("--jobs", type=int)
+    parser.add_argument("--portion", type=int, default=PORTION)
+    for name, value in (("settle", 10.0), ("lease", 120.0), ("wait", 30.0)):
+        parser.add_argument(f"--{name}-s", type=float, default=value)
+    asked = vars(parser.parse_args(arguments))
+    sys.stdout.write(json.dumps(inbox_flow(**asked)) + "\n")
+
+
+if __name__ == "__main__":
+    from flows.server import prefect_server
+
+    with prefect_server() as server:
+        if server:
+            server.wait()
+        main()
