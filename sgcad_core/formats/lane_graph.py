@@ -93,6 +93,14 @@ class NetworkFigures(NamedTuple):
     segments: int
 
 
+class RoadCounts(NamedTuple):
+    """A network in numbers: its figures, lanes there and back of each contracted segment, legs of the largest node."""
+
+    figures: NetworkFigures
+    chains: tuple[tuple[int, int], ...]
+    max_degree: int
+
+
 def edge_id(road: str, direction: str) -> str:
     """Edge of a road in "forward" or "backward" direction."""
     return road if direction == "forward" else f"-{road}"
@@ -123,16 +131,21 @@ def network_figures(graph: LaneGraph) -> NetworkFigures:
     `mean_lanes` is the mean over contracted segments and directions of the lanes of the widest piece; a
     direction that is interrupted on the way does not count.
     """
-    lanes = _lanes_between(graph.edges.values())
+    return road_counts(_lanes_between(graph.edges.values())).figures
+
+
+def road_counts(lanes: Mapping[tuple[str, str], int]) -> RoadCounts:
+    """Everything that is counted in roads given as (from, to): lanes for passenger cars, both directions apart."""
     near = _neighbors(lanes)
-    paths = list(_paths(near))
-    counts = [n for path in paths for way in (path, path[::-1]) if (n := _widest(lanes, way))]
-    return NetworkFigures(
+    chains = tuple((_widest(lanes, path), _widest(lanes, path[::-1])) for path in _paths(near))
+    counts = [n for both in chains for n in both if n]
+    figures = NetworkFigures(
         intersections=sum(len(others) >= 3 for others in near.values()),
         components=_components(near),
         mean_lanes=sum(counts) / len(counts) if counts else 0.0,
-        segments=len(paths),
+        segments=len(chains),
     )
+    return RoadCounts(figures, chains, max((len(others) for others in near.values()), default=0))
 
 
 def _lanes_between(edges: Iterable[Edge]) -> dict[tuple[str, str], int]:

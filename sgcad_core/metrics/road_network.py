@@ -19,7 +19,7 @@ class NetworkFigures(NamedTuple):
 
 def relative_error(truth: float, made: float) -> float:
     """1 - max(0, 1 - |truth - made| / truth), in [0, 1]; a truth of 0 is divided by 1 (the paper leaves 0/0 open)."""
-    return 1 - max(0.0, 1 - abs(truth - made) / (truth or 1.0))
+    return min(1.0, abs(truth - made) / (truth or 1.0))
 
 
 def intersection_count_error(truth: NetworkFigures, made: NetworkFigures) -> float:
