@@ -1,0 +1,179 @@
+"""Shards of a study as flow runs of one deployment, taken by the workers of a pool on any number of hosts.
+
+`shard_flow` is what the deployment serves (deploy/prefect.yaml); `on_hosts` lays a study out, submits it and
+brings it home into the folder that a single machine would have filled. Import after `settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import httpx
+from prefect import flow
+from prefect.client.orchestration import get_client
+from prefect.client.schemas.filters import FlowRunFilter, FlowRunFilterId
+from prefect.deployments import run_deployment
+from prefect.exceptions import ObjectNotFound
+from prefect.runtime import flow_run
+from prefect.states import Completed, Crashed, State
+from prefect.task_runners import ThreadPoolTaskRunner
+
+from flows import tracking
+from flows.batch import MAX_JOBS, Job
+from flows.chain import Ending
+from flows.evaluate import drive
+from flows.study.lease import BEAT_S
+from flows.study.shards import Shard, lay_out, work_of, work_on
+from flows.study.share import Mark, Share, Unreachable
+from flows.study.watch import PATIENCE_S, START_S, Watch, follow
+from flows.study.watch import State as Standing
+from flows.tracking import OnEnding
+from sgcad_core.errors import ConfigError
+
+DEPLOYMENT = "shard/shard"
+POLL_S = 2.0
+PAGE = 200
+"""The server's limit of flow runs an answer."""
+
+_T = TypeVar("_T")
+
+
+@flow(
+    name="shard",
+    flow_run_name="{study} {shard}",
+    task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS),
+    persist_result=False,
+)
+def shard_flow(
+    address: str, study: str, shard: int, jobs: int | None = None, scratch: str = "", beat_s: float = BEAT_S
+) -> State[Any]:
+    """Do one shard of a study laid out at `address`; `jobs` cases at a time share one model and its batch.
+
+    `scratch` is a folder on this host; what it holds from a run that was cut off is handed in, not done again.
+    """
+    place = Path(scratch or tempfile.gettempdir()) / "sgcad-shards" / hashlib.sha256(address.encode()).hexdigest()[:12]
+    place.mkdir(parents=True, exist_ok=True)
+    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place), drive, jobs, beat_s)
+    return Completed(message=", ".join(f"{count} {name}" for name, count in vars(tally).items()))
+
+
+@dataclass(frozen=True)
+class PrefectPool:
+    """Flow runs of the shard deployment; `parameters` go to each, `deployment` names it as "flow/deployment"."""
+
+    study: str
+    parameters: dict[str, Any]
+    deployment: str = DEPLOYMENT
+
+    def submit(self, shard: int) -> str:
+        """Ask for a run of a shard; its id. Raises ConfigError if there is no such deployment."""
+        parameters = {**self.parameters, "study": self.study, "shard": shard}
+        try:
+            made = _ask(
+                lambda: run_deployment(
+                    self.deployment, parameters=parameters, timeout=0, as_subflow=False, tags=[f"study:{self.study}"]
+                )
+            )
+        except ObjectNotFound as fault:
+            raise ConfigError(
+                f"Prefect has no deployment {self.deployment!r}: start one with `make up`, or `prefect --no-prompt "
+                "deploy --prefect-file deploy/prefect.yaml --all`"
+            ) from fault
+        return str(made.id)
+
+    def states(self, runs: Sequence[str]) -> dict[str, tuple[Standing, str]]:
+        """State and message of each run; a run that the server does not know (any more) has ended."""
+        found: dict[str, tuple[Standing, str]] = dict.fromkeys(runs, ("ended", "the server has no such run"))
+        with get_client(sync_client=True) as client:
+            for start in range(0, len(runs), PAGE):
+                wanted = FlowRunFilter(id=FlowRunFilterId(any_=list(runs[start : start + PAGE])))
+                read = _ask(lambda wanted=wanted: client.read_flow_runs(flow_run_filter=wanted, limit=PAGE))
+                found |= {str(run.id): (_standing(run.state), _words(run.state)) for run in read}
+        return found
+
+    def give_up(self, run: str, reason: str) -> None:
+        """Mark a run as crashed: its place in the pool is free again, and its message says why."""
+        with get_client(sync_client=True) as client:
+            _ask(lambda: client.set_flow_run_state(run, Crashed(message=reason), force=True))
+
+
+def _ask(request: Callable[[], _T]) -> _T:
+    try:
+        return request()
+    except httpx.HTTPError as fault:
+        raise Unreachable(f"Prefect's server does not answer ({type(fault).__name__}: {fault})") from fault
+
+
+def _standing(state: Any) -> Standing:
+    if state is None or state.is_scheduled():
+        return "waiting"
+    return "ended" if state.is_final() else "taken"
+
+
+def _words(state: Any) -> str:
+    return f"{state.name}: {state.message or ''}" if state else ""
+
+
+@dataclass(frozen=True)
+class Hosts:
+    """How a study goes to many hosts: the meeting place, the deployment, shards and patience (None: the defaults)."""
+
+    address: str
+    deployment: str = DEPLOYMENT
+    shards: int | None = None
+    jobs: int | None = None
+    beat_s: float = BEAT_S
+    patience_s: float = PATIENCE_S
+    start_s: float = START_S
+
+
+def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:
+    """Run a study's jobs on whatever hosts serve the deployment; every case is brought home and tracked here.
+
+    Returns which shards were submitted again, and why. Raises ConfigError, Unreachable (the storage or the
+    server is gone for ten minutes); started again it goes on.
+    """
+    left = list(_not_here(jobs, on_ending))
+    if not left:
+        return []
+    share = Share(hosts.address)
+    shards = lay_out(share, study, left, hosts.shards)
+    parameters = {"address": hosts.address, "jobs": hosts.jobs, "beat_s": hosts.beat_s}
+    pool = PrefectPool(study, parameters, hosts.deployment)
+    watch = Watch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
+    follow(watch, time.monotonic, lambda: time.sleep(POLL_S))
+    return watch.again
+
+
+def _not_here(jobs: Sequence[Job], on_ending: OnEnding) -> Iterator[Job]:
+    """Jobs whose results do not lie here yet; the others are tracked and told of."""
+    for job in jobs:
+        result = job.folder.finished(job.digest)
+        if result is None:
+            yield job
+        else:
+            ending = Ending(result, reused=True)
+            on_ending(job, ending, tracking.track_safely(job, ending))
+
+
+def _homecoming(share: Share, jobs: Sequence[Job], on_ending: OnEnding) -> Callable[[Mark], None]:
+    """What brings a marked result into its folder, tracks it and tells of it."""
+    by_work = {(work.arm, work.case, work.digest): job for job in jobs for work in (work_of(job),)}
+
+    def home(mark: Mark) -> None:
+        job = by_work[mark.arm, mark.case, mark.digest]
+        with job.folder.writing() as partial:
+            share.fetch(mark, partial)
+        result = job.folder.finished("" if mark.status == "failed" else job.digest)
+        if result is None:
+            raise ConfigError(f"{job.folder.path}: the result from {mark.host} is not whole; start the study again")
+        ending = Ending(result)
+        on_ending(job, ending, tracking.track_safely(job, ending))
+
+    return home

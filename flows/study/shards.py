@@ -1,0 +1,199 @@
+"""A study cut into shards: laid out on a share, worked on by whichever host takes one, watched, brought home.
+
+All arms of a case stay in one shard, so that the stages they share are computed once. A shard knows its jobs
+by their digests: a host whose package, prompts or plugins differ refuses instead of mixing results. Knows no
+Prefect: `flows/deployments/shards.py` makes flow runs of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flows import cases
+from flows.batch import Batch, Crew, Job, cores
+from flows.cases import Case
+from flows.chain import Ending
+from flows.sharing import Sharing, keys_of
+from flows.store import CaseFolder
+from flows.study.lease import Lease
+from flows.study.share import Share, mark_name
+from sgcad_core.config import Config, build
+from sgcad_core.errors import ConfigError
+
+PLAN = "plan.json"
+JOBS_A_SHARD = 100
+"""A flow run costs a process and Prefect's import, about 8 s: at 0.5 s a case that is 16 % of a shard of 100."""
+SHELF = ".stages"
+"""Where a host keeps the stages that arms share; its own, since a case's arms meet in one shard."""
+MIN_SHARDS = 8
+"""As many at least where there are cases enough: four for each of two hosts, so that neither waits long at the end."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """One job by name: what a shard's list says of it."""
+
+    arm: str
+    case: str
+    digest: str
+
+    @property
+    def mark(self) -> str:
+        """The mark of its success."""
+        return mark_name(self.arm, self.case, self.digest)
+
+    @property
+    def failure(self) -> str:
+        """The mark of its failure."""
+        return mark_name(self.arm, self.case, self.digest, failed=True)
+
+
+def work_of(job: Job) -> Work:
+    """A job's name and digest."""
+    return Work(job.config.name, job.case.id, job.digest)
+
+
+def cut(jobs: Sequence[Job], shards: int | None = None) -> list[list[Work]]:
+    """Shards in the order of the jobs, all arms of a case in one of them, sizes as even as that allows."""
+    by_case: dict[str, list[Work]] = {}
+    for job in jobs:
+        by_case.setdefault(job.case.id, []).append(work_of(job))
+    wanted = shards or max(MIN_SHARDS, -(-len(jobs) // JOBS_A_SHARD))
+    count = max(1, min(wanted, len(by_case)))
+    found: list[list[Work]] = [[] for _ in range(count)]
+    for number, group in enumerate(by_case.values()):
+        found[number * count // len(by_case)] += group
+    return found
+
+
+def lay_out(share: Share, study: str, jobs: Sequence[Job], shards: int | None = None) -> list[list[Work]]:
+    """Write plan and reports to the share and cut the work. A share that holds another study is refused.
+
+    Laid out again (resumed, or with other arms), finished jobs keep their marks; failed ones are tried again.
+    """
+    there = share.json(PLAN)
+    if there is not None and there["study"] != study:
+        raise ConfigError(
+            f"{share.address} holds the study {there['study']!r}, not {study!r}: give each its own folder"
+        )
+    for name in share.names("failed/"):
+        share.remove(name)
+    made = cut(jobs, shards)
+    _give_reports(share, jobs)
+    arms = {job.config.name: job.config.raw for job in jobs}
+    plan = {"study": study, "arms": arms, "shards": [[vars(work) for work in shard] for shard in made]}
+    share.write_json(PLAN, plan)
+    return made
+
+
+def _give_reports(share: Share, jobs: Sequence[Job]) -> None:
+    there = share.names("cases/")
+    for case in {job.case.id: job.case for job in jobs}.values():
+        files = [f for f in case.source.rglob("*") if f.is_file()] if case.source.is_dir() else [case.source]
+        for file in files:
+            inside = file.relative_to(case.source) if case.source.is_dir() else Path()
+            name = f"cases/{case.id}/{inside.as_posix()}" if case.source.is_dir() else f"cases/{case.id}"
+            content = file.read_bytes()
+            if name not in there or share.read(name) != content:
+                share.write(name, content)
+
+
+# ------------------------------------------------------------------ on a worker's host
+@dataclass(frozen=True)
+class Tally:
+    """What became of a shard: done here, found done, done here too late (another's result stands), failed."""
+
+    done: int = 0
+    found: int = 0
+    doubled: int = 0
+    failed: int = 0
+
+
+@dataclass(frozen=True)
+class Shard:
+    """One shard on the host that took it; `scratch` is a folder on the host's own disk."""
+
+    share: Share
+    number: int
+    run: str
+    scratch: Path
+
+    def jobs(self) -> tuple[list[Job], int]:
+        """What is left to do, checked against the plan, and how much was found done."""
+        plan = self.share.json(PLAN)
+        if plan is None or self.number >= len(plan["shards"]):
+            raise ConfigError(f"{self.share.address}: no shard {self.number} in {PLAN}; was the study laid out here?")
+        wanted = [Work(**work) for work in plan["shards"][self.number]]
+        ended = self.share.names("done/") | self.share.names("failed/")
+        left = [work for work in wanted if not ({work.mark, work.failure} & ended)]
+        configs = {arm: _config(plan["arms"][arm], arm) for arm in dict.fromkeys(work.arm for work in left)}
+        sources = {case: self._report(case) for case in dict.fromkeys(work.case for work in left)}
+        return [self._job(work, configs[work.arm], sources[work.case]) for work in left], len(wanted) - len(left)
+
+    def _report(self, case: str) -> Case:
+        """The report, brought to this host."""
+        prefix = f"cases/{case}"
+        place = self.scratch / prefix
+        for name in self.share.names(prefix):
+            if name == prefix or name.startswith(f"{prefix}/"):
+                file = self.scratch / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(self.share.read(name) or b"")
+        if not place.exists():
+            raise ConfigError(f"{self.share.address}/{prefix}: the report is not there; start the study again")
+        return Case(place, case)
+
+    def _job(self, work: Work, config: Config, case: Case) -> Job:
+        source = cases.source_digest(case.source)
+        digest = cases.job_digest(source, cases.config_digest(config))
+        if digest != work.digest:
+            raise ConfigError(
+                f"{work.arm}/{work.case}: this host would compute another result than the study asks for (digest "
+                f"{digest[:12]}, not {work.digest[:12]}): install the same version of the package, its plugins and "
+                "the files that the configuration names"
+            )
+        folder = CaseFolder(self.scratch, work.arm, work.case)
+        return Job(config, case, digest, folder, Sharing(self.scratch / SHELF, keys_of(config), source))
+
+    def hand_in(self, lease: Lease, job: Job, ending: Ending) -> str:
+        """Upload a finished case and mark it; which field of the tally it counts for. Raises LeaseLost."""
+        lease.check()
+        status = ending.result["status"]
+        stood = self.share.leave(job.folder.path, (job.config.name, job.case.id, job.digest), status, self.run)
+        return ("failed" if status == "failed" else "done") if stood else "doubled"
+
+
+def _config(raw: dict[str, Any], arm: str) -> Config:
+    """An arm's configuration on a worker's host: tracked is at home, where results meet."""
+    return build({**raw, "tracker": "none"}, arm, f"arm {arm}")
+
+
+Run = Callable[[Sequence[Job], Crew, Callable[[Job, Ending, str], None]], object]
+"""How a shard's jobs are run: `flows.evaluate.drive` inside a flow run."""
+
+
+def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | None = None) -> Tally:
+    """Do what is left of a shard and hand in each case as it ends. Raises ConfigError, LeaseLost, Unreachable."""
+    lease = Lease(shard.share, shard.number, shard.run, **({"beat_s": beat_s} if beat_s else {}))
+    counts = dict.fromkeys(("done", "found", "doubled", "failed"), 0)
+    with lease.held():
+        plan, counts["found"] = shard.jobs()
+        configs = tuple({job.config.name: job.config for job in plan}.values())
+        at_a_time = jobs or cores()
+        batch = Batch(configs, tuple(job.case for job in plan), shard.scratch, at_a_time, at_a_time)
+        crew = Crew(batch)
+
+        def hand_in(job: Job, ending: Ending, untracked: str) -> None:
+            counts[shard.hand_in(lease, job, ending)] += 1
+
+        try:
+            crew.begin(plan)
+            run(plan, crew, hand_in)
+        except BaseException:
+            crew.stop()
+            raise
+        crew.close()
+    return Tally(**counts)
