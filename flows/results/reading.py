@@ -160,9 +160,7 @@ def _runs(folder: Path) -> dict[str, Any]:
 
 def _arm(raw: Mapping[str, Any]) -> Arm:
     label, overrides = raw.get("label") or raw["name"], tuple(raw.get("set") or ())
-    return Arm(
-        raw["name"], label, raw.get("config") or "", overrides, raw.get("published"), raw.get("factors") or {}
-    )
+    return Arm(raw["name"], label, raw.get("config") or "", overrides, raw.get("published"), raw.get("factors") or {})
 
 
 def _labels(truth: Path, cases: Sequence[str]) -> Iterator[tuple[str, Mapping[str, Any]]]:

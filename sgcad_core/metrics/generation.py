@@ -145,6 +145,11 @@ def quality(cases: Sequence[CaseSeen]) -> Quality:
     )
 
 
+def written_files(case: CaseSeen) -> FileCounts:
+    """Files of a case after refinement: written, and those with an error."""
+    return _files(case, -1)[0]
+
+
 def _at_once(case: CaseSeen) -> bool:
     """Whether it was generated without any refinement."""
     return case.status == "generated" and len(case.of("road")) <= 1 and len(case.of("scenario")) <= 1

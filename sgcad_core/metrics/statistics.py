@@ -78,8 +78,8 @@ def ratio_interval(
 def _resampled(a: Floats, b: Floats, seed: int) -> Floats:
     """(RESAMPLES,) ratios of resampled sums."""
     rows = max(1, BLOCK // len(a))
-    sums = [counts @ np.stack((a, b), axis=1) for counts in _counts(len(a), seed, rows)]
-    total = np.concatenate(sums)
+    pair = np.stack((a, b), axis=1)
+    total: Floats = np.concatenate([counts @ pair for counts in _counts(len(a), seed, rows)])
     total = total[total[:, 1] > 0]
     ratios: Floats = total[:, 0] / total[:, 1]
     return ratios
@@ -131,7 +131,7 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> float:
     only_first, only_second = int(((x == 1) & (y == 0)).sum()), int(((x == 0) & (y == 1)).sum())
     differing = only_first + only_second
     tail = sum(math.comb(differing, k) for k in range(min(only_first, only_second) + 1))
-    return min(1.0, 2 * tail / 2**differing)
+    return min(1.0, 2 * tail / (1 << differing))
 
 
 def sign_flip(first: ArrayLike, second: ArrayLike, seed: int = SEED) -> float:

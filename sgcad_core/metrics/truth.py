@@ -39,7 +39,7 @@ class TruthFigures(NamedTuple):
 
 
 def compare(label: Label, made: Made | None) -> dict[str, float]:
-    """field -> 1.0 right, 0.0 wrong, a share right, or an error in [0, 1]; fields that the label leaves open are absent.
+    """field -> 1.0 right, 0.0 wrong, a share right, or an error in [0, 1]; fields left open are absent.
 
     `made` is None for a case that was refused, exhausted, failed or cannot be read.
     """

@@ -66,15 +66,21 @@ def first_touch(paths: Mapping[str, Path]) -> Touch | None:
     for a, b in combinations(sorted(paths), 2):
         _, i, j = np.intersect1d(paths[a].t_s.round(3), paths[b].t_s.round(3), return_indices=True)
         first, second = paths[a].pose[i], paths[b].pose[j]
-        hits = np.flatnonzero(box_gaps(first, paths[a].size, second, paths[b].size) <= 0) if len(i) else ()
-        if len(hits) and (found is None or paths[a].t_s[i[hits[0]]] < found[0]):
-            k = int(hits[0])
-            boxes = Box(*map(float, first[k]), *paths[a].size), Box(*map(float, second[k]), *paths[b].size)
-            found = float(paths[a].t_s[i[k]]), a, b, *boxes
+        hits = np.flatnonzero(box_gaps(first, paths[a].size, second, paths[b].size) <= 0)
+        if not hits.size:
+            continue
+        k = int(hits[0])
+        if found is None or paths[a].t_s[i[k]] < found[0]:
+            one, two = _box(first[k], paths[a].size), _box(second[k], paths[b].size)
+            found = float(paths[a].t_s[i[k]]), a, b, one, two
     if found is None:
         return None
     t, a, b, one, two = found
     return Touch(t, {a: contact_area(one, two), b: contact_area(two, one)})
+
+
+def _box(pose: Floats, size: Size) -> Box:
+    return Box(float(pose[0]), float(pose[1]), float(pose[2]), *size)
 
 
 # ------------------------------------------------------------------ single fields

@@ -1,0 +1,57 @@
+"""Which tables there are: the published layouts turned so that arms are rows, each with its reading in the header."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from flows.results import measures as m
+
+
+class Layout(NamedTuple):
+    """A table before it has figures. `by_level`: only arms with a robustness level, in the order of levels."""
+
+    key: str
+    title: str
+    note: str
+    measures: tuple[m.Measure, ...]
+    by_level: bool = False
+
+
+LAYOUTS = (
+    Layout(
+        "generation", "Generation", "Share of all finished cases in percent. GSR: status `generated`. AER: faulty over "
+        "written files after refinement. Attempts: mean a case, both stages. Crash as declared: of the generated cases "
+        "that declare a contact, those whose first contact it is.", m.GENERATION,
+    ),
+    Layout(
+        "network_wrong", "Road network: reports with any error", "Reading: share of reports whose count differs from "
+        "the truth at all, percent; a case without output counts as wrong. Published values are nearly all whole k/109 "
+        "and stand here.", m.NETWORK_WRONG,
+    ),
+    Layout(
+        "network_mean", "Road network: mean error", "Reading: mean of the published formulas over reports, percent; a "
+        "case without output counts as 100. No published value is known in this reading.", m.NETWORK_MEAN,
+    ),
+    Layout(
+        "truth", "Against the truth: roads of coded reports, motion, first contact", "Share right in percent, of the "
+        "reports whose label states the field; a case without output counts as wrong.", m.TRUTH,
+    ),
+    Layout(
+        "criticality_paper", "Criticality, `paper` reading", "Formulas to the letter, from the first vehicle to the "
+        "others; generated cases. `P_c > 0` and near miss are shares of scenarios with any such instant (published "
+        "values are k/109 and stand there); mean P_c is the formula, a share of instants. ADE and FDE are those of a "
+        "constant-velocity prediction.", m.PAPER,
+    ),
+    Layout(
+        "risk_paper", "Risk distribution, `paper` reading", "Share of generated scenarios by level of S_e, percent.",
+        m.PAPER_RISK,
+    ),
+    Layout(
+        "criticality_exact", "Criticality, `exact` reading", "Oriented boxes, every pair of which one moves; generated "
+        "cases; TTC and PET of the cases that have one. Not comparable with published values.", m.EXACT,
+    ),
+    Layout(
+        "robustness", "Robustness levels", "Network errors as share of generated reports with any error, percent (a "
+        "refused case is no network error here).", m.ROBUSTNESS, True,
+    ),
+)  # fmt: skip

@@ -1,0 +1,184 @@
+"""What a table can show: each measure with its name, unit, direction and where a case's value is found.
+
+A case's values are one flat mapping (`values_of`); a value that does not exist for a case is absent, and n says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal, NamedTuple
+
+from flows.results.reading import Ran, Study, made_of
+from sgcad_core.metrics.generation import quality, written_files
+from sgcad_core.metrics.truth import NETWORK_FIELDS, compare
+from sgcad_core.result import STATUSES
+
+Kind = Literal["share", "mean", "ratio"]
+Better = Literal["low", "high", ""]
+SHORT = {
+    "intersection_count_error": "intersections", "lane_count_error": "lanes", "connectivity_error": "connectivity",
+}  # fmt: skip
+
+
+class Measure(NamedTuple):
+    """One figure of a table.
+
+    kind: `share` of cases (0/1 values, printed in percent), `mean` of values, `ratio` of two sums (percent).
+    key: the case value, of a ratio numerator and denominator. better: which direction is better, if either.
+    """
+
+    name: str
+    label: str
+    kind: Kind = "share"
+    unit: str = "%"
+    better: Better = ""
+    keys: tuple[str, ...] = ()
+    digits: int = 1
+
+    @property
+    def key(self) -> str:
+        """Name of a case's value."""
+        return self.keys[0] if self.keys else self.name
+
+    @property
+    def factor(self) -> float:
+        """What a fraction is multiplied with for print."""
+        return 100.0 if self.unit == "%" else 1.0
+
+
+def _wrong(name: str, label: str) -> Measure:
+    return Measure(name, label, better="low")
+
+
+def _right(name: str, label: str, kind: Kind = "mean") -> Measure:
+    return Measure(name, label, kind, better="high")
+
+
+GENERATION = (
+    _right("generated", "GSR", "share"),
+    Measure("refused", "refused"),
+    _wrong("exhausted", "exhausted"),
+    _wrong("failed", "failed"),
+    Measure("file_errors", "AER", "ratio", better="low", keys=("files_faulty", "files_written")),
+    _right("first_success", "GSR at first", "share"),
+    Measure("attempts", "attempts", "mean", "", "low"),
+    _right("as_declared", "crash as declared", "share"),
+)
+NETWORK_WRONG = (
+    _wrong("intersections_wrong", "ICE"), _wrong("lanes_wrong", "LCE"), _wrong("connectivity_wrong", "CE"),
+)  # fmt: skip
+NETWORK_MEAN = tuple(
+    Measure(f"{short}_error", label, "mean", "%", "low")
+    for short, label in zip(SHORT.values(), ("ICE", "LCE", "CE"), strict=True)
+)
+TRUTH = (
+    _right("lanes_total", "lanes total"),
+    _right("legs", "legs", "share"),
+    _right("vehicle_count", "vehicles", "share"),
+    _right("initial_heading", "initial heading"),
+    _right("relative_heading", "relative heading", "share"),
+    _right("maneuver", "maneuver"),
+    _right("collision_pair", "first contact: pair", "share"),
+    _right("collision_areas", "pair and sides", "share"),
+)
+PAPER = (
+    Measure("p_collision_any", "P_c > 0", better="high"),
+    Measure("p_collision", "mean P_c", "mean", "", "high", digits=3),
+    Measure("p_near_miss_any", "near miss", better="high"),
+    Measure("p_distance", "min distance", "mean", "m", "low", digits=2),
+    Measure("p_ttc", "TTC", "mean", "s", "low", digits=2),
+    Measure("p_pet", "PET", "mean", "s", "low", digits=2),
+    Measure("p_intensity", "intensity", "mean", "1/m", "high", digits=2),
+    Measure("p_ade", "ADE", "mean", "m", digits=2),
+    Measure("p_fde", "FDE", "mean", "m", digits=2),
+)
+PAPER_RISK = tuple(
+    Measure(f"p_{level}", label) for level, label in (
+        ("critical", "critical"), ("high", "high"), ("moderate_low", "moderate and low"),
+    )
+)  # fmt: skip
+EXACT = (
+    _right("x_collision", "collision", "share"),
+    Measure("x_speed", "impact speed", "mean", "m/s", digits=2),
+    Measure("x_distance", "min distance", "mean", "m", "low", digits=2),
+    Measure("x_ttc", "TTC", "mean", "s", "low", digits=2),
+    Measure("x_pet", "PET", "mean", "s", "low", digits=2),
+    Measure("x_ade", "ADE", "mean", "m", digits=2),
+    Measure("x_fde", "FDE", "mean", "m", digits=2),
+    *(Measure(f"x_{level}", label) for level, label in (
+        ("critical", "critical"), ("high", "high"), ("moderate_low", "moderate and low"),
+    )),
+)  # fmt: skip
+ROBUSTNESS = (
+    _right("generated", "GSR", "share"),
+    Measure("refused", "refused"),
+    _wrong("made_intersections_wrong", "ICE of generated"),
+    _wrong("made_lanes_wrong", "LCE of generated"),
+)
+
+_PAPER = {
+    "p_collision": "collision_probability", "p_distance": "minimum_distance_m", "p_ttc": "time_to_collision_s",
+    "p_pet": "post_encroachment_time_s", "p_intensity": "interaction_intensity_mean",
+    "p_ade": "average_displacement_error_m", "p_fde": "final_displacement_error_m",
+}  # fmt: skip
+_EXACT = {
+    "x_collision": "collision", "x_speed": "collision_speed_mps", "x_distance": "minimum_distance_m",
+    "x_ttc": "time_to_collision_s", "x_pet": "post_encroachment_time_s", "x_ade": "average_displacement_error_m",
+    "x_fde": "final_displacement_error_m",
+}  # fmt: skip
+
+
+def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
+    """Everything that is measured of a finished case, fractions and SI units."""
+    found = dict(_generation(ran))
+    if label is not None:
+        found |= _truth(compare(label, made_of(ran.folder, ran.result)), ran.generated)
+    if ran.generated:
+        found |= dict(_reading(ran.metrics.get("paper", {}), _PAPER, "p"))
+        found |= dict(_reading(ran.metrics.get("exact", {}), _EXACT, "x"))
+    return found
+
+
+def study_values(study: Study) -> dict[str, dict[str, dict[str, float]]]:
+    """arm -> case -> values."""
+    return {
+        arm: {case: values_of(ran, study.labels.get(case)) for case, ran in cases.items()}
+        for arm, cases in study.ran.items()
+    }
+
+
+def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
+    yield from ((status, float(ran.result["status"] == status)) for status in STATUSES)
+    seen = ran.seen()
+    counts = written_files(seen)
+    yield "files_written", float(counts.written)
+    yield "files_faulty", float(counts.faulty)
+    yield "attempts", float(len(seen.attempts))
+    yield "first_success", quality([seen]).first_success
+    collision = ran.result.get("collision") or {}
+    if ran.generated and collision.get("declared"):
+        yield "as_declared", float(collision["realised"])
+
+
+def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
+    """The comparison under the names of tables: `lanes_error`, `lanes_wrong`, and the latter of generated cases."""
+    found = {k: v for k, v in marks.items() if not k.startswith(NETWORK_FIELDS)}
+    for field, short in SHORT.items():
+        if field in marks:
+            found |= {f"{short}_error": marks[field], f"{short}_wrong": marks[f"{field}_any"]}
+            if generated:
+                found[f"made_{short}_wrong"] = marks[f"{field}_any"]
+    return found
+
+
+def _reading(figures: Mapping[str, Any], names: Mapping[str, str], prefix: str) -> Iterator[tuple[str, float]]:
+    """One reading of metrics.json; null values stay out."""
+    for name, key in names.items():
+        if figures.get(key) is not None:
+            yield name, float(figures[key])
+    for name, key in (("p_collision_any", "collision_probability"), ("p_near_miss_any", "near_miss_probability")):
+        if prefix == "p" and figures.get(key) is not None:
+            yield name, float(figures[key] > 0)
+    if level := figures.get("emergency_level"):
+        level = level if level in ("critical", "high") else "moderate_low"
+        yield from ((f"{prefix}_{k}", float(k == level)) for k in ("critical", "high", "moderate_low"))

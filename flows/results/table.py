@@ -1,0 +1,199 @@
+"""Tables of a study: arms against measures, each figure with n, interval, corrected p and the published value.
+
+Ours and the published figures stand in separate fields of a cell and are never mixed. Knows values by case; no file,
+no print.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flows.results.layouts import LAYOUTS, Layout
+from flows.results.levels import LABELS
+from flows.results.measures import Measure, study_values
+from flows.results.published import Published, publication
+from flows.results.reading import Arm, Study
+from sgcad_core.metrics import statistics
+from sgcad_core.metrics.statistics import Interval
+from sgcad_core.records import Floats
+
+Values = Mapping[str, Mapping[str, Mapping[str, float]]]
+"""arm -> case -> measure key -> value."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One figure. `value` and `interval` in the measure's unit; `p` is Holm's, against the reference arm."""
+
+    value: float
+    n: int
+    interval: Interval | None
+    p: float | None = None
+    published: Published | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One arm (or, of refusals, one system over its levels)."""
+
+    name: str
+    label: str
+    done: int
+    of: int
+    cells: Mapping[str, Cell | None]
+    """By measure; None where no case has a value."""
+    published: Mapping[str, Published]
+    published_label: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whole: what it says, in which reading, and compared with whom."""
+
+    key: str
+    title: str
+    note: str
+    measures: tuple[Measure, ...]
+    rows: tuple[Row, ...]
+    reference: str | None = None
+
+    def published(self, measure: Measure) -> bool:
+        """Whether any row has a published figure for it, so that it gets a column of its own."""
+        return any(measure.name in row.published for row in self.rows)
+
+
+@dataclass(frozen=True)
+class Tables:
+    """All tables of a study, with the values that they and the figures stand on."""
+
+    study: Study
+    values: Values
+    tables: tuple[Table, ...]
+    remarks: tuple[str, ...]
+
+
+def tables_of(study: Study) -> Tables:
+    """Every table that the study has something to show for; what is left out is told in the remarks."""
+    values = study_values(study)
+    made = [_table(study, values, layout) for layout in LAYOUTS]
+    tables = tuple(t for t in [*made, _refusals(study, values)] if t is not None)
+    return Tables(study, values, tables, tuple(_remarks(study)))
+
+
+def reference_of(study: Study) -> str | None:
+    """The arm that others are compared with: the one named, else the first; None of a single arm."""
+    return (study.reference or study.arms[0].name) if len(study.arms) > 1 else None
+
+
+def _remarks(study: Study) -> list[str]:
+    done, of = study.progress()
+    told = [f"{done} of {of} runs are done ({len(study.arms)} arms, {len(study.cases)} cases)."]
+    labelled = sum(case in study.labels for case in study.cases)
+    if not labelled:
+        told.append("No ground truth: tables of network errors and of the crash against the truth are left out.")
+    elif labelled < len(study.cases):
+        told.append(f"Ground truth for {labelled} of {len(study.cases)} cases; only these count where it is needed.")
+    if reference_of(study) and not study.reference:
+        told.append(f"The study names no reference; arms are compared with its first, {study.arms[0].label}.")
+    return told
+
+
+# ------------------------------------------------------------------ arms against measures
+def _table(study: Study, values: Values, layout: Layout) -> Table | None:
+    arms = _arms(study, layout)
+    measures = tuple(m for m in layout.measures if any(_column(values[a.name], m)[0] for a in arms))
+    if not measures:
+        return None
+    reference = reference_of(study)
+    reference = reference if any(a.name == reference for a in arms) else None
+    tests = {m.name: _tests(arms, values, m, reference) for m in measures}
+    rows = [_row(study, arm, values[arm.name], measures, {m: tests[m].get(arm.name) for m in tests}) for arm in arms]
+    return Table(layout.key, layout.title, layout.note, measures, tuple(rows), reference)
+
+
+def _arms(study: Study, layout: Layout) -> list[Arm]:
+    if not layout.by_level:
+        return list(study.arms)
+    order = list(LABELS)
+    return sorted((a for a in study.arms if a.level), key=lambda a: order.index(a.level or ""))
+
+
+def _row(
+    study: Study,
+    arm: Arm,
+    cases: Mapping[str, Mapping[str, float]],
+    measures: Sequence[Measure],
+    tests: Mapping[str, float | None],
+) -> Row:
+    told = publication().row(arm.published)
+    published = {m.name: told.figures[m.name] for m in measures if m.name in told.figures} if told else {}
+    cells = {m.name: _cell(cases, m, tests[m.name], published.get(m.name)) for m in measures}
+    return Row(arm.name, arm.label, len(cases), len(study.cases), cells, published, told.label if told else "")
+
+
+def _cell(
+    cases: Mapping[str, Mapping[str, float]], measure: Measure, p: float | None, published: Published | None
+) -> Cell | None:
+    names, a, b = _column(cases, measure)
+    if not names or b.sum() == 0:
+        return None
+    interval = statistics.share_interval(a) if measure.kind == "share" else statistics.ratio_interval(a, b)
+    f = measure.factor
+    scaled = Interval(interval.low * f, interval.high * f, interval.method) if interval else None
+    return Cell(float(a.sum() / b.sum()) * f, len(names), scaled, p, published)
+
+
+def _column(cases: Mapping[str, Mapping[str, float]], measure: Measure) -> tuple[list[str], Floats, Floats]:
+    """Cases that have the value, its numerators and denominators."""
+    names = [case for case, values in cases.items() if measure.key in values]
+    a = np.array([cases[c][measure.key] for c in names])
+    b = np.array([cases[c][measure.keys[1]] for c in names]) if measure.kind == "ratio" else np.ones(len(names))
+    return names, a, b
+
+
+def _tests(arms: Sequence[Arm], values: Values, measure: Measure, reference: str | None) -> dict[str, float]:
+    """Corrected p of every arm against the reference, on the cases that both have."""
+    if reference is None:
+        return {}
+    raw = {
+        arm.name: p
+        for arm in arms
+        if arm.name != reference and (p := _p(values[reference], values[arm.name], measure)) is not None
+    }
+    return statistics.holm(raw)
+
+
+def _p(
+    first: Mapping[str, Mapping[str, float]], second: Mapping[str, Mapping[str, float]], measure: Measure
+) -> float | None:
+    """Raw p: exact McNemar of shares, paired permutation of means and ratios; None without a common case."""
+    common = [c for c in first if c in second and measure.key in first[c] and measure.key in second[c]]
+    if not common:
+        return None
+    _, a, b = _column({c: first[c] for c in common}, measure)
+    _, x, y = _column({c: second[c] for c in common}, measure)
+    return statistics.mcnemar(a, x) if measure.kind == "share" else statistics.swap_test((a, b), (x, y))
+
+
+# ------------------------------------------------------------------ refusals
+def _refusals(study: Study, values: Values) -> Table | None:
+    """Refusal precision and recall of each system over its robustness levels, cases resampled whole."""
+    from flows.results.refusal import MEASURES, NOTE, systems
+
+    rows = []
+    for label, arms in systems(study):
+        cases = {case: v for case in study.cases if (v := _refused(case, arms, values))}
+        cells = {m.name: _cell(cases, m, None, None) for m in MEASURES}
+        done = sum(len(values[arm.name]) for arm in arms)
+        rows.append(Row(label, label, done, len(arms) * len(study.cases), cells, {}))
+    return Table("refusals", "Refusals over all levels", NOTE, MEASURES, tuple(rows)) if rows else None
+
+
+def _refused(case: str, arms: Sequence[Arm], values: Values) -> dict[str, float]:
+    from flows.results.refusal import counts
+
+    seen = [(arm.level or "", values[arm.name][case]["refused"]) for arm in arms if case in values[arm.name]]
+    return counts(seen)
