@@ -36,7 +36,7 @@ def build(
     builtin: Annotated[bool, typer.Option(help="Take in what the project brings.")] = True,
 ) -> None:
     """Write the index anew: what the project brings, and the files."""
-    retriever = _retriever(out, embedder=embedder, model=model, base_url=base_url)
+    retriever = retriever_of(out, embedder=embedder, model=model, base_url=base_url)
     skipped: list[str] = []
     chunks = retriever.chunks(files or [], builtin, _note(skipped))
     with _bar("indexing") as progress:
@@ -47,10 +47,10 @@ def build(
 @index_app.command()
 def add(files: Files = None, out: Folder = DEFAULT_INDEX, base_url: BaseUrl = "") -> None:
     """Add files to the index (and bring it up to date with the project); what is there already stays."""
-    before = _retriever(out).stats()
+    before = retriever_of(out).stats()
     kind, _, model = before.embedder.partition("/")
     named = {"embedder": kind or "none", "model": "" if kind == "minilm" else model, "base_url": base_url}
-    retriever = _retriever(out, **named)
+    retriever = retriever_of(out, **named)
     skipped: list[str] = []
     chunks = retriever.chunks(files or [], not files, _note(skipped))
     with _bar("adding") as progress:
@@ -71,9 +71,9 @@ def search(
     base_url: BaseUrl = "",
 ) -> None:
     """Show the passages nearest to a text, best first."""
-    known, _, model = _retriever(out).stats().embedder.partition("/")
+    known, _, model = retriever_of(out).stats().embedder.partition("/")
     named = {"embedder": embedder or known or "none", "model": "" if known == "minilm" else model}
-    retriever = _retriever(out, base_url=base_url, **named)
+    retriever = retriever_of(out, base_url=base_url, **named)
     hits = retriever.search_checked(text, count, kind or [], task)
     for number, hit in enumerate(hits, 1):
         typer.echo(f"{number}. [{hit.kind}] {hit.id}  {hit.score:.4f}\n{hit.text}\n")
@@ -84,10 +84,10 @@ def search(
 @index_app.command()
 def stats(out: Folder = DEFAULT_INDEX) -> None:
     """Say what the index holds."""
-    _describe(out, _retriever(out).stats())
+    _describe(out, retriever_of(out).stats())
 
 
-def _retriever(folder: Path, **fields: str) -> Any:
+def retriever_of(folder: Path, **fields: str) -> Any:
     """The retriever for a folder. Raises ConfigError for a field that is wrong."""
     from pydantic import ValidationError
 

@@ -1,0 +1,1 @@
+"""Running it for good: services on this machine (local), in containers (compose.yaml), and their checks."""

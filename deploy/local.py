@@ -1,0 +1,217 @@
+"""All services on this machine with one command: `python -m deploy.local up | down | status` (`make up`, `make down`).
+
+Processes, logs and notes lie in `<out>/services`; `up` starts what does not run, `down` ends what does and leaves
+every result, database and log. Nothing listens beyond this machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import psutil
+
+from deploy import services
+from deploy.services import Ports, Service
+from flows.deployments import health
+from flows.deployments.health import Running
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError, MissingTool, SgcadError
+
+START_S = 240.0
+"""First start of MLflow and Prefect: databases are made, 20 s on two idle cores, minutes on busy ones."""
+STOP_S = 20.0
+"""For writing down what is under way; after that the process is ended."""
+LAST_LINES = 15
+
+
+def wanted(out: Path, ports: Ports, limit: int = 2) -> tuple[Service, ...]:
+    """The services of one machine, in the order in which they start."""
+    home = health.services_folder(out) / "prefect"
+    artifacts = (out / "mlflow-artifacts").as_uri()
+    api = services.api_of("127.0.0.1", ports.server)
+    return (
+        services.server(home, ports.server),
+        services.mlflow(f"sqlite:///{out / 'mlflow.db'}", artifacts, ports.mlflow),
+        services.worker(home, api, ports.worker, limit=limit),
+    )
+
+
+# ------------------------------------------------------------------ up
+def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
+    """Start what does not run, deploy, wait until all are well. Raises ConfigError (port), MissingTool (start)."""
+    out = out.resolve()
+    with _alone(health.services_folder(out)) as folder:
+        asked = wanted(out, ports, limit)
+        there = health.noted(folder)
+        missing = [s for s in asked if not (s.name in there and there[s.name].alive())]
+        _check_ports(missing)
+        _start_and_wait([s for s in missing if s.name != "worker"], folder)
+        api = health.noted(folder)["server"].address + "/api"
+        _deploy(folder, api)
+        late = [s for s in missing if s.name == "worker"]
+        _start_and_wait(late, folder)
+        return health.noted(folder)
+
+
+def _check_ports(asked: Sequence[Service]) -> None:
+    """Raises ConfigError naming every port that somebody else has."""
+    taken = [s for s in asked if _is_taken(s.port)]
+    if taken:
+        which = "; ".join(f"port {s.port} of the {s.name} is taken by another program" for s in taken)
+        flags = " ".join(f"--{s.name}-port N" for s in taken)
+        raise ConfigError(f"{which}: end it, or choose another with `python -m deploy.local up {flags}`")
+
+
+def _is_taken(port: int) -> bool:
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError:
+            return True
+    return False
+
+
+def _start_and_wait(asked: Sequence[Service], folder: Path) -> None:
+    started = [start(service, folder) for service in asked]
+    deadline = time.monotonic() + START_S
+    for running in started:
+        wait(running, deadline)
+
+
+def start(service: Service, folder: Path) -> Running:
+    """Start a service in a session of its own and note it."""
+    log = folder / f"{service.name}.log"
+    with log.open("ab") as out:
+        process = subprocess.Popen(  # noqa: S603 - our own services
+            service.command,
+            cwd=settings.ROOT,
+            env=settings.subprocess_environment() | dict(service.environment),
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=out,
+            start_new_session=True,
+        )
+    born = psutil.Process(process.pid).create_time()
+    running = Running(service.name, process.pid, born, service.address, service.health, str(log))
+    running.write(folder)
+    return running
+
+
+def wait(running: Running, deadline: float) -> None:
+    """Return when a service is well. Raises MissingTool with its last words if it ends or stays silent."""
+    while running.alive() and time.monotonic() < deadline:
+        if health.answers(running.health):
+            return
+        time.sleep(0.2)
+    how = f"is silent after {START_S:g} s" if running.alive() else "has ended"
+    raise MissingTool(f"the {running.name} {how}; {running.log} says:\n{_last_words(Path(running.log))}")
+
+
+def _last_words(log: Path) -> str:
+    return "\n".join(log.read_text(errors="replace").splitlines()[-LAST_LINES:])
+
+
+def _deploy(folder: Path, api: str) -> None:
+    """Make the work pool and serve the flows. Raises MissingTool with Prefect's words."""
+    environment = settings.subprocess_environment() | {"PREFECT_HOME": str(folder / "prefect"), **services.QUIET}
+    environment["PREFECT_API_URL"] = api
+    for command, may_fail in ((services.pool_command(), True), (services.deploy_command(), False)):
+        done = subprocess.run(  # noqa: S603 - our own commands
+            command, cwd=settings.ROOT, env=environment, capture_output=True, text=True, timeout=START_S
+        )
+        if done.returncode and not may_fail:
+            raise MissingTool(f"`prefect deploy --all` fails:\n{(done.stdout + done.stderr)[-2000:]}")
+
+
+# ------------------------------------------------------------------ down
+def down(out: Path) -> list[str]:
+    """End what runs, the worker first; names of what was ended. Results and logs stay."""
+    with _alone(health.services_folder(out.resolve())) as folder:
+        there = health.noted(folder)
+        ended = []
+        for name in sorted(there, key=["worker", "mlflow", "server"].index):
+            if there[name].alive():
+                stop(there[name])
+                ended.append(name)
+            (folder / f"{name}.json").unlink()
+        return ended
+
+
+def stop(running: Running) -> None:
+    """End a service and all that it started: asked first, ended after a while."""
+    family = [psutil.Process(running.pid), *psutil.Process(running.pid).children(recursive=True)]
+    os.kill(running.pid, signal.SIGTERM)
+    _, left = psutil.wait_procs(family, timeout=STOP_S)
+    for process in left:
+        try:
+            process.kill()
+        except psutil.NoSuchProcess:
+            continue
+    psutil.wait_procs(left, timeout=STOP_S)
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[Path]:
+    """One `up` or `down` at a time; the next waits."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield folder
+
+
+# ------------------------------------------------------------------ command
+def status(out: Path) -> bool:
+    """Print a line a service; whether all that was started is well."""
+    there = health.noted(health.services_folder(out.resolve()))
+    for running in there.values():
+        _say(f"{running.name:8} {'well' if running.healthy() else 'WRONG'}  {running.address}  log: {running.log}")
+    if not there:
+        _say("nothing was started here: `make up`")
+    return all(running.healthy() for running in there.values())
+
+
+def _say(line: str) -> None:
+    sys.stdout.write(line + "\n")
+
+
+def _asked(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Services on this machine.")
+    parser.add_argument("what", choices=("up", "down", "status"))
+    parser.add_argument("--out", type=Path, default=Path("runs"), help="results, databases, logs")
+    parser.add_argument("--limit", type=int, default=2, help="flow runs at a time")
+    for name in ("server", "mlflow", "worker"):
+        parser.add_argument(f"--{name}-port", type=int, default=getattr(Ports(), name))
+    return parser.parse_args(arguments)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command; its exit code."""
+    asked = _asked(arguments)
+    try:
+        if asked.what == "up":
+            found = up(asked.out, Ports(asked.server_port, asked.mlflow_port, asked.worker_port), asked.limit)
+            status(asked.out)
+            _say(f"export PREFECT_API_URL={found['server'].address}/api")
+        elif asked.what == "down":
+            _say(f"ended: {', '.join(down(asked.out)) or 'nothing ran'}")
+        else:
+            return 0 if status(asked.out) else 1
+    except SgcadError as fault:
+        sys.stderr.write(f"deploy: error: {fault}\n")
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,101 @@
+"""The long-running services and the commands that start them, the same on this machine and in containers.
+
+Knows commands, ports and health addresses; starts nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from flows.deployments.health import POOL
+from sgcad_core import settings
+
+QUIET = {
+    "PREFECT_SERVER_ANALYTICS_ENABLED": "false",
+    "DO_NOT_TRACK": "1",
+    "MLFLOW_DISABLE_TELEMETRY": "true",
+    "MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false",
+    "PYTHONUNBUFFERED": "1",
+}
+"""No telemetry, no processes for MLflow's background jobs, logs line by line."""
+
+
+@dataclass(frozen=True)
+class Service:
+    """One process: how it is started, where people look (`address`), where it says that it is well (`health`)."""
+
+    name: str
+    command: tuple[str, ...]
+    port: int
+    address: str
+    health: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Ports:
+    """Where the services listen; the worker's answers health checks only."""
+
+    server: int = 4200
+    mlflow: int = 5000
+    worker: int = 4201
+
+
+def api_of(host: str, port: int) -> str:
+    """What PREFECT_API_URL has to be."""
+    return f"http://{host}:{port}/api"
+
+
+def server(home: Path, port: int, host: str = "127.0.0.1", database: str = "") -> Service:
+    """Prefect's server; `database` such as postgresql+asyncpg://..., by default sqlite in `home`."""
+    environment = {"PREFECT_HOME": str(home), "PREFECT_UI_API_URL": api_of(host, port), **QUIET}
+    if database:
+        environment["PREFECT_API_DATABASE_CONNECTION_URL"] = database
+    command = ("prefect", "server", "start", "--host", host, "--port", str(port))
+    return Service("server", _here(command), port, f"http://{host}:{port}", f"{api_of(host, port)}/health", environment)
+
+
+def mlflow(store: str, artifacts: str, port: int, host: str = "127.0.0.1") -> Service:
+    """MLflow's server over a database (sqlite:///..., postgresql://...), handing out artifacts from an address."""
+    command = (
+        "mlflow", "server", "--backend-store-uri", store, "--artifacts-destination", artifacts,
+        "--host", host, "--port", str(port), "--workers", "1",
+    )  # fmt: skip
+    return Service("mlflow", _here(command), port, f"http://{host}:{port}", f"http://{host}:{port}/health", dict(QUIET))
+
+
+def worker(home: Path, api: str, port: int, name: str = "local", limit: int = 2) -> Service:
+    """A worker that runs up to `limit` flow runs at a time, each in a process of its own."""
+    command = (
+        "prefect", "worker", "start", "--pool", POOL, "--type", "process", "--name", name,
+        "--limit", str(limit), "--with-healthcheck", "--install-policy", "never",
+    )  # fmt: skip
+    environment = {
+        "PREFECT_HOME": str(home),
+        "PREFECT_API_URL": api,
+        "PREFECT_WORKER_WEBSERVER_HOST": "127.0.0.1",
+        "PREFECT_WORKER_WEBSERVER_PORT": str(port),
+        **QUIET,
+    }
+    address = f"work pool {POOL!r}, {limit} flow runs at a time"
+    return Service(name="worker", command=_here(command), port=port, address=address, environment=environment,
+                   health=f"http://127.0.0.1:{port}/health")  # fmt: skip
+
+
+def pool_command() -> tuple[str, ...]:
+    """Makes the work pool; fails harmlessly where it is."""
+    return _here(("prefect", "--no-prompt", "work-pool", "create", POOL, "--type", "process"))
+
+
+def deploy_command() -> tuple[str, ...]:
+    """Serves every flow of deploy/prefect.yaml; the working directory is the checkout."""
+    file = settings.ROOT / "deploy" / "prefect.yaml"
+    return _here(("prefect", "--no-prompt", "deploy", "--all", "--prefect-file", str(file)))
+
+
+def _here(command: tuple[str, ...]) -> tuple[str, ...]:
+    """With this interpreter's packages, whatever is on the path."""
+    return (sys.executable, "-m", *command)

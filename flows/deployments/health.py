@@ -1,0 +1,115 @@
+"""Are the services there: server, worker, MLflow, deployments? Read by `sgcad doctor`, waited for by `make up`.
+
+What runs here is told by `<out>/services/*.json`, one file a service, written by deploy/local.py; what a Prefect
+server has is asked of the server itself. Knows HTTP, no Prefect and no MLflow.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+import psutil
+
+POOL = "sgcad"
+"""The work pool that deploy/prefect.yaml names."""
+ASK_S = 5.0
+SAME_S = 2.0
+"""A process is told again by number and start; the start is known to within the clock's adjustments."""
+
+
+@dataclass(frozen=True)
+class Running:
+    """A service that was started here: its process, where it answers, where it writes."""
+
+    name: str
+    pid: int
+    born: float
+    address: str
+    health: str
+    log: str
+
+    def alive(self) -> bool:
+        """Whether this very process still runs."""
+        try:
+            process = psutil.Process(self.pid)
+            return abs(process.create_time() - self.born) < SAME_S and process.status() != psutil.STATUS_ZOMBIE
+        except psutil.Error:
+            return False
+
+    def healthy(self) -> bool:
+        """Whether it runs and says that it is well."""
+        return self.alive() and answers(self.health)
+
+    def write(self, folder: Path) -> None:
+        """Note it."""
+        (folder / f"{self.name}.json").write_text(json.dumps(asdict(self), indent=1) + "\n", encoding="utf-8")
+
+
+def services_folder(out: Path) -> Path:
+    """Where what runs here is noted, with its logs."""
+    return out / "services"
+
+
+def noted(folder: Path) -> dict[str, Running]:
+    """Services noted in a folder, by name; they may have ended since."""
+    found = (json.loads(file.read_text(encoding="utf-8")) for file in sorted(folder.glob("*.json")))
+    return {about["name"]: Running(**about) for about in found}
+
+
+def answers(url: str) -> bool:
+    """Whether a URL answers that all is well."""
+    try:
+        return httpx.get(url, timeout=ASK_S).status_code == httpx.codes.OK
+    except httpx.HTTPError:
+        return False
+
+
+# ------------------------------------------------------------------ what a Prefect server has
+def _asked(api: str, path: str, **body: Any) -> list[dict[str, Any]]:
+    """Raises httpx.HTTPError."""
+    answer = httpx.post(f"{api.rstrip('/')}/{path}", json=body, timeout=ASK_S)
+    answer.raise_for_status()
+    found: list[dict[str, Any]] = answer.json()
+    return found
+
+
+def workers_online(api: str, pool: str = POOL) -> list[str]:
+    """Names of the workers that the server hears of; none if there is no such pool. Raises httpx.HTTPError."""
+    try:
+        workers = _asked(api, f"work_pools/{pool}/workers/filter")
+    except httpx.HTTPStatusError as fault:
+        if fault.response.status_code == httpx.codes.NOT_FOUND:
+            return []
+        raise
+    return [w["name"] for w in workers if w["status"] == "ONLINE"]
+
+
+def deployments(api: str) -> dict[str, str]:
+    """Deployments of our pool, by name, with when they start in words. Raises httpx.HTTPError."""
+    found = _asked(api, "deployments/filter")
+    return {d["name"]: _when(d) for d in sorted(found, key=lambda d: d["name"]) if d["work_pool_name"] == POOL}
+
+
+def _when(deployment: dict[str, Any]) -> str:
+    plans = [s["schedule"] for s in deployment["schedules"] if s["active"]]
+    if deployment["paused"]:
+        return "paused"
+    told = (f"cron {p['cron']}" if "cron" in p else f"every {p.get('interval', '?')} s" for p in plans)
+    return ", ".join(told) or "by hand"
+
+
+def told(api: str) -> Iterator[tuple[bool, str]]:
+    """What a server has, line by line, and whether that is as it should be."""
+    try:
+        workers, deployed = workers_online(api), deployments(api)
+    except httpx.HTTPError as fault:
+        yield False, f"{api} does not answer ({type(fault).__name__})"
+        return
+    yield bool(workers), f"workers online: {', '.join(workers) or 'none, so that nothing scheduled is done'}"
+    listed = ", ".join(f"{name} ({when})" for name, when in deployed.items())
+    yield bool(deployed), f"deployments: {listed or 'none; prefect deploy --all --prefect-file deploy/prefect.yaml'}"
