@@ -55,7 +55,8 @@ class Batch:
     """Everything to do, and where it goes.
 
     `jobs` cases are on their way at a time, those without a model in `processes`. `fresh` does finished cases
-    again. `name` is the flow's. `shelf` is the folder where configs share their stages' results; None: they do not.
+    again. `flow` and `title` are the names of the flow and of its run. `shelf` is the folder where configs share
+    their stages' results; None: they do not.
     """
 
     configs: tuple[Config, ...]
@@ -64,7 +65,8 @@ class Batch:
     jobs: int
     processes: int
     fresh: bool = False
-    name: str = "evaluate"
+    flow: str = "evaluate"
+    title: str = ""
     shelf: Path | None = None
 
     def plan(self) -> tuple[Job, ...]:

@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | plugins | index | check | doctor`.
+"""The command line: `sgcad run | evaluate | study | plugins | index | check | doctor`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
@@ -11,14 +11,20 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
 from flows.index import index_app
 from sgcad_core.errors import SgcadError
+
+if TYPE_CHECKING:
+    from flows.batch import Batch
+    from flows.tracking import OnEnding
+
+Result = TypeVar("Result")
 
 DEFAULT_CONFIG = Path("template.yaml")
 DEFAULT_OUT = Path("runs")
@@ -83,31 +89,63 @@ def _batch(
     from flows import batch as batches
 
     made = batches.batch_of(found, config or [DEFAULT_CONFIG], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
-    from flows import start, summary
+    from flows import start
+
+    raise typer.Exit(_carry_out(made, lambda on_ending: start.evaluate(made, on_ending))[0])
+
+
+def _carry_out(made: Batch, work: Callable[[OnEnding], Result]) -> tuple[int, Result]:
+    """Work under a progress bar, told at its end; the exit code and what the work returned."""
+    from flows import summary
 
     tally = summary.Tally(made)
     stopped = _heed_interrupts()
     try:
         with summary.progress(tally) as on_ending:
-            start.evaluate(made, on_ending)
+            result = work(on_ending)
     except BaseException as fault:
         # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
         if not (stopped.is_set() or isinstance(fault, KeyboardInterrupt)):
             raise
         _interrupted()
     summary.show(tally)
-    raise typer.Exit(tally.exit_code())
+    return tally.exit_code(), result
+
+
+@app.command()
+def study(
+    file: Annotated[Path, typer.Argument(help="A study's YAML, or its name in configs/studies/.")],
+    cases: Annotated[list[Path] | None, typer.Option("--cases", help="A folder of case folders.")] = None,
+    truth: Annotated[Path | None, typer.Option("--truth", help="A folder with what is true of the cases.")] = None,
+    overrides: Overrides = None,
+    out: Out = DEFAULT_OUT,
+    jobs: Jobs = None,
+    fresh: Fresh = False,
+) -> None:
+    """Compare arms over the same cases: stages that arms share are computed once; run again to go on."""
+    from flows.study import plan, running, spec
+
+    made = plan.plan(
+        spec.load_study(file), out, cases=cases or (), truth=truth, overrides=overrides or (), jobs=jobs, fresh=fresh
+    )
+    code, cost = _carry_out(made.batch, lambda on_ending: running.run(made, on_ending))
+    typer.echo(running.told(made, cost))
+    raise typer.Exit(code)
 
 
 @app.command()
 def check(
-    config: Annotated[Path, typer.Argument(help="A YAML.")],
+    config: Annotated[Path, typer.Argument(help="A YAML, of a config or of a study.")],
     overrides: Overrides = None,
 ) -> None:
-    """Check a config whole, without starting anything."""
+    """Check a config, or all arms of a study, without starting anything."""
     from flows.catalogue import describe_config
+    from flows.study import plan, spec
     from sgcad_core.config import load
 
+    if study_file := spec.study_in(config):
+        typer.echo(plan.described(spec.load_study(study_file), tuple(overrides or ())))
+        return
     describe_config(load(config, tuple(overrides or ())))
 
 

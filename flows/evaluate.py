@@ -22,7 +22,7 @@ from prefect.task_runners import ThreadPoolTaskRunner
 from flows import cases, tracking
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
 from flows.chain import Ending
-from flows.tasks import Board, case_task, hush_prefect
+from flows.tasks import Board, case_task, hush_prefect, plain
 from flows.tracking import OnEnding
 
 DRAIN_S, STOP_S = 60.0, 2.0
@@ -63,8 +63,9 @@ def _settle(identity: str, task_runs: int, patience: float) -> None:
 
 def _flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]]) -> Any:
     """The flow of one batch; its parameters are for people to read. Its id and task runs go into `run`."""
+    runner = ThreadPoolTaskRunner(max_workers=batch.jobs)
 
-    @flow(name="evaluate", task_runner=ThreadPoolTaskRunner(max_workers=batch.jobs), persist_result=False)
+    @flow(name=batch.flow, flow_run_name=plain(batch.title) or None, task_runner=runner, persist_result=False)
     def evaluate(configs: list[str], cases: int, out: str) -> None:
         task_runs = drive(plan, crew, on_ending)
         run.append((str(flow_run.id), task_runs))

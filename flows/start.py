@@ -5,25 +5,50 @@ Knows when to import Prefect, and that a batch with nothing left to do needs non
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from flows import tracking
 from flows.batch import Batch, Crew, Job
 from flows.chain import Ending
-from flows.server import prefect_server
+from flows.server import Server, prefect_server
 from flows.tracking import OnEnding
 from sgcad_core import settings
 
 
-def evaluate(batch: Batch, on_ending: OnEnding) -> None:
-    """Run a batch. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt; finished cases stay."""
+@dataclass(frozen=True)
+class Cost:
+    """What a batch cost beside its cases: processor seconds of this process (planning, Prefect's client, tracking; a
+    model too where one runs here) and of a Prefect server of our own (None: it was the user's)."""
+
+    done: int
+    """Cases that were done, without those found finished."""
+    elapsed_s: float
+    own_s: float = 0.0
+    server_s: float | None = None
+
+
+def evaluate(batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None) -> Cost:
+    """Run a batch, or some of its jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+
+    Finished cases stay, whatever happens.
+    """
     settings.quiet_libraries()
-    plan = batch.plan()
+    started, spent = time.perf_counter(), time.process_time()
+    plan = batch.plan() if plan is None else plan
     crew = Crew(batch)
     if (done := _all_done(plan, crew)) is not None:
         for job, ending in done:
             on_ending(job, ending, "")
-        return
+        return Cost(0, time.perf_counter() - started, time.process_time() - spent)
+    fresh = sum(crew.reusable(job) is None for job in plan)
+    server_s = _run(batch, plan, crew, on_ending)
+    return Cost(fresh, time.perf_counter() - started, time.process_time() - spent, server_s)
+
+
+def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+    """Do what is left to do; processor seconds of the server."""
     try:
         with prefect_server() as server:
             crew.begin(plan)
@@ -32,10 +57,22 @@ def evaluate(batch: Batch, on_ending: OnEnding) -> None:
             if server:
                 server.wait()
             run_flow(batch, plan, crew, on_ending)
+            server_s = _processor_s(server) if server else None
     except BaseException:
         crew.stop()
         raise
     crew.close()
+    return server_s
+
+
+def _processor_s(server: Server) -> float | None:
+    import psutil
+
+    try:
+        times = psutil.Process(server.process.pid).cpu_times()
+    except psutil.Error:
+        return None
+    return float(times.user + times.system)
 
 
 def _all_done(plan: Sequence[Job], crew: Crew) -> list[tuple[Job, Ending]] | None:

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from flows.batch import Batch, Job
 from flows.chain import Ending
+from flows.store import CaseFolder
 from flows.tracking import OnEnding
 from sgcad_core.result import STATUSES
 
@@ -54,7 +55,9 @@ class Tally:
 
     def first_player(self) -> str | None:
         """Path of the first player.html, in the order of the cases."""
-        pages = (job.folder.path / "player.html" for job in self.batch.plan())
+        batch = self.batch
+        folders = (CaseFolder(batch.out, config.name, case.id) for config in batch.configs for case in batch.cases)
+        pages = (folder.path / "player.html" for folder in folders)
         return next((str(page) for page in pages if page.is_file()), None)
 
 

@@ -61,11 +61,11 @@ def _told(attempt: Attempt) -> tuple[int, str]:
 def as_task(name: str, work: Callable[[], Turn]) -> Turn:
     """An `OnAttempt` that runs the attempt as a task run called `name`, such as "road[2]"."""
     box: list[Turn] = []
-    attempt_task.with_options(task_run_name=_plain(name))(_Quiet(work), box)
+    attempt_task.with_options(task_run_name=plain(name))(_Quiet(work), box)
     return box[0]
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """A run name is a format string to Prefect."""
     return name.replace("{", "(").replace("}", ")")
 

@@ -105,7 +105,7 @@ def plan(
         raise ConfigError(told(study.file, faults))
     folder = folder_of(study.name, out)
     batch = batch_over(found, loaded, folder, jobs, fresh)
-    batch = dataclasses.replace(batch, name=f"study/{study.name}", shelf=folder / SHELF)
+    batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF)
     return Plan(study, batch, batch.plan(), truth)
 
 
@@ -127,6 +127,14 @@ def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Con
     if faults:
         raise ConfigError(told(study.file, faults))
     return tuple(config for config in configs if config is not None)
+
+
+def described(study: Study, overrides: Sequence[str] = ()) -> str:
+    """A study in words, one line an arm. Raises ConfigError with every fault of its arms."""
+    configs = arms_of(study, Path(), overrides)
+    width = max(len(arm.name) for arm in study.arms)
+    lines = [f"study {study.name}: {study.title}; {len(configs)} arms"]
+    return "\n".join([*lines, *(f"  {a.name:<{width}}  {' '.join([_plain(a.config), *a.set])}" for a in study.arms)])
 
 
 def _cases(study: Study, named: Sequence[Path], faults: list[str]) -> tuple[Case, ...]:

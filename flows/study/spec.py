@@ -119,10 +119,23 @@ def load_study(path: Path | str) -> Study:
     )
 
 
-def is_study(path: Path) -> bool:
-    """Whether a YAML is a study rather than a config: it has arms or a cross product."""
+def study_in(path: Path) -> Path | None:
+    """The file, if it is a study's: it has arms or a cross product, or is a name under configs/studies/ only."""
+    for file in (
+        path,
+        settings.CONFIGS / path,
+        settings.CONFIGS / f"{path}.yaml",
+        STUDIES / path,
+        STUDIES / f"{path}.yaml",
+    ):
+        if file.is_file():
+            return file if _is_study(file) else None
+    return None
+
+
+def _is_study(file: Path) -> bool:
     try:
-        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
+        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError, OSError):
         return False
     return isinstance(raw, dict) and bool({"arms", "cross"} & set(raw))

@@ -1,0 +1,44 @@
+"""Running a study, whole or some of its jobs, and telling what it cost beside its cases.
+
+    cost = run(plan(study, out), on_ending)
+    cost = run_jobs(made, made.jobs_named(["alpha_0/c1", "alpha_0/c2"]), on_ending)       # a part, anywhere
+
+Jobs of one arm stand together, so that what arms share is there when the next arm asks. Knows no Prefect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flows import start
+from flows.batch import Job
+from flows.start import Cost
+from flows.study.plan import Plan
+from flows.tracking import OnEnding
+
+
+def run(plan: Plan, on_ending: OnEnding) -> Cost:
+    """Write study.json and do all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt."""
+    return run_jobs(plan, plan.jobs, on_ending)
+
+
+def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding) -> Cost:
+    """Write study.json and do some of a plan's jobs, as one flow run; finished ones are not repeated."""
+    plan.write()
+    return start.evaluate(plan.batch, on_ending, jobs)
+
+
+def told(plan: Plan, cost: Cost) -> str:
+    """One line: how long, and what orchestration took of it (planning, Prefect, tracking)."""
+    if not cost.done:
+        return f"all cached: {cost.elapsed_s:.1f} s"
+    line = f"{cost.done} cases in {cost.elapsed_s:.0f} s"
+    if any(config.backbone for config in plan.batch.configs):
+        return line
+    spent = cost.own_s + (cost.server_s or 0.0)
+    share = spent / (cost.elapsed_s * plan.batch.processes)
+    server = "" if cost.server_s is not None else ", without the Prefect server's"
+    return (
+        f"{line}; orchestration {1000 * spent / cost.done:.0f} ms of processor time a case{server}, "
+        f"{share:.1%} of the time of {plan.batch.processes} cores"
+    )
