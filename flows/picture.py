@@ -48,9 +48,9 @@ def _draw(view: View) -> bytes:
     middle, half = frame(view)
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     points_per_m = SIZE_IN * 72 / (2 * half)
-    _network(axes, view.drawing, points_per_m)
+    draw_network(axes, view.drawing, points_per_m)
     for mover in view.movers:
-        _path(axes, mover)
+        draw_path(axes, mover)
     _contact(axes, view)
     _legend(axes, view)
     out = io.BytesIO()
@@ -68,7 +68,8 @@ def frame(view: View) -> tuple[tuple[float, float], float]:
     return (float(middle[0]), float(middle[1])), float(max((high - low).max() / 2 + MARGIN_M, 25.0))
 
 
-def _network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
+def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
+    """Asphalt and painted lines, in metres; a lane's width is drawn in points."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     areas = list(drawing.areas)
@@ -82,7 +83,8 @@ def _network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
         axes.add_collection(LineCollection(lines, colors=color, linewidths=width, linestyles=[dashes], zorder=2))
 
 
-def _path(axes: Axes, mover: Mover) -> None:
+def draw_path(axes: Axes, mover: Mover) -> None:
+    """A way driven and where its driver was each second, the later the stronger."""
     from matplotlib.collections import PolyCollection
 
     track, color = mover.track, mover.color

@@ -23,8 +23,8 @@ COLUMN = 16
 """Characters that a column of figures takes in a terminal, at least."""
 HOW = (
     "Brackets: 95 % interval, cases resampled (BCa bootstrap; of a share on which all cases agree exact binomial; of "
-    "anything else on which they agree none). n: cases. p: paired test against the reference arm on the cases both have "
-    "(exact McNemar of shares, permutation of means), Holm-corrected over the arms."
+    "anything else on which they agree none). n: cases. p: paired test against the reference arm on the cases both "
+    "have (exact McNemar of shares, permutation of means), Holm-corrected over the arms."
 )
 FIELDS = (
     "table", "arm", "label", "done", "of", "measure", "unit", "value", "low", "high", "interval", "n", "p_holm",
