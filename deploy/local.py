@@ -32,6 +32,7 @@ START_S = 240.0
 STOP_S = 20.0
 """For writing down what is under way; after that the process is ended."""
 LAST_LINES = 15
+DEPLOYED = "deployed.yaml"
 
 
 def wanted(out: Path, ports: Ports, limit: int = 2) -> tuple[Service, ...]:
@@ -57,7 +58,8 @@ def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
         _check_ports(missing)
         _start_and_wait([s for s in missing if s.name != "worker"], folder)
         api = health.noted(folder)["server"].address + "/api"
-        _deploy(folder, api)
+        if missing or not _is_deployed(folder):
+            _deploy(folder, api)
         late = [s for s in missing if s.name == "worker"]
         _start_and_wait(late, folder)
         return health.noted(folder)
@@ -132,6 +134,13 @@ def _deploy(folder: Path, api: str) -> None:
         )
         if done.returncode and not may_fail:
             raise MissingTool(f"`prefect deploy --all` fails:\n{(done.stdout + done.stderr)[-2000:]}")
+    (folder / DEPLOYED).write_text(services.DEPLOYMENTS.read_text(encoding="utf-8"), encoding="utf-8")
+
+
+def _is_deployed(folder: Path) -> bool:
+    """Whether prefect.yaml is what it was when it was deployed last."""
+    last = folder / DEPLOYED
+    return last.is_file() and last.read_bytes() == services.DEPLOYMENTS.read_bytes()
 
 
 # ------------------------------------------------------------------ down

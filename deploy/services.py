@@ -22,6 +22,8 @@ QUIET = {
 }
 """No telemetry, no processes for MLflow's background jobs, logs line by line."""
 
+DEPLOYMENTS = settings.ROOT / "deploy" / "prefect.yaml"
+
 
 @dataclass(frozen=True)
 class Service:
@@ -92,8 +94,7 @@ def pool_command() -> tuple[str, ...]:
 
 def deploy_command() -> tuple[str, ...]:
     """Serves every flow of deploy/prefect.yaml; the working directory is the checkout."""
-    file = settings.ROOT / "deploy" / "prefect.yaml"
-    return _here(("prefect", "--no-prompt", "deploy", "--all", "--prefect-file", str(file)))
+    return _here(("prefect", "--no-prompt", "deploy", "--all", "--prefect-file", str(DEPLOYMENTS)))
 
 
 def _here(command: tuple[str, ...]) -> tuple[str, ...]:

@@ -22,13 +22,12 @@ from flows.batch import MAX_JOBS, Crew, Job, batch_of
 from flows.cases import Case
 from flows.chain import Ending
 from flows.deployments.claims import Claims
+from flows.deployments.defaults import inbox_address, overrides_of
 from flows.deployments.intake import Do, Intake, OnResult
 from flows.deployments.place import Place
 from flows.evaluate import drive
-from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
-DEFAULT_INBOX = "runs/inbox"
 PORTION = 48
 """Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
 
@@ -51,8 +50,8 @@ def inbox_flow(
     nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
     when the inbox is empty or nothing could be taken for `wait_s`.
     """
-    address = address or settings.environment("SGCAD_INBOX") or DEFAULT_INBOX
-    batch_of((), [Path(config)], Path(out), overrides or (), jobs)  # a faulty config claims nothing
+    address, named = inbox_address(address), overrides_of(overrides)
+    batch_of((), [Path(config)], Path(out), named, jobs)  # a faulty config claims nothing
     if min(settle_s, wait_s) < 0 or lease_s <= 0 or portion < 1:
         raise ConfigError(
             f"settle_s {settle_s}, wait_s {wait_s} below 0, or lease_s {lease_s}, portion {portion} not above"
@@ -60,7 +59,7 @@ def inbox_flow(
     place = Place(address)
     with tempfile.TemporaryDirectory(prefix="sgcad-inbox-") as staging:
         intake = Intake(place, Claims(place, lease_s), Path(staging), settle_s, config)
-        return intake.work(_by_tasks(config, out, tuple(overrides or ()), jobs), portion, wait_s)
+        return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s)
 
 
 def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | None) -> Do:

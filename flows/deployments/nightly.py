@@ -27,6 +27,7 @@ from flows import cases as case_sets
 from flows import store
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
 from flows.chain import Ending
+from flows.deployments.defaults import overrides_of
 from flows.evaluate import drive
 from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
 from flows.results.reading import Study, load_study
@@ -69,7 +70,7 @@ def nightly_flow(
     are not repeated unless `fresh`. `accept` makes this run the measure.
     """
     paths = [Path(c) for c in configs or ["template.yaml"]]
-    batch = batch_of(case_sets.cases_in([Path(cases)]), paths, Path(out), overrides or (), jobs, fresh)
+    batch = batch_of(case_sets.cases_in([Path(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
     _work(batch)
@@ -141,7 +142,7 @@ def drops(accepted: Figures, latest: Figures, tolerance: Tolerance) -> Iterator[
             if new is None:
                 yield f"{config}: {measure.name} was {old:.4g} and is not measured any more"
             elif _is_worse(measure, old, new, tolerance):
-                yield f"{config}: {measure.name} was {old:.4g}, is {new:.4g} ({measure.label}, {measure.better} is good)"
+                yield f"{config}: {measure.name} was {old:.4g}, is {new:.4g} ({measure.better} is good)"
 
 
 def _is_worse(measure: Measure, old: float, new: float, tolerance: Tolerance) -> bool:

@@ -61,7 +61,7 @@ class Place:
         try:
             fs, root = url_to_fs(self.address, use_listings_cache=False)
         except ImportError as fault:
-            raise MissingTool(f"{self.address}: {fault} (`pip install 'sg-cadvlm[remote]'` brings s3fs)") from fault
+            raise MissingTool(f"{self.address}: {fault} (`pip install 'sg-cadvlm[hosts]'` brings s3fs)") from fault
         except ValueError as fault:
             raise ConfigError(
                 f"{self.address}: no address that can be opened ({fault}); give a folder or s3://..."

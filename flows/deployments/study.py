@@ -13,6 +13,7 @@ from prefect.task_runners import ThreadPoolTaskRunner
 
 from flows.batch import MAX_JOBS, Crew, Job
 from flows.chain import Ending
+from flows.deployments.defaults import overrides_of
 from flows.evaluate import drive
 from flows.study.plan import plan
 from flows.study.spec import load_study
@@ -34,7 +35,7 @@ def study_flow(
         Path(out),
         cases=[Path(c) for c in cases or ()],
         truth=Path(truth) if truth else None,
-        overrides=overrides or (),
+        overrides=overrides_of(overrides),
         jobs=jobs,
         fresh=fresh,
     )
