@@ -159,7 +159,8 @@ def _find(path: Path) -> Path:
     for file in (path, settings.CONFIGS / path, settings.CONFIGS / f"{path}.yaml"):
         if file.is_file():
             return file
-    known = ", ".join(sorted(str(f.relative_to(settings.CONFIGS)) for f in settings.CONFIGS.rglob("*.yaml")))
+    found = sorted(f.relative_to(settings.CONFIGS) for f in settings.CONFIGS.rglob("*.yaml"))
+    known = ", ".join(str(f) for f in found if f.parts[0] != "studies")
     raise ConfigError(f"{path}: no such config; in configs/: {known}")
 
 

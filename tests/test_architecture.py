@@ -11,12 +11,14 @@ from statistics import median, quantiles
 
 import pytest
 
+from flows.study import plan, spec
 from sgcad_core import config, registry, settings
 from sgcad_core.interfaces import Plugin
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "mini") for p in (ROOT / d).rglob("*.py"))
-CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
+STUDIES = sorted((ROOT / "configs" / "studies").glob("*.yaml"))
+CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(STUDIES))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
@@ -49,8 +51,13 @@ def test_every_plugin_class_in_a_folder_is_in_the_catalogue_and_back(kind):
 
 @pytest.mark.parametrize("file", CONFIGS, ids=lambda f: str(f.relative_to(ROOT / "configs")))
 def test_every_config_loads(file):
-    if "studies" not in file.parts:
-        assert config.load(file).name
+    assert config.load(file).name
+
+
+@pytest.mark.parametrize("file", STUDIES, ids=lambda f: f.stem)
+def test_every_study_loads_with_all_its_arms(file, tmp_path):
+    study = spec.load_study(file)
+    assert [c.name for c in plan.arms_of(study, tmp_path)] == [arm.name for arm in study.arms]
 
 
 def test_the_default_config_exists():

@@ -15,6 +15,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
+import yaml
+
 from flows.cases import safe_id
 
 
@@ -36,7 +38,13 @@ def label_of(factors: Mapping[str, Any]) -> str:
 
 def overrides_of(factors: Mapping[str, Any]) -> tuple[str, ...]:
     """The values as `key=value` overrides; the config is none."""
-    return tuple(f"{key}={json.dumps(value)}" for key, value in factors.items() if key != "config")
+    return tuple(f"{key}={_yaml(value)}" for key, value in factors.items() if key != "config")
+
+
+def _yaml(value: Any) -> str:
+    """A value in one line; a word needs no quotes unless YAML would read something else in it."""
+    plain = isinstance(value, str) and value.isidentifier() and yaml.safe_load(value) == value
+    return str(value) if plain else json.dumps(value)
 
 
 def _part(key: str, value: Any) -> str:

@@ -24,7 +24,7 @@ from flows import store
 from flows.batch import Batch, Job, batch_over
 from flows.cases import Case
 from flows.study import machine
-from flows.study.spec import Arm, Study, told
+from flows.study.spec import Arm, Study, is_study, told
 from sgcad_core import settings
 from sgcad_core.config import Config, build, load
 from sgcad_core.errors import ConfigError
@@ -162,7 +162,7 @@ def _config(study: Study, arm: Arm, out: Path, overrides: Sequence[str], faults:
     """An arm's config under the arm's name; None and a fault where it cannot be built."""
     beside = study.file.parent / arm.config
     try:
-        config = load(beside if beside.is_file() else arm.config, (*overrides, *arm.set))
+        config = load(beside if beside.is_file() and not is_study(beside) else arm.config, (*overrides, *arm.set))
         raw = copy.deepcopy(config.raw)
         raw["tracker"] = _tracker(config, study, out)
         return build(raw, arm.name, arm.config)

@@ -129,11 +129,12 @@ def study_in(path: Path) -> Path | None:
         STUDIES / f"{path}.yaml",
     ):
         if file.is_file():
-            return file if _is_study(file) else None
+            return file if is_study(file) else None
     return None
 
 
-def _is_study(file: Path) -> bool:
+def is_study(file: Path) -> bool:
+    """Whether a YAML has arms or a cross product."""
     try:
         raw = yaml.safe_load(file.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError, OSError):
