@@ -85,8 +85,8 @@ def _bare(axes: Axes) -> None:
 
 def _say(axes: Axes, text: str, color: str = "#66707a") -> None:
     wrapped = "\n".join(piece for line in text.splitlines() for piece in textwrap.wrap(line, 26) or [""])
-    place = {"transform": axes.transAxes, "ha": "center", "va": "center"}
-    axes.text(0.5, 0.5, wrapped, size=8, color=color, parse_math=False, **place)
+    at = axes.transAxes
+    axes.text(0.5, 0.5, wrapped, transform=at, ha="center", va="center", size=8, color=color, parse_math=False)
 
 
 def _under(axes: Axes, text: str, color: str = "#66707a") -> None:
