@@ -18,6 +18,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from flows import store
+from flows.deployments import health
 from flows.server import prefect_server
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
@@ -75,12 +76,17 @@ def _netconvert(out: Path) -> str:
 
 
 def _configs(out: Path) -> str:
+    from flows.study.plan import arms_of
+    from flows.study.spec import is_study, load_study
     from sgcad_core.config import load
 
     files = sorted(settings.CONFIGS.rglob("*.yaml"))
     for file in files:
-        load(file)
-    return f"{len(files)} in {settings.CONFIGS} are fine"
+        if is_study(file):
+            arms_of(load_study(file), out)
+        else:
+            load(file)
+    return f"{len(files)} in {settings.CONFIGS} are fine, studies included"
 
 
 def _writable(out: Path) -> str:
@@ -129,6 +135,20 @@ def _run_tiny_flow() -> list[str]:
     return [str(r.id) for r in runs if r.state and r.state.is_running() and r.start_time and r.start_time < oldest]
 
 
+def _services(out: Path) -> str:
+    """What `make up` started here, or what the named server has."""
+    there = health.noted(health.services_folder(out))
+    api = f"{there['server'].address}/api" if "server" in there else settings.prefect_url()
+    if not api:
+        return "none started here and no server named (PREFECT_API_URL); `make up` starts them"
+    said = [(s.healthy(), f"{s.name} {'well' if s.healthy() else f'not well, see {s.log}'}") for s in there.values()]
+    said += health.told(api)
+    line = "; ".join(text for _, text in said)
+    if there and not all(fine for fine, _ in said):
+        raise Trouble(f"{line}; `make down`, then `make up`")
+    return line
+
+
 def _database(out: Path) -> str:
     from typing import cast
 
@@ -169,5 +189,6 @@ CHECKS: dict[str, Callable[[Path], str]] = {
     "output": _writable,
     "flow": _flow,
     "tracking": _database,
+    "services": _services,
     "leftovers": _leftovers,
 }

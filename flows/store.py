@@ -6,6 +6,8 @@ a kill, a full disk or Ctrl-C leaves no half case that looks finished.
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import json
 import os
 import shutil
@@ -22,6 +24,8 @@ from sgcad_core.records import Attempt, CrashReport, RoadNetwork, Scenario, Traj
 DIGEST = ".digest"
 TRACKED = ".tracked"
 PARTIAL = ".partial-"
+REPLACE_TRIES = 20
+"""How often two processes that finish the same case may get in each other's way."""
 MIN_FREE_MB = 50
 """Below this nothing is started; a case takes 1 to 3 MB."""
 
@@ -62,14 +66,18 @@ class CaseFolder:
             shutil.rmtree(partial, ignore_errors=True)
 
     def _replace(self, partial: Path) -> None:
-        """Put the new folder in the old one's place."""
-        if self.path.exists():
-            old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
-            self.path.rename(old / "old")
-            partial.rename(self.path)
+        """Put the new folder in the old one's place, even while another process does the same (the last one stays)."""
+        old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
+        try:
+            for turn in range(REPLACE_TRIES):
+                with contextlib.suppress(FileNotFoundError):
+                    self.path.rename(old / str(turn))
+                with _unless_there():
+                    partial.rename(self.path)
+                    return
+            raise OSError(errno.EBUSY, "other processes write the same case", str(self.path))
+        finally:
             shutil.rmtree(old, ignore_errors=True)
-        else:
-            partial.rename(self.path)
 
     def tracked(self, tracker: str) -> bool:
         """Whether this tracker has the case already."""
@@ -80,6 +88,16 @@ class CaseFolder:
         """Note that this tracker has the case."""
         with (self.path / TRACKED).open("a", encoding="utf-8") as file:
             file.write(tracker + "\n")
+
+
+@contextmanager
+def _unless_there() -> Iterator[None]:
+    """Pass over that a folder stands in the way."""
+    try:
+        yield
+    except OSError as fault:
+        if fault.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+            raise
 
 
 def check_writable(out: Path) -> None:
