@@ -156,4 +156,3 @@ def _closed(text: str) -> bool:
 
 def _even_slashes(text: str) -> bool:
     return (len(text) - len(text.rstrip("\\"))) % 2 == 0
-

@@ -67,6 +67,8 @@ class Running:
             raise InvalidOutput(f"{fault} (at {fault.path})", [finding]) from fault
         except records.BadLogits as fault:
             raise InvalidOutput(f"{self.name}: {fault}; try dtype bfloat16 or float32") from fault
+        except records.BadScores as fault:
+            raise InvalidOutput(f"{self.name}: {fault}; mend the decoder") from fault
         except records.TooLong as fault:
             raise BadInput(f"{self.name}: {fault}; set backbone.truncate, or lower backbone.max_new_tokens") from fault
         except records.TooBig as fault:

@@ -24,6 +24,7 @@ class HfVision(Backbone):
     """A local model with logits, so every decoder may be paired with it."""
 
     gives_logits: ClassVar[bool] = True
+    version: ClassVar[str] = "2"
     model: str = Field(min_length=1, description="folder (also from the project's root) or id")
     revision: str | None = None
     device: str = Field("auto", description="auto, cpu, cuda:0, ...; device_map goes first")
@@ -50,7 +51,8 @@ class HfVision(Backbone):
         """
         running = self._loaded()
         about = subject(context, query)
-        before, ids = self._answers.get(about, ("", ())) if query.repair else ("", ())
+        with self._lock:
+            before, ids = self._answers.get(about, ("", ())) if query.attempt > 1 or query.repair else ("", ())
         prior = self._contrasted(context, query, decoder)
         call = hf_run.Call(
             with_context=with_previous(parts(context, query), before),

@@ -92,7 +92,15 @@ class SlotLayer(CacheLayerMixin):  # type: ignore[misc]
 
 
 class CrossLayer(SlotLayer):
-    """One layer that attends to a picture's states instead of to the text before (Mllama)."""
+    """One layer that attends to pictures' states instead of to the text before (Mllama).
+
+    A step shows as many positions as the longest of its rows has: the model's mask is that long.
+    """
+
+    def __init__(self, cache: SlotCache) -> None:
+        super().__init__(cache)
+        self.lengths: dict[int, int] = {}
+        """Positions by slot."""
 
     def lazy_initialization(self, key_states: Tensor, value_states: Tensor) -> None:
         """Allocate as many positions as the picture has."""
@@ -109,6 +117,7 @@ class CrossLayer(SlotLayer):
         length = key_states.shape[2]
         if length > self.stored[0].shape[1]:
             self.stored = (_grown(self.stored[0], 0, length), _grown(self.stored[1], 0, length))
+        self.lengths[self.cache.window.first] = length
         for room, new in zip(self.stored, (key_states, value_states), strict=True):
             room[self.cache.window.first] = 0
             room[self.cache.window.first, :length] = new[0].transpose(0, 1)
@@ -126,8 +135,9 @@ class CrossLayer(SlotLayer):
     def _expose(self) -> None:
         assert self.stored is not None  # noqa: S101 -- for the type checker
         window = self.cache.window
-        rows = slice(window.first, window.first + window.count)
-        self.keys, self.values = (room[rows].transpose(1, 2) for room in self.stored)
+        rows = range(window.first, window.first + window.count)
+        shown = max((self.lengths.get(slot, 0) for slot in rows), default=0) or self.stored[0].shape[1]
+        self.keys, self.values = (room[rows.start : rows.stop, :shown].transpose(1, 2) for room in self.stored)
 
 
 class SlotCache(Cache):  # type: ignore[misc]
@@ -162,6 +172,8 @@ class SlotCache(Cache):  # type: ignore[misc]
             for room in layer.stored or ():
                 used = slice(None) if isinstance(layer, CrossLayer) else slice(length)
                 room[target, used] = room[source, used]
+            if isinstance(layer, CrossLayer):
+                layer.lengths[target] = layer.lengths.get(source, 0)
 
     def clear(self, slot: int) -> None:
         """Zero a slot that may hold NaN: a weight of 0 times NaN is NaN."""

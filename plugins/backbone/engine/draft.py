@@ -44,9 +44,5 @@ class Draft:
         """Behind the occurrence of the last tokens that is nearest to the present place."""
         if len(self.recent) < _CLUE:
             return None
-        ends = [
-            i + _CLUE
-            for i in range(len(self.earlier) - _CLUE + 1)
-            if self.earlier[i : i + _CLUE] == self.recent
-        ]
+        ends = [i + _CLUE for i in range(len(self.earlier) - _CLUE + 1) if self.earlier[i : i + _CLUE] == self.recent]
         return min(ends, key=lambda end: abs(end - self.at), default=None)

@@ -6,6 +6,7 @@ Knows no model and no batch.
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections.abc import Sequence
 from concurrent.futures import Future
@@ -47,8 +48,10 @@ class Job:
     pending: list[int] = field(default_factory=list)
     """Decided tokens that the rows have not been fed: the last of the prompt, or a picked one and forced ones."""
     guesses: list[int] = field(default_factory=list)
-    free: list[int] = field(default_factory=list)
-    """Which of the scored positions the grammar leaves a choice about."""
+    taken: int = 0
+    """How many of the guesses the grammar has taken, to be taken back."""
+    place: int = 0
+    """Which token of the answer is being drawn."""
     closing: bool = False
     """The answer is complete; its forced end is fed once more for its log-probabilities."""
     started: float = field(default_factory=time.perf_counter)
@@ -56,9 +59,24 @@ class Job:
     draft: Draft = field(init=False)
     generator: torch.Generator | None = None
     begun: bool = False
+    alone: bool = False
+    """To be answered by itself: a batch with it has failed."""
 
     def __post_init__(self) -> None:
-        self.draft = Draft(self.request.draft)
+        self.draft = Draft([token for token in self.request.draft if token not in self.request.eos])
+
+    def given_up(self) -> bool:
+        """True, once, if the caller has cancelled; whoever waits for it is told."""
+        return self.future.cancelled() and not self.future.set_running_or_notify_cancel()
+
+    def tell(self, outcome: Answer | Exception) -> None:
+        """End the caller's wait, unless the caller has given up."""
+        if not self.future.set_running_or_notify_cancel():
+            return
+        if isinstance(outcome, Exception):
+            self.future.set_exception(outcome)
+        else:
+            self.future.set_result(outcome)
 
     # ------------------------------------------------------------------ before the step
     def begin(self) -> None:
@@ -73,11 +91,15 @@ class Job:
             before = self.answer.ids[first - 1] if first else self.request.with_context.ids[-1]
             self.pending = [before, *self.answer.ids[first:]]
 
-    def generator_on(self, device: torch.device) -> torch.Generator:
-        """The report's own random numbers, seeded once, on the device of its scores."""
+    def generator_at(self, place: int, device: torch.device) -> torch.Generator:
+        """The random numbers of one place of the answer, on the device of its scores.
+
+        Each place has its own, so that neither a draft nor the reports beside it change what is drawn.
+        """
         if self.generator is None:
-            self.generator = torch.Generator(device=device).manual_seed(self.request.seed)
-        return self.generator
+            self.generator = torch.Generator(device=device)
+        mixed = hashlib.blake2b(f"{self.request.seed} {place}".encode(), digest_size=7).digest()
+        return self.generator.manual_seed(int.from_bytes(mixed, "little"))
 
     def fed(self) -> list[int]:
         """Answer tokens that the rows hold when the job (re)starts, the last of them to be fed again."""
@@ -97,22 +119,22 @@ class Job:
             return None
         rows = np.zeros((len(self.guesses) + 1, max(words, self.track.words)), np.int32)
         self.track.fill(rows[0])
-        for i, token in enumerate(self.guesses):
+        for token in self.guesses:
             if not self.track.take(token):
-                self.guesses = self.guesses[:i]
                 break
             if self.track.done:
                 self.track.back(1)
-                self.guesses = self.guesses[:i]
                 break
-            self.track.fill(rows[i + 1])
-        return rows[: len(self.guesses) + 1]
+            self.taken += 1
+            self.track.fill(rows[self.taken])
+        self.guesses = self.guesses[: self.taken]
+        return rows[: self.taken + 1]
 
     def forget_guesses(self) -> None:
-        """Take the guesses out of the grammar again."""
+        """Take the guesses out of the grammar again, as far as they got there."""
         if self.track:
-            self.track.back(len(self.guesses))
-        self.guesses = []
+            self.track.back(self.taken)
+        self.guesses, self.taken = [], 0
 
     # ------------------------------------------------------------------ after the step
     def hear(self, said: Said, choices: Sequence[int]) -> None:
@@ -128,8 +150,8 @@ class Job:
         right = next((i for i, (g, p) in enumerate(zip(guesses, said.picked, strict=False)) if g != p), len(guesses))
         fed = len(self.pending) + right
         if self.track:
-            self.track.back(len(guesses) - right)
-        self.guesses = []
+            self.track.back(self.taken - right)
+        self.guesses, self.taken = [], 0
         self.draft.judge(len(guesses), right)
         self.pending = []
         for i in range(right + 1):

@@ -1,8 +1,8 @@
 """Continuous batching: one thread owns the model, reports enter and leave between two tokens.
 
 `submit` may be called from any thread; it hands the request to the owner and returns a future. When memory
-runs out the number of reports at once is halved and what was decided so far is kept. Knows requests and
-rows; no prompt format.
+runs out the number of reports at once is halved and what was decided so far is kept. A decoder that raises costs
+its own report; a model that raises makes its reports go on one by one. Knows requests and rows; no prompt format.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ import sys
 import threading
 from collections import deque
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 import torch
 
 from plugins.backbone.engine.families import Family, window_of
 from plugins.backbone.engine.job import Job
+from plugins.backbone.engine.memory import tried
 from plugins.backbone.engine.records import Answer, BadLogits, EngineFault, Request, TooBig, TooLong
 from plugins.backbone.engine.runner import Runner
 from plugins.backbone.engine.scoring import Heard, heard
@@ -46,11 +48,19 @@ class Engine:
         self.halved = 0
 
     def generate(self, request: Request) -> Answer:
-        """Answer one request; blocks. Raises an EngineFault."""
-        return self.submit(request).result()
+        """Answer one request; blocks. Raises an EngineFault, or what the decoder or the model raised."""
+        future = self.submit(request)
+        try:
+            return future.result()
+        except BaseException:  # whoever stops waiting (Ctrl-C) frees the place
+            future.cancel()
+            raise
 
     def submit(self, request: Request) -> Future[Answer]:
-        """Queue a request. Raises TooLong at once; every other fault comes out of the future."""
+        """Queue a request. Raises TooLong at once; every other fault comes out of the future.
+
+        Cancelling the future ends the report before its next token.
+        """
         longest = max(len(p.ids) for p in (request.with_context, request.without_context) if p)
         if longest + request.max_new_tokens > self.window:
             raise TooLong(
@@ -98,15 +108,19 @@ class Engine:
         return True
 
     def _admit(self) -> None:
+        """Open waiting reports; one that is to be answered alone waits for an empty batch and keeps it."""
         while self.waiting and len(self.jobs) < self.limit:
+            if self.jobs and (self.waiting[0].alone or self.jobs[0].alone):
+                return
             job = self.waiting.popleft()
-            try:
-                self._open(job)
-            except (EngineFault, ValueError) as fault:
+            if job.given_up():
+                continue
+            fault = tried(partial(self._open, job))
+            if isinstance(fault, TooBig):
+                self._restart(fault)
+            elif fault:
                 self._leave(job)
-                job.future.set_exception(fault)
-            except RuntimeError as fault:
-                self._out_of_memory(fault, job)
+                job.tell(fault)
 
     def _open(self, job: Job) -> None:
         before = self.runner.calls
@@ -120,45 +134,39 @@ class Engine:
 
     def _step(self) -> None:
         """One forward pass a lane for all jobs, and what follows from it for each."""
-        jobs = list(self.jobs)
-        try:
-            results = self._forward(jobs)
-        except RuntimeError as fault:
-            self._out_of_memory(fault)
+        for job in [job for job in self.jobs if job.given_up()]:
+            self._leave(job)
+        jobs, results = list(self.jobs), list[Heard]()
+        if not jobs:
+            return
+        if failed := tried(lambda: results.extend(self._forward(jobs))):
+            self._restart(failed)
             return
         # every job hears first: a row that moves into a freed slot takes only what its job has accepted
         faults = [self._hear(job, result) for job, result in zip(jobs, results, strict=True)]
-        for job, wrong in zip(jobs, faults, strict=True):
-            if wrong or job.finished:
-                self._leave(job, keep=not wrong)
-            if wrong:
-                job.future.set_exception(wrong)
-            elif job.finished:
-                job.future.set_result(job.answer)
+        for job, fault in zip(jobs, faults, strict=True):
+            if fault or job.finished:
+                self._leave(job, keep=not fault)
+                job.tell(fault or job.answer)
 
-    def _hear(self, job: Job, result: Heard) -> EngineFault | None:
-        if result.said is None:
+    def _hear(self, job: Job, result: Heard) -> Exception | None:
+        if isinstance(result.fault, BadLogits):
             self._spoil(job)
-            return BadLogits(f"the model gave NaN or inf behind token {len(job.answer.ids)} of the answer")
-        try:
-            job.hear(result.said, result.choices)
-        except EngineFault as fault:
-            return fault
-        return None
+        if result.said is None:
+            return result.fault
+        return tried(partial(job.hear, result.said, result.choices))
 
     def _forward(self, jobs: list[Job]) -> list[Heard]:
         guesses = max(2, _GUESSES // len(jobs))
         chunks = [(row, chunk) for job in jobs for chunk in [job.chunk(guesses)] for row in job.rows]
         before = self.runner.calls
         logits = iter(self.runner.step(chunks))
-        words = (self._vocabulary() + 31) // 32
-        masks = [job.masks(words) for job in jobs]
         with_context, without_context = [], []
         for job in jobs:
             with_context.append(next(logits))
             without_context.append(next(logits) if len(job.rows) > 1 else None)
             job.answer.model_calls += self.runner.calls - before
-        return heard(jobs, with_context, without_context, masks)
+        return heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
 
     def _vocabulary(self) -> int:
         return int(self.model.get_output_embeddings().weight.shape[0])
@@ -166,7 +174,9 @@ class Engine:
     def _leave(self, job: Job, keep: bool = False) -> None:
         self.jobs.remove(job)
         for row in reversed(job.rows):
-            self.runner.close(row, job.answer.ids if keep else None)
+            if keep and tried(partial(self.runner.keep, row, job.answer.ids)):
+                self.runner.prefixes.clear()
+            self.runner.close(row)
         job.rows = []
 
     def _spoil(self, job: Job) -> None:
@@ -175,23 +185,27 @@ class Engine:
         for row in job.rows:
             row.lane.cache.clear(row.slot)
 
-    def _out_of_memory(self, fault: RuntimeError, opening: Job | None = None) -> None:
-        """Halve the number of reports at once and start them again from their tokens so far."""
-        if not _is_memory(fault):
-            raise fault
+    def _restart(self, fault: Exception) -> None:
+        """What was computed for all has failed: forget it and go on from every report's tokens so far.
+
+        Where memory ran out the number of reports at once is halved. After any other fault nobody knows whose
+        it was, so each report goes on alone; one that was alone has had its chance.
+        """
         jobs, self.jobs = self.jobs, []
-        for job in jobs:
-            job.forget_guesses()
-            job.rows = []
         self.runner.reset()
+        halved = isinstance(fault, TooBig) and len(jobs) > 1
+        if halved:
+            self.limit = max(1, len(jobs) // 2)
+            self.halved += 1
+        for job in reversed(jobs):
+            ended = fault if job.alone else tried(job.forget_guesses)
+            job.rows, job.alone = [], not halved
+            if ended:
+                job.tell(ended)
+            else:
+                self.waiting.appendleft(job)
         if torch.cuda.is_available():
             torch.cuda.empty_cache()
-        if len(jobs) == 1:
-            jobs[0].future.set_exception(TooBig(f"one report alone does not fit in memory: {fault}"))
-            return
-        self.limit = max(1, len(jobs) // 2)
-        self.halved += 1
-        self.waiting.extendleft(reversed(jobs))
 
     def _abandon(self, fault: BaseException | None) -> None:
         """The loop has ended: nobody waits for ever."""
@@ -202,9 +216,5 @@ class Engine:
             if job := self.arrivals.get():
                 self.waiting.append(job)
         for job in [*self.jobs, *self.waiting]:
-            job.future.set_exception(fault or EngineFault("the engine was closed before this report was answered"))
-
-
-def _is_memory(fault: RuntimeError) -> bool:
-    said = str(fault).lower()
-    return isinstance(fault, torch.OutOfMemoryError) or ("alloc" in said and "memory" in said)
+            closed = EngineFault(f"the engine was closed before this report was answered{self.reason}")
+            job.tell(fault if isinstance(fault, Exception) else closed)

@@ -3,6 +3,7 @@
     EngineFault
     ├── DoesNotFit    no valid answer within the limits: the field's path, so that it can be asked again
     ├── BadLogits     the model gave NaN or inf at a step: this report stops, the others go on
+    ├── BadScores     the decoder gave no usable scores or tokens: this report stops, the others go on
     ├── TooLong       prompt and answer exceed the model's window
     ├── TooBig        one report alone does not fit in memory
     └── WrongBatch    the start-up self-check found no way to run this model right
@@ -36,6 +37,10 @@ class BadLogits(EngineFault):
     """NaN or inf in a row's logits."""
 
 
+class BadScores(EngineFault):
+    """A decoder's scores are NaN, inf or of another shape, or its draw is no token."""
+
+
 class TooLong(EngineFault):
     """The prompt and the longest answer do not fit in the model's window."""
 
@@ -55,7 +60,7 @@ class Policy(Protocol):
         """Combine logits (rows, vocabulary); -inf excludes."""
 
     def draw(self, scores: Any, generator: Any) -> Any:
-        """Pick one token a row, (rows,)."""
+        """Pick one token a row, (rows,); the loop asks place by place, with random numbers of that place."""
 
     def reads_prior(self) -> bool:
         """True if `scores` needs the row without context."""

@@ -70,18 +70,18 @@ class Runner:
         lane.rows.append(row)
         try:
             self._fill(row, [*prompt.ids, *behind][:-1])
-        except ValueError:
+        except Exception:
             self.close(row)
             raise
         return row
 
-    def close(self, row: Row, behind: Sequence[int] | None = None) -> None:
-        """Free the row's slot; the last row of the lane moves into it.
-
-        `behind`, the tokens fed behind the prompt, keeps all of it for a prompt that goes on from there.
-        """
-        if behind is not None and row.length > len(row.prompt.ids):
+    def keep(self, row: Row, behind: Sequence[int]) -> None:
+        """Keep the row's prompt and the tokens fed behind it for a prompt that goes on from there."""
+        if row.length > len(row.prompt.ids):
             self._keep(row, behind)
+
+    def close(self, row: Row) -> None:
+        """Free the row's slot; the last row of the lane moves into it."""
         rows = row.lane.rows
         last = rows.pop()
         if last is not row:

@@ -1,48 +1,60 @@
 """From two rows of logits to a token: contrast, plausibility, grammar, temperature and top-p, pick.
 
 The first two are the decoder's `scores`, the last two its `draw`; the grammar stands between them and
-applies to the combined logits. All jobs come to the host at once. Knows jobs and tensors; no
-model, no cache.
+applies to the combined logits. All jobs come to the host at once. A decoder is others' code: what it raises,
+and scores that are none, cost its own report alone. Knows jobs and tensors; no model, no cache.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 
 import torch
 from torch import Tensor
 
 from plugins.backbone.engine.grammar import Mask, allowed, choices, only
 from plugins.backbone.engine.job import Job, Said
+from plugins.backbone.engine.memory import tried
+from plugins.backbone.engine.records import BadLogits, BadScores, TooBig
 
 NEVER = float("-inf")
 _BLOCK = 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class Heard:
-    """`said` is None where the model gave NaN or inf."""
+    """What one job is told of its chunk: `said`, or the fault that ends it."""
 
-    said: Said | None
-    choices: list[int]
+    choices: list[int] = field(default_factory=list)
+    parts: list[Tensor] = field(default_factory=list)
+    """On the device: finite, log-probabilities of known tokens, then sound, picked tokens, their log-probabilities."""
+    said: Said | None = None
+    fault: Exception | None = None
 
 
 def heard(
-    jobs: Sequence[Job],
-    with_context: Sequence[Tensor],
-    without_context: Sequence[Tensor | None],
-    masks: Sequence[Mask | None],
+    jobs: Sequence[Job], with_context: Sequence[Tensor], without_context: Sequence[Tensor | None], words: int
 ) -> list[Heard]:
-    """Score every job's chunk; logits are (chunk, vocabulary), masks (scored positions, words)."""
-    left = [choices(mask).tolist() if mask is not None else [] for mask in masks]
-    found = []
+    """Score every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
+    found = [Heard() for _ in jobs]
     for i, job in enumerate(jobs):
         prior = without_context[i]
-        rows = [_Row.of(with_context[i])] + ([_Row.of(prior)] if prior is not None else [])
-        found.append(_job(job, rows, masks[i], left[i]))
-    numbers = torch.cat([part for parts in found for part in parts]).tolist()
-    return _told(jobs, found, left, numbers)
+        logits = [with_context[i]] if prior is None else [with_context[i], prior]
+        found[i].fault = tried(partial(_score, found[i], job, logits, words))
+        if isinstance(found[i].fault, TooBig):
+            raise MemoryError(str(found[i].fault))
+    whole = [(job, one) for job, one in zip(jobs, found, strict=True) if not one.fault]
+    numbers = torch.cat([part for _, one in whole for part in one.parts]).tolist() if whole else []
+    at = 0
+    for job, one in whole:
+        lists = []
+        for part in one.parts:
+            lists.append(numbers[at : at + len(part)])
+            at += len(part)
+        _tell(job, one, lists)
+    return found
 
 
 @dataclass(frozen=True)
@@ -64,74 +76,97 @@ class _Row:
         return self.logits[places].gather(-1, tokens[:, None])[:, 0].float() - self.mass[places]
 
 
-def _job(job: Job, rows: list[_Row], mask: Mask | None, left: list[int]) -> list[Tensor]:
-    """On the device: [finite, log-probabilities of known tokens, picked tokens, their log-probabilities]."""
+def _score(one: Heard, job: Job, logits: Sequence[Tensor], words: int) -> None:
+    """Fill in what is known of a chunk, on the device."""
+    mask = job.masks(words)
+    one.choices = choices(mask).tolist() if mask is not None else []
     known = len(job.pending) - 1
+    rows = [_Row.of(row) for row in logits]
     finite = torch.stack([row.mass.isfinite().all() for row in rows]).all()[None]
     tokens = torch.tensor(job.pending[1:], dtype=torch.long, device=finite.device)
-    parts = [finite, *(row.logp(0, tokens) for row in rows)]
-    if not job.closing:
-        scored = slice(known, known + len(job.guesses) + 1)
-        picked = _all_picked(job, [row.logits[scored] for row in rows], mask, left, finite)
-        parts += [picked, *(row.logp(known, picked) for row in rows)]
-    return [part.double() for part in parts]
+    one.parts = [finite.double(), *(row.logp(0, tokens).double() for row in rows)]
+    if job.closing or not (finite.is_cuda or bool(finite)):
+        return
+    scored = slice(known, known + len(job.guesses) + 1)
+    sound, picked = _all_picked(job, [row.logits[scored] for row in rows], mask, one.choices, finite)
+    one.parts += [part.double() for part in (sound, picked, *(row.logp(known, picked) for row in rows))]
 
 
-def _all_picked(job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor) -> Tensor:
-    """One token a position; where the grammar leaves one, nothing is scored."""
-    free = [i for i, count in enumerate(left) if count != 1]
-    job.free = free if mask is not None else list(range(len(rows[0])))
+def _all_picked(
+    job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor
+) -> tuple[Tensor, Tensor]:
+    """Whether the decoder was sound, and one token a position; where the grammar leaves one, nothing is scored."""
+    free = [i for i in range(len(rows[0])) if mask is None or left[i] != 1]
     if mask is None or len(free) == len(left):
-        return _picked(job, rows, mask, left, finite)
+        return _picked(job, rows, mask, free, finite)
     forced = [i for i, count in enumerate(left) if count == 1]
     picked = torch.empty(len(left), dtype=torch.long, device=finite.device)
     picked[forced] = torch.from_numpy(only(mask[forced])).to(finite.device)
+    sound = torch.ones(1, dtype=torch.bool, device=finite.device)
     if free:
-        some = [row[free] for row in rows]
-        picked[free] = _picked(job, some, mask[free], [left[i] for i in free], finite)
-    return picked
+        sound, picked[free] = _picked(job, [row[free] for row in rows], mask[free], free, finite)
+    return sound, picked
 
 
-def _picked(job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor) -> Tensor:
-    """One token a position; where plausibility and grammar leave none, the grammar's most likely with context."""
-    policy = job.request.policy
-    scores = policy.scores(rows[0].float(), rows[1].float() if len(rows) > 1 else None)
-    scores = torch.where(finite, scores, torch.zeros_like(scores)) if scores.is_cuda or not bool(finite) else scores
+def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], finite: Tensor) -> tuple[Tensor, Tensor]:
+    """One token a position; where plausibility and grammar leave none, the most likely one with context."""
+    full = [row.to(torch.float32, copy=True) for row in rows]
+    scores = job.request.policy.scores(full[0], full[1] if len(full) > 1 else None)
+    if not isinstance(scores, Tensor) or scores.shape != rows[0].shape:
+        raise _unsound(job, f"scores are {_described(scores)}, expected logits {tuple(rows[0].shape)}")
+    may = None
     if mask is not None:
-        mask[[count == 0 for count in left]] = -1  # a dead end: the job stops, but something must be drawn
+        mask[~mask.any(-1)] = -1  # a dead end: the job stops, but something must be drawn
         may = allowed(mask, scores.shape[-1], scores.device)
         scores = scores.masked_fill(~may, NEVER)
-        stuck = scores.amax(-1, keepdim=True) == NEVER
-        if scores.is_cuda or bool(stuck.any()):
-            scores = torch.where(stuck, rows[0].float().nan_to_num(0.0).masked_fill(~may, NEVER), scores)
-    picked: Tensor = policy.draw(scores, job.generator_on(scores.device))
-    return picked
+    top = scores.amax(-1, keepdim=True)
+    sound = (top < float("inf")).all()[None]
+    if scores.is_cuda or bool((top == NEVER).any()):
+        bare = rows[0].float() if may is None else rows[0].float().masked_fill(~may, NEVER)
+        scores = torch.where(top == NEVER, bare, scores)
+    if scores.is_cuda:  # a draw from NaN would end the device's work for every report
+        scores = torch.where(finite & sound, scores, torch.zeros_like(scores))
+    elif not bool(sound):
+        raise _unsound(job, "scores are NaN or inf")
+    picked = _drawn(job, scores, free)
+    inside = ((picked >= 0) & (picked < scores.shape[-1])).all()[None]
+    return sound & inside, picked.clamp(0, scores.shape[-1] - 1)
 
 
-def _told(
-    jobs: Sequence[Job], found: Sequence[Sequence[Tensor]], left: Sequence[list[int]], numbers: list[float]
-) -> list[Heard]:
-    told, at = [], 0
-    for job, parts, choice in zip(jobs, found, left, strict=True):
-        lists = []
-        for part in parts:
-            lists.append(numbers[at : at + len(part)])
-            at += len(part)
-        told.append(Heard(_said(job, lists), choice))
-    return told
+def _drawn(job: Job, scores: Tensor, free: list[int]) -> Tensor:
+    """One token a position, (positions,), each by the random numbers of its place in the answer."""
+    found = []
+    for i, position in enumerate(free):
+        job.place = len(job.answer.ids) + position
+        drawn = job.request.policy.draw(scores[i : i + 1], job.generator_at(job.place, scores.device))
+        if not isinstance(drawn, Tensor) or drawn.shape != (1,) or drawn.is_floating_point():
+            raise _unsound(job, f"draw gave {_described(drawn)}, expected one token index a row, (1,)")
+        found.append(drawn)
+    return torch.cat(found)
 
 
-def _said(job: Job, lists: list[list[float]]) -> Said | None:
+def _unsound(job: Job, what: str) -> BadScores:
+    return BadScores(f"decoder {type(job.request.policy).__name__}: its {what} behind token {len(job.answer.ids)}")
+
+
+def _described(found: object) -> str:
+    return f"{found.dtype} {tuple(found.shape)}" if isinstance(found, Tensor) else repr(found)[:80]
+
+
+def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
     finite, *rest = lists
     rows = len(job.rows)
     if not finite[0]:
-        return None
+        one.fault = BadLogits(f"the model gave NaN or inf behind token {len(job.answer.ids)} of the answer")
+        return
     known, scored = rest[:rows], rest[rows:]
-    picked = [int(token) for token in scored[0]] if scored else []
-    return Said(
+    if scored and not scored[0][0]:
+        one.fault = _unsound(job, "scores are NaN or inf, or its tokens outside the vocabulary,")
+        return
+    one.said = Said(
         known_with=known[0],
         known_without=known[1] if rows > 1 else [],
-        picked=picked,
-        picked_with=scored[1] if scored else [],
-        picked_without=scored[2] if scored and rows > 1 else [],
+        picked=[int(token) for token in scored[1]] if scored else [],
+        picked_with=scored[2] if scored else [],
+        picked_without=scored[3] if scored and rows > 1 else [],
     )

@@ -178,21 +178,6 @@ def test_a_closed_engine_answers_nobody_and_says_so() -> None:
         engine.submit(request(family, 0))
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_fault_in_a_decoder_reaches_every_caller_and_hangs_nobody() -> None:
-    class Broken(Greedy):
-        def scores(self, with_context: Any, without_context: Any | None) -> Any:
-            raise ZeroDivisionError("a bug in a plugin")
-
-    model, family = tiny.build("text_only")
-    engine = Engine(model, family)
-    broken = engine.submit(request(family, 0, Broken(), tokens=4))
-    with pytest.raises(ZeroDivisionError, match="a bug in a plugin"):
-        broken.result(10)
-    with pytest.raises(EngineFault, match="the engine is closed: ZeroDivisionError: a bug in a plugin"):
-        engine.submit(request(family, 1))
-
-
 def test_a_model_that_is_wrong_in_a_batch_is_refused_at_the_start() -> None:
     model, family = built(Muddled)
     with pytest.raises(WrongBatch, match=r"Muddled gives other logits in a batch .*one batch: .*two caches: "):
