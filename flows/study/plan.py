@@ -23,6 +23,7 @@ from flows import cases as case_sets
 from flows import store
 from flows.batch import Batch, Job, batch_over
 from flows.cases import Case
+from flows.results.published import publication
 from flows.study import machine
 from flows.study.spec import Arm, Study, is_study, told
 from sgcad_core import settings
@@ -98,6 +99,7 @@ def plan(
     found = _cases(study, cases, faults)
     truth = _truth(study, truth, faults)
     configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
+    faults += _unpublished(study)
     loaded = tuple(config for config in configs if config is not None)
     if jobs is not None and jobs < 1:
         faults.append(f"--jobs {jobs}: at least 1 is needed")
@@ -122,7 +124,7 @@ def dataset_digest(cases: Iterable[Case]) -> str:
 
 def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Config, ...]:
     """The arms' configs alone, without cases. Raises ConfigError with every fault."""
-    faults = list(study.faults)
+    faults = [*study.faults, *_unpublished(study)]
     configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
     if faults:
         raise ConfigError(told(study.file, faults))
@@ -156,6 +158,13 @@ def _truth(study: Study, named: Path | None, faults: list[str]) -> Path | None:
     if not truth.exists():
         faults.append(f"truth {truth}: no such folder; give the folder with the true networks of the cases")
     return truth.resolve()
+
+
+def _unpublished(study: Study) -> list[str]:
+    """Arms that name a row of the published figures that is not there."""
+    rows = publication().rows
+    wrong = [arm for arm in study.arms if arm.published is not None and arm.published not in rows]
+    return [f"arm {a.name!r}: published {a.published!r} is no row; there are: {', '.join(rows)}" for a in wrong]
 
 
 def _config(study: Study, arm: Arm, out: Path, overrides: Sequence[str], faults: list[str]) -> Config | None:
