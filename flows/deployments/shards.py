@@ -29,6 +29,7 @@ from flows.batch import MAX_JOBS, Job
 from flows.chain import Ending
 from flows.evaluate import drive
 from flows.study.lease import BEAT_S
+from flows.study.plan import Plan
 from flows.study.shards import Shard, lay_out, work_of, work_on
 from flows.study.share import Mark, Share, Unreachable
 from flows.study.watch import PATIENCE_S, START_S, Watch, follow
@@ -131,6 +132,12 @@ class Hosts:
     beat_s: float = BEAT_S
     patience_s: float = PATIENCE_S
     start_s: float = START_S
+
+
+def study_on_hosts(made: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:
+    """`flows.study.running.run` on many hosts: the same folder, the same study.json. See `on_hosts`."""
+    made.write()
+    return on_hosts(made.study.name, made.jobs, hosts, on_ending)
 
 
 def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:

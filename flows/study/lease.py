@@ -7,6 +7,7 @@ storage cannot hand in results, whatever it tells the server. Knows no Prefect.
 
 from __future__ import annotations
 
+import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,7 +42,8 @@ class Lease:
 
     def take(self) -> None:
         """Take the shard: the coordinator has given it to this run and to no other."""
-        self.share.write_json(lease_name(self.shard), {"run": self.run, "count": self.count})
+        held = {"run": self.run, "count": self.count, "host": socket.gethostname()}
+        self.share.write_json(lease_name(self.shard), held)
 
     def beat(self) -> None:
         """Move the number, unless another run holds the shard by now."""

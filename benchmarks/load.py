@@ -1,0 +1,256 @@
+"""What the shared parts take of a case: Prefect's server, MLflow's server, the storage.
+
+    python -m benchmarks.load [--cases 200] [--database postgresql://user@host/] [--address s3://bucket/place]
+
+Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a PostgreSQL server, and gives them
+what a study gives them a case: three task runs (the case and its two attempts), an MLflow run with figures and
+files, one object and one mark. Tells processor seconds of the server and of the client (they do not depend on
+who else uses the machine as much as the clock does), wall seconds, and how far the server lagged behind.
+The case is a real one: the bundled report, run once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import httpx
+import psutil
+
+DEMO = Path(__file__).resolve().parent.parent / "docs" / "demo"
+START_S = 300.0
+
+
+class Load(NamedTuple):
+    """Of one case at one part: seconds of the server's and the client's processors, and of the clock."""
+
+    part: str
+    server: float
+    client: float
+    wall: float
+    note: str = ""
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=200)
+    parser.add_argument("--database", default="", help="postgresql://user@host/, with databases prefect and mlflow")
+    parser.add_argument("--address", default="", help="fsspec address of the storage; default: a folder")
+    parser.add_argument("--inside", choices=["prefect", "mlflow"], help=argparse.SUPPRESS)
+    options, rest = parser.parse_known_args()
+    if options.inside:
+        {"prefect": give_prefect, "mlflow": give_mlflow}[options.inside](options.cases, *rest)
+        return
+    with tempfile.TemporaryDirectory() as place:
+        case = real_case(Path(place))
+        loads = [
+            prefect_load(options.cases, options.database, Path(place)),
+            mlflow_load(options.cases, options.database, Path(place), case),
+            storage_load(options.cases, options.address or f"file://{place}/share", case),
+        ]
+    show(loads, options.cases)
+
+
+def show(loads: list[Load], cases: int) -> None:
+    """The figures as a Markdown table."""
+    rows = [
+        f"| {one.part} | {1000 * one.server:.0f} | {1000 * one.client:.0f} | {1000 * one.wall:.0f} | {one.note} |"
+        for one in loads
+    ]
+    head = ["| part | server ms a case | client ms a case | wall ms a case | |", "|---|---|---|---|---|"]
+    busy = f"{cases} cases, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
+    sys.stdout.write("\n".join([busy, "", *head, *rows]) + "\n")
+
+
+def real_case(place: Path) -> Path:
+    """The folder of a bundled report, run once."""
+    from flows import cases, chain
+    from sgcad_core import settings
+    from sgcad_core.config import load
+
+    settings.quiet_libraries()
+    config = load("template.yaml", ("tracker=none",))
+    (case, *_) = cases.cases_in([DEMO])
+    chain.run_case(config, case, place / "runs", cases.digest_of(case, config))
+    return place / "runs" / config.name / case.id
+
+
+# ------------------------------------------------------------------ servers
+@contextmanager
+def served(command: list[str], health: str, environment: dict[str, str], log: Path) -> Iterator[psutil.Process]:
+    """A server process while the block lasts. Raises TimeoutError with the log's end if it never answers."""
+    with log.open("wb") as words:
+        process = subprocess.Popen(command, stdout=words, stderr=subprocess.STDOUT, env={**os.environ, **environment})  # noqa: S603 - ours
+    try:
+        deadline = time.monotonic() + START_S
+        while not answers(health):
+            if process.poll() is not None or time.monotonic() > deadline:
+                raise TimeoutError(f"{' '.join(command[2:4])} does not start: {log.read_text()[-1500:]}")
+            time.sleep(0.2)
+        yield psutil.Process(process.pid)
+    finally:
+        for child in psutil.Process(process.pid).children(recursive=True):
+            child.terminate()
+        process.terminate()
+        process.wait()
+
+
+def answers(address: str) -> bool:
+    """Whether an address answers well."""
+    try:
+        return httpx.get(address, timeout=5).is_success
+    except httpx.HTTPError:
+        return False
+
+
+def spent(process: psutil.Process) -> float:
+    """Processor seconds of a process and all that it started."""
+    family = [process, *process.children(recursive=True)]
+    return sum(sum(one.cpu_times()[:2]) for one in family)
+
+
+def free_port() -> int:
+    """A port that nobody listens on now."""
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        return int(bound.getsockname()[1])
+
+
+def prefect_load(cases: int, database: str, place: Path) -> Load:
+    """Three task runs a case, on Prefect's server as `make up` starts it."""
+    port = free_port()
+    address = f"http://127.0.0.1:{port}/api"
+    environment = {"PREFECT_HOME": str(place / "prefect"), "PREFECT_API_URL": address, "PREFECT_LOGGING_LEVEL": "ERROR",
+                   "PREFECT_SERVER_ANALYTICS_ENABLED": "false", "DO_NOT_TRACK": "1"}  # fmt: skip
+    if database:
+        url = f"{database.replace('postgresql:', 'postgresql+asyncpg:')}prefect"
+        environment["PREFECT_SERVER_DATABASE_CONNECTION_URL"] = url
+    command = [sys.executable, "-m", "prefect", "server", "start", "--port", str(port), "--no-ui"]
+    with served(command, f"{address}/health", environment, place / "prefect.log") as server:
+        return per_case("Prefect server", server, "prefect", cases, environment, [])
+
+
+def mlflow_load(cases: int, database: str, place: Path, case: Path) -> Load:
+    """A run a case with figures, attempts and files, on MLflow's server."""
+    port = free_port()
+    store = f"{database}mlflow" if database else f"sqlite:///{place / 'mlflow.db'}"
+    environment = {"MLFLOW_DISABLE_TELEMETRY": "true", "MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false"}
+    command = [sys.executable, "-m", "mlflow", "server", "--port", str(port), "--workers", "1",
+               "--backend-store-uri", store, "--artifacts-destination", str(place / "artifacts")]  # fmt: skip
+    with served(command, f"http://127.0.0.1:{port}/health", environment, place / "mlflow.log") as server:
+        return per_case("MLflow server", server, "mlflow", cases, environment, [str(case), f"http://127.0.0.1:{port}"])
+
+
+def per_case(
+    part: str, server: psutil.Process, inside: str, cases: int, environment: dict[str, str], words: list[str]
+) -> Load:
+    """What a further case costs: a client with many cases against one with a few, so that starts cancel out."""
+    few = max(2, cases // 10)
+    results = []
+    for count in (few, cases):
+        client = [sys.executable, "-m", "benchmarks.load", "--inside", inside, "--cases", str(count), *words]
+        results.append(run_client(server, client, environment))
+    (s0, c0, w0, _), (s1, c1, w1, note) = results
+    more = cases - few
+    return Load(part, (s1 - s0) / more, (c1 - c0) / more, (w1 - w0) / more, note)
+
+
+def run_client(
+    server: psutil.Process, client: list[str], environment: dict[str, str]
+) -> tuple[float, float, float, str]:
+    """(server, client, wall) seconds of one client, and what it says at its end."""
+    before, started = spent(server), time.perf_counter()
+    done = subprocess.run(client, capture_output=True, text=True, env={**os.environ, **environment}, check=False)  # noqa: S603 - our own module
+    if done.returncode:
+        raise RuntimeError(done.stderr[-2000:])
+    used, _, note = done.stdout.strip().splitlines()[-1].partition(" ")
+    return spent(server) - before, float(used), time.perf_counter() - started, note
+
+
+# ------------------------------------------------------------------ clients, in processes of their own
+def tell(note: str = "") -> None:
+    """Processor seconds of this process, for the one that started it; then leave."""
+    times = psutil.Process().cpu_times()
+    sys.stdout.write(f"{times.user + times.system} {note}\n")
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def give_prefect(cases: int) -> None:
+    """A flow run with three task runs a case; ends when the server has them all."""
+    from prefect import flow, task
+    from prefect.client.orchestration import get_client
+    from prefect.events.worker import EventsWorker
+    from prefect.runtime import flow_run
+    from prefect.task_runners import ThreadPoolTaskRunner
+
+    from flows.tasks import hush_prefect, reported_attempt
+
+    hush_prefect()
+
+    @task(persist_result=False)
+    def case(number: int) -> None:
+        for name in ("road[1]", "scenario[1]"):
+            reported_attempt.with_options(task_run_name=name)(0, 0.1, "")
+
+    @flow(name="load", task_runner=ThreadPoolTaskRunner(max_workers=2), persist_result=False)
+    def load() -> str:
+        for future in [case.submit(number) for number in range(cases)]:
+            future.wait()
+        return str(flow_run.id)
+
+    identity = load()
+    EventsWorker.drain_all(timeout=60)
+    sent = time.perf_counter()
+    body = {"flow_runs": {"id": {"any_": [identity]}}, "task_runs": {"state": {"type": {"any_": ["COMPLETED"]}}}}
+    with get_client(sync_client=True) as client:
+        while client.request("POST", "/task_runs/count", json=body).json() < 3 * cases:
+            if time.perf_counter() - sent > START_S:
+                raise TimeoutError("the server never had all task runs")
+            time.sleep(0.1)
+    tell(f"the server had everything {time.perf_counter() - sent:.1f} s after the last case of {cases}")
+
+
+def give_mlflow(cases: int, case: str, uri: str) -> None:
+    """A run a case through our own tracker."""
+    import json
+
+    from sgcad_core.registry import plugin_class
+
+    tracker: Any = plugin_class("tracker", "mlflow")(uri=uri, system_metrics_s=0)
+    result = json.loads((Path(case) / "result.json").read_text())
+    for number in range(cases):
+        copy = Path(case).parent / f"{number:05d}"
+        shutil.copytree(case, copy)
+        tracker.log_case("load", {"config": "load"}, copy, result)
+        shutil.rmtree(copy)
+    files = sum(1 for f in Path(case).rglob("*") if f.is_file())
+    tell(f"{files} files, {sum(f.stat().st_size for f in Path(case).rglob('*') if f.is_file()) / 1e6:.1f} MB a case")
+
+
+def storage_load(cases: int, address: str, case: Path) -> Load:
+    """Pack, upload and mark a case; in this process, so the storage's own work shows only in the wall time."""
+    from flows.study.share import Share, packed
+
+    share = Share(address)
+    share.leave(case, ("load", "warm", "0" * 64), "generated", "run")
+    cpu, started = time.process_time(), time.perf_counter()
+    for number in range(cases):
+        share.leave(case, ("load", f"{number:05d}", "0" * 64), "generated", "run")
+    used, wall = (time.process_time() - cpu) / cases, (time.perf_counter() - started) / cases
+    return Load("storage", 0.0, used, wall, f"{len(packed(case)) / 1e6:.2f} MB packed, {address.split(':')[0]}")
+
+
+if __name__ == "__main__":
+    main()
