@@ -7,7 +7,7 @@ READY := $(VENV)/.ready
 export HF_HUB_OFFLINE := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-fast lint bench bench-decode train-mini qc clean
+.PHONY: help setup demo test test-fast test-hosts lint bench bench-decode train-mini qc clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -49,6 +49,10 @@ qc: .venv-qc/.ready ## ASAM's checkers over RUNS=runs
 
 clean: ## remove environments and caches, never results
 	rm -rf $(VENV) .venv-qc .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+
+test-hosts: setup ## a study on two hosts that lose network and power (Linux, root, PostgreSQL and iproute2; else skipped)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,hosts]' 'moto[s3]>=5.1'
+	$(BIN)/python -m tests.hosts.run
 
 lint: setup ## ruff, mypy, import-linter
 	$(BIN)/ruff check .
