@@ -56,8 +56,8 @@ class Config(Record):
     """The mapping it was built from, for logs, digests and worker processes."""
 
     def validators_of(self, stage: str) -> tuple[Validator, ...]:
-        """Validators of one stage in the order of the YAML."""
-        return tuple(v for v in self.validators if v.stage == stage)
+        """Validators of one stage, or of both, in the order of the YAML."""
+        return tuple(v for v in self.validators if v.stage in (stage, "both"))
 
 
 def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:

@@ -27,6 +27,11 @@ class Group:
     paths: re.Pattern[str]
     remedy: str
 
+    @property
+    def field(self) -> str:
+        """The group's key in the YAML."""
+        return self.name.replace(" ", "_")
+
 
 ROAD = (
     Group(
@@ -54,30 +59,40 @@ SCENARIO = (
 )
 
 
-class EvidenceGate(Validator):
-    """A threshold a group, in nats; null leaves a group out. One entry judges one stage."""
+GROUPS: dict[str, tuple[Group, ...]] = {"road": ROAD, "scenario": SCENARIO}
+"""What is judged in which stage; a group's threshold is the field of its name."""
 
-    at: Literal["road", "scenario"] = "road"
-    road_layout: float | None = Field(0.5, description="nats; null = not required")
-    lanes: float | None = 0.5
-    actors: float | None = 0.5
-    first_contact: float | None = 0.5
+
+class EvidenceGate(Validator):
+    """A threshold a group, in nats; null leaves a group out. Judges both stages unless `at` names one.
+
+    The defaults only catch what the report makes no likelier at all: a model's own thresholds come from
+    `python -m benchmarks.gate`.
+    """
+
+    at: Literal["road", "scenario", "both"] = "both"
+    road_layout: float | None = Field(0.5, description="road stage, nats; null = not required")
+    lanes: float | None = Field(0.5, description="road stage, nats; null = not required")
+    actors: float | None = Field(0.5, description="scenario stage, nats; null = not required")
+    first_contact: float | None = Field(0.5, description="scenario stage, nats; null = not required")
 
     @property
     def stage(self) -> str:  # type: ignore[override]
-        """The stage named by `at`: the gate is the one validator that may stand in either."""
+        """The stage named by `at`: the gate is the one validator that may stand in either or in both."""
         return self.at
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """A refusal a group that is not grounded, weakest first; [] where nothing is known of the grounding."""
         ground = evidence.generation.grounding if evidence.generation else {}
-        wanted = ((group, self._threshold(group)) for group in (ROAD if self.at == "road" else SCENARIO))
+        judged = GROUPS["road" if isinstance(artifact, RoadNetwork) else "scenario"]
+        wanted = ((group, self.threshold(group)) for group in judged)
         sums = [(group, limit, nats_of(group, ground)) for group, limit in wanted if limit is not None]
         weak = [(nats, group, limit) for group, limit, nats in sums if nats is not None and nats < limit]
         return [_finding(group, nats, limit) for nats, group, limit in sorted(weak, key=lambda w: w[0] - w[2])]
 
-    def _threshold(self, group: Group) -> float | None:
-        found: float | None = getattr(self, group.name.replace(" ", "_"))
+    def threshold(self, group: Group) -> float | None:
+        """The group's threshold, nats; None: it is not required."""
+        found: float | None = getattr(self, group.field)
         return found
 
 

@@ -64,6 +64,23 @@ def test_the_gate_stands_in_the_stage_that_its_field_names() -> None:
     assert len(built.validators_of("road")) == 1
 
 
+def test_without_a_stage_it_judges_each_by_the_groups_of_that_stage() -> None:
+    raw = config.yaml.safe_load("""
+        report_reader: auto
+        retriever: none
+        road_writer: template
+        scenario_writer: rules
+        simulator: kinematic
+        tracker: none
+        validators: [{name: evidence_gate, lanes: 0.45, actors: 4}]
+    """)
+    built = config.build(raw, "x", "x.yaml")
+    (road,), (scenario,) = built.validators_of("road"), built.validators_of("scenario")
+    assert [f.value for f in road.findings(RoadNetwork(), evidence({**ROAD, **CRASH}))] == ["lanes"]
+    found = scenario.findings(Scenario(actors=()), evidence({**ROAD, **CRASH}))
+    assert [f.value for f in found] == ["actors", "first contact"]
+
+
 def test_an_unknown_stage_is_refused() -> None:
-    with pytest.raises(ValidationError, match="'road' or 'scenario'"):
-        EvidenceGate(at="both")
+    with pytest.raises(ValidationError, match="'road', 'scenario' or 'both'"):
+        EvidenceGate(at="simulator")
