@@ -79,18 +79,23 @@ def drive(plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> int:
     task = case_task(board)
     submitted = {task.submit(job.name): job for job in plan}
     try:
-        for done in as_completed(list(submitted)):
-            if board.fatal:
-                raise board.fatal
-            job = submitted[done]
-            if job.name not in board.endings:
-                done.result()  # the task itself crashed: Prefect's own fault, said as it is
-            ending = board.endings[job.name]
-            on_ending(job, ending, tracking.track_safely(job, ending))
+        with tracking.following(plan):
+            _follow(board, submitted, on_ending)
     except BaseException:
         crew.stop()
         raise
     return len(plan) + sum(len(ending.attempts) for ending in board.endings.values())
+
+
+def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding) -> None:
+    for done in as_completed(list(submitted)):
+        if board.fatal:
+            raise board.fatal
+        job = submitted[done]
+        if job.name not in board.endings:
+            done.result()  # the task itself crashed: Prefect's own fault, said as it is
+        ending = board.endings[job.name]
+        on_ending(job, ending, tracking.track_safely(job, ending))
 
 
 @flow(name="evaluate-deployed", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)

@@ -8,12 +8,13 @@ job, heavy state is a `functools.cached_property`. Register it under the entry-p
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
+from sgcad_core.arm import Arm
 from sgcad_core.records import (
     Context,
     CrashReport,
@@ -140,7 +141,7 @@ class Validator(Plugin):
 
     kind = "validator"
     stage: ClassVar[str]
-    """"road" or "scenario": the artifact it reads. What it cannot judge it passes over: []."""
+    """"road", "scenario" or "both": the artifacts it reads. What it cannot judge it passes over: []."""
 
     @abstractmethod
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
@@ -158,9 +159,17 @@ class Simulator(Plugin):
 
 
 class Tracker(Plugin):
-    """Where results can be compared. Called from one thread, after the case is on disk."""
+    """Where results can be compared. Called from one thread, after the case is on disk.
+
+    `begin` and `end` enclose a batch; a batch that was killed is begun again, and its logged cases are not logged
+    again. A single `log_case` without them is fine.
+    """
 
     kind = "tracker"
+
+    def begin(self, arm: Arm) -> None:
+        """Told before the first case of a config; the default keeps nothing."""
+        return
 
     @abstractmethod
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
@@ -169,3 +178,11 @@ class Tracker(Plugin):
     def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
         """Log one model call; the default keeps nothing."""
         return
+
+    def end(self, arm: Arm, finished: bool) -> None:
+        """Told after the last case; `finished` is false after an interruption. The default keeps nothing."""
+        return
+
+    def log_training(self, name: str, params: dict[str, Any], lines: Sequence[Mapping[str, Any]]) -> int:
+        """Log what is new in a training log, a line with a "step" a row; how many lines that were. Default: none."""
+        return 0

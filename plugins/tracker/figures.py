@@ -1,18 +1,22 @@
 """What trackers log of a case: flat parameters, flat figures, attempts as steps. Knows the run folder only.
 
-Names are joined with "_" ("paper_ice", "seconds_road"); only finite numbers are figures, truth values are
-0 or 1.
+Figures are joined with "_" ("paper_ice", "seconds_road"), so that a search needs no quotes; only finite numbers are
+figures, truth values are 0 or 1. Parameters are called as the YAML and `--set` call them ("decoder",
+"decoder.alpha"). docs/mlflow.md lists the names.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 STATUSES = ("generated", "refused", "exhausted", "failed")
+OF_ONE_CASE = ("attempt_", "grounding_", "system/")
+"""Figures that have no mean: steps of attempts, fields that only some specs have, the machine."""
 
 
 def flat(tree: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -26,6 +30,29 @@ def flat(tree: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         return
     for key, value in items:
         yield from flat(value, f"{name}_{key}" if name else str(key))
+
+
+def parameters(params: Mapping[str, Any]) -> dict[str, str]:
+    """A config's values: a plugin's name under its kind, its fields behind a dot; lists of plugins by their names."""
+    named = (item for key, entry in params.items() for item in _of(key, entry))
+    return {name: "none" if value is None else str(value) for name, value in named}
+
+
+def _of(key: str, entry: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(entry, Mapping):
+        if "name" in entry:
+            yield key, entry["name"]
+        for field, value in entry.items():
+            if field != "name":
+                yield from _of(f"{key}.{field}", value)
+    elif isinstance(entry, (list, tuple)):
+        plugins = [item for item in entry if isinstance(item, Mapping) and "name" in item]
+        yield key, ",".join(str(item["name"] if item in plugins else item) for item in entry)
+        for item in plugins:
+            fields = {field: value for field, value in item.items() if field != "name"}
+            yield from _of(f"{key}.{item['name']}", fields)
+    else:
+        yield key, entry
 
 
 def numbers(tree: Any) -> dict[str, float]:
@@ -62,6 +89,14 @@ def attempt_figures(case_dir: Path) -> Iterator[tuple[int, dict[str, float]]]:
         figures = {"findings": sum(f.get("severity") == "repair" for f in findings)} | numbers(about)
         figures.pop("number", None)
         yield int(number), {f"{stage}_{name}": float(value) for name, value in figures.items()}
+
+
+def means(cases: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Every figure's mean over the cases that have it, under its own name, and how many cases ended how."""
+    names = {name for figures in cases for name in figures if not name.startswith(OF_ONE_CASE)}
+    found = {name: fmean(figures[name] for figures in cases if name in figures) for name in sorted(names)}
+    counts = {f"cases_{status}": float(sum(c.get(status, 0.0) for c in cases)) for status in STATUSES}
+    return found | counts | {"cases": float(len(cases))}
 
 
 def read_json(path: Path) -> Any:

@@ -1,207 +1,166 @@
-"""MLflow on sqlite: a parent run per config, a child run per case, a span per model call.
+"""MLflow: a parent run an arm, a child run a case, a span a model call, and training logs.
 
-Uses the client with explicit run ids (the fluent API's active run is thread-local and a re-entered parent
-would be marked finished). Knows the run folder and result.json; no plugin of another kind.
+Knows the run folder and result.json; no plugin of another kind. docs/mlflow.md says what is called how.
 """
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import json
-import logging
-import re
-import sqlite3
 import time
-from functools import cached_property
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field, PrivateAttr
 
-from plugins.tracker.figures import attempt_figures, case_figures, flat
-from sgcad_core import settings
-from sgcad_core.errors import ConfigError
+from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
+from plugins.tracker.mlflow_store import CONFIG, Parent, Store, store_of
+from sgcad_core.arm import Arm
 from sgcad_core.interfaces import Tracker
 from sgcad_core.records import Generation, Query
 
-MAX_VALUE = 500
-"""Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
-MAX_BATCH = 1000
-"""MLflow's limit of metrics a batch."""
+UPDATE_S, UPDATE_SHARE = 10.0, 0.02
+"""Means are brought up to date this often at most, and in at most this share of the time."""
 
 
 class MlflowTracker(Tracker):
     """Logs to a sqlite database; look at it with `mlflow ui --backend-store-uri sqlite:///<database>`."""
 
     database: Path | None = Field(None, description="sqlite file; default: mlflow.db in the output folder")
+    uri: str = Field("", description="a server (http://...) or database (postgresql://...) instead of the sqlite file")
+    files_at: str = Field("", description="where a new experiment keeps files; default: beside the sqlite file")
     experiment: str = Field("sgcad", min_length=1)
     artifacts: bool = Field(True, description="copy every file of the case into the run")
-    _stores: dict[Path, _Store] = PrivateAttr(default_factory=dict)
-    _runs: dict[tuple[str, str], tuple[_Store, str]] = PrivateAttr(default_factory=dict)
+    system_metrics_s: float = Field(10.0, ge=0, description="seconds between samples of the machine; 0: none")
+    _runs: dict[tuple[str, str], tuple[Store, str]] = PrivateAttr(default_factory=dict)
+    _begun: dict[str, Parent] = PrivateAttr(default_factory=dict)
+
+    def begin(self, arm: Arm) -> None:
+        """Open the arm's parent run, with the data set, plugin versions, commit and hardware."""
+        parent = self._store(Path(arm.out)).parent(arm.config, parameters(arm.params))
+        about = {f"plugin.{name}": value for name, value in arm.plugins.items()}
+        about |= {f"hardware.{name}": _told(value) for name, value in arm.hardware.items()}
+        shared = {"sgcad.dataset": arm.dataset.digest[:16]}
+        shared |= {"mlflow.source.git.commit": arm.git_commit} if arm.git_commit else {}
+        parent.begin(about, shared, _dataset(arm))
+        self._begun[arm.config] = parent
 
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
         """One child run: parameters, attempts as steps, final figures, files. Raises ConfigError on a bad database."""
-        store = self._store(case_dir.parent.parent)
-        run = store.case_run(config_name, params, case_dir.name, result)
+        store, given = self._store(case_dir.parent.parent), parameters(params)
+        parent = store.parent(config_name, given)
+        if config_name in self._begun:
+            parent.watch(self.system_metrics_s)
+        tags = {CONFIG: config_name, "sgcad.status": result["status"]}
+        made = parent.new_case(case_dir.name, tags, time.time() - sum((result.get("seconds") or {}).values()))
+        run = str(made.info.run_id)
         self._runs[config_name, case_dir.name] = (store, run)
-        store.log(run, params, case_dir, result)
+        # While the run is empty: MLflow reads all that it has to say how it ended.
+        store.client.set_terminated(run, "FAILED" if result["status"] == "failed" else "FINISHED")
+        store.log(run, _steps(case_dir, result), given)
         if self.artifacts:
-            store.client.log_artifacts(run, str(case_dir))
-        failed = result["status"] == "failed"
-        store.client.set_terminated(run, "FAILED" if failed else "FINISHED")
+            _repository(made.info.artifact_uri, store.uri).log_artifacts(str(case_dir))
+        if config_name in self._begun and time.monotonic() > parent.next_update:
+            _update(parent)
 
     def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
         """One span in the case's run; call it after `log_case`."""
         if (config_name, case) in self._runs:
             store, run = self._runs[config_name, case]
-            store.span(run, case, query, generation)
+            _span(store, run, case, query, generation)
 
-    def _store(self, out: Path) -> _Store:
-        database = (self.database or out / "mlflow.db").resolve()
-        if database not in self._stores:
-            self._stores[database] = _Store(database, self.experiment)
-        return self._stores[database]
-
-
-class _Store:
-    """One database: its client, experiment and parent runs."""
-
-    def __init__(self, database: Path, experiment: str) -> None:
-        self.database = database
-        self.experiment = experiment
-        self.parents: dict[str, str] = {}
-
-    @cached_property
-    def client(self) -> Any:
-        """MlflowClient on the database, which is made if there is none."""
-        settings.quiet_libraries()
-        import mlflow
-        from sqlalchemy import Engine, event
-        from sqlalchemy.exc import SQLAlchemyError
-
-        if not event.contains(Engine, "connect", _fast_commits):
-            event.listen(Engine, "connect", _fast_commits)
-        logging.getLogger("mlflow").setLevel(logging.WARNING)
-        uri = f"sqlite:///{self.database}"
-        try:
-            self.database.parent.mkdir(parents=True, exist_ok=True)
-            mlflow.set_tracking_uri(uri)
-            client = mlflow.MlflowClient(tracking_uri=uri)
-            client.get_experiment("0")
-        except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
-            raise ConfigError(
-                f"{self.database}: cannot be used as MLflow's database ({_first_line(fault)}); move it away, or set "
-                "tracker.database=<file>, or tracker=jsonl"
-            ) from fault
-        return client
-
-    @cached_property
-    def experiment_id(self) -> str:
-        """The experiment's id; artifacts lie beside the database, named by an absolute path."""
+    def end(self, arm: Arm, finished: bool) -> None:
+        """Final means from all cases that the parent has, whichever process logged them; the parent is closed."""
+        parent = self._begun.pop(arm.config, None)
+        if parent is None:
+            return
         import mlflow
 
-        found = self.client.get_experiment_by_name(self.experiment)
-        if found is not None:
-            return str(found.experiment_id)
-        place = (self.database.parent / "mlflow-artifacts" / self.experiment).as_uri()
-        try:
-            return str(self.client.create_experiment(self.experiment, artifact_location=place))
-        except mlflow.MlflowException:  # another process was faster
-            found = self.client.get_experiment_by_name(self.experiment)
-            if found is None:
-                raise
-            return str(found.experiment_id)
+        if finished:
+            mlflow.flush_trace_async_logging()
+            _update(parent)
+        parent.end(finished)
 
-    def case_run(self, config_name: str, params: dict[str, Any], case: str, result: dict[str, Any]) -> str:
-        """A new child run; it starts when the case did."""
-        tags = {
-            "mlflow.parentRunId": self.parent(config_name, params),
-            "sgcad.config": config_name,
-            "sgcad.case": case,
-            "sgcad.status": result["status"],
-        }
-        started = int((time.time() - sum((result.get("seconds") or {}).values())) * 1000)
-        made = self.client.create_run(self.experiment_id, run_name=case, tags=tags, start_time=started)
-        return str(made.info.run_id)
+    def log_training(self, name: str, params: dict[str, Any], lines: Sequence[Mapping[str, Any]]) -> int:
+        """One run a training, one step a line that has a "step"; lines that are there already are passed over."""
+        from plugins.tracker.mlflow_training import log_training
 
-    def parent(self, config_name: str, params: dict[str, Any]) -> str:
-        """The parent run of a config with these parameters; found again when a batch is resumed."""
-        digest = hashlib.sha256(json.dumps(params, sort_keys=True, default=str).encode()).hexdigest()[:16]
-        key = f"{config_name}-{digest}"
-        if key not in self.parents:
-            found = self.client.search_runs([self.experiment_id], f"tags.`sgcad.batch` = '{key}'", max_results=1)
-            self.parents[key] = found[0].info.run_id if found else self._new_parent(config_name, params, key)
-        return self.parents[key]
+        return log_training(self._store(Path()), name, parameters(params), lines)
 
-    def _new_parent(self, config_name: str, params: dict[str, Any], key: str) -> str:
-        tags = {"sgcad.batch": key, "sgcad.config": config_name}
-        run = str(self.client.create_run(self.experiment_id, run_name=config_name, tags=tags).info.run_id)
-        self.client.log_batch(run, params=_params(params))
-        self.client.set_terminated(run)
-        return run
-
-    def log(self, run: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
-        """Parameters, attempts as steps and final figures, in as few transactions as MLflow allows."""
-        from mlflow.entities import Metric
-
-        now = int(time.time() * 1000)
-        metrics = [Metric(_plain(name), value, now, 0) for name, value in case_figures(case_dir, result).items()]
-        for step, figures in attempt_figures(case_dir):
-            metrics += [Metric(_plain(f"attempt_{name}"), value, now, step) for name, value in figures.items()]
-        self.client.log_batch(run, metrics=metrics[:MAX_BATCH], params=_params(params))
-        for start in range(MAX_BATCH, len(metrics), MAX_BATCH):
-            self.client.log_batch(run, metrics=metrics[start : start + MAX_BATCH])
-
-    def span(self, run: str, case: str, query: Query, generation: Generation) -> None:
-        """One model call as a trace that points to its run, as long as the call took."""
-        import mlflow
-
-        end = time.time_ns()
-        span = mlflow.start_span_no_context(
-            f"{case}[{query.attempt}]",
-            span_type="LLM",
-            inputs={"task": query.task, "passages": [p.id for p in query.passages], "repair": query.repair},
-            attributes={"attempt": query.attempt, "finish": generation.finish, **_call_figures(generation)},
-            metadata={"mlflow.sourceRun": run},
-            experiment_id=self.experiment_id,
-            start_time_ns=end - int(generation.seconds * 1e9),
-        )
-        span.end(outputs={"text": generation.text, "grounding": dict(generation.grounding)}, end_time_ns=end)
+    def _store(self, out: Path) -> Store:
+        address = self.uri or f"sqlite:///{(self.database or out / 'mlflow.db').resolve()}"
+        return store_of(address, self.experiment, self.files_at)
 
 
-def _fast_commits(connection: Any, record: Any) -> None:
-    """One write a commit instead of two flushes of the disk: 7 commits a case are 10 to 100 ms otherwise.
-
-    With a write-ahead log, "normal" loses at most the last commits to a power cut and never corrupts.
-    """
-    if not isinstance(connection, sqlite3.Connection):
-        return
-    with contextlib.suppress(sqlite3.DatabaseError):  # no database: MLflow says so, here it would try for minutes
-        mode = connection.execute("PRAGMA journal_mode=WAL").fetchone()
-        if mode and str(mode[0]).lower() == "wal":
-            connection.execute("PRAGMA synchronous=NORMAL")
+def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, float]]:
+    """Final figures and the machine's at step 0, attempts at theirs."""
+    steps = {0: case_figures(case_dir, result) | _machine()}
+    for step, figures in attempt_figures(case_dir):
+        steps.setdefault(step, {}).update({f"attempt_{name}": value for name, value in figures.items()})
+    return steps
 
 
-def _call_figures(generation: Generation) -> dict[str, Any]:
+def _machine() -> dict[str, float]:
+    """The machine as a case ended: processor use since the case before, memory in use, this process' memory."""
+    import psutil  # type: ignore[import-untyped]
+
+    memory = psutil.virtual_memory()
     return {
+        "system/cpu_utilization_percentage": psutil.cpu_percent(),
+        "system/system_memory_usage_percentage": memory.percent,
+        "system/process_memory_megabytes": psutil.Process().memory_info().rss / 1e6,
+    }
+
+
+def _update(parent: Parent) -> None:
+    """Read the cases' figures and log their means; the more it costs, the rarer it is done."""
+    started = time.monotonic()
+    parent.log_means(means(parent.figures()))
+    now = time.monotonic()
+    parent.next_update = now + max(UPDATE_S, (now - started) / UPDATE_SHARE)
+
+
+def _repository(address: str, uri: str) -> Any:
+    """Where a run's files go; asking the client instead would read the whole run again."""
+    from mlflow.store.artifact.artifact_repository_registry import get_artifact_repository
+
+    return get_artifact_repository(address, tracking_uri=uri)
+
+
+def _dataset(arm: Arm) -> dict[str, str]:
+    import json
+
+    return {
+        "name": arm.dataset.name,
+        "digest": arm.dataset.digest[:16],
+        "source_type": "local",
+        "source": json.dumps({"uri": arm.dataset.source}),
+        "profile": json.dumps({"cases": arm.dataset.cases, "sha256": arm.dataset.digest}),
+    }
+
+
+def _told(value: Any) -> str:
+    return ", ".join(map(str, value)) or "none" if isinstance(value, (list, tuple)) else str(value)
+
+
+def _span(store: Store, run: str, case: str, query: Query, generation: Generation) -> None:
+    """One model call as a trace that points to its run, as long as the call took."""
+    import mlflow
+
+    mlflow.set_tracking_uri(store.uri)  # spans go where the fluent API points
+    end = time.time_ns()
+    figures = {
         "prompt_tokens": generation.prompt_tokens,
         "answer_tokens": len(generation.tokens),
         "model_calls": generation.model_calls,
         "seconds": generation.seconds,
     }
-
-
-def _params(params: dict[str, Any]) -> list[Any]:
-    from mlflow.entities import Param
-
-    return [Param(_plain(name), str(value)[:MAX_VALUE]) for name, value in list(flat(params))[:100]]
-
-
-def _plain(name: str) -> str:
-    """A name as MLflow takes it: at most 250 letters, digits, "_", "-", "."."""
-    return re.sub(r"[^\w.-]", "_", name, flags=re.ASCII).strip(".")[:250] or "_"
-
-
-def _first_line(fault: Exception) -> str:
-    return (str(fault).strip().splitlines() or [type(fault).__name__])[0][:200]
+    span = mlflow.start_span_no_context(
+        f"{case}[{query.attempt}]",
+        span_type="LLM",
+        inputs={"task": query.task, "passages": [p.id for p in query.passages], "repair": query.repair},
+        attributes={"stage": query.stage, "attempt": query.attempt, "finish": generation.finish, **figures},
+        metadata={"mlflow.sourceRun": run},
+        experiment_id=store.experiment_id,
+        start_time_ns=end - int(generation.seconds * 1e9),
+    )
+    span.end(outputs={"text": generation.text, "grounding": dict(generation.grounding)}, end_time_ns=end)

@@ -1,19 +1,14 @@
-"""Trackers log what lies in a case's folder, each case once, from several processes at a time."""
+"""What trackers log of a case, and the trackers that need no database."""
 
 import json
 import math
-import subprocess
-import sys
 
 import pytest
 
-from plugins.tracker.figures import attempt_figures, case_figures, flat, numbers
+from plugins.tracker.figures import attempt_figures, case_figures, flat, means, numbers, parameters
 from plugins.tracker.jsonl import Jsonl
-from plugins.tracker.mlflow import MlflowTracker
 from plugins.tracker.none import NoTracker
-from sgcad_core.errors import ConfigError
 from sgcad_core.records import Generation, Query
-from sgcad_core.settings import ROOT
 
 RESULT = {
     "case": "c1",
@@ -98,61 +93,24 @@ def test_jsonl_lies_beside_the_configs_by_default(case_dir):
     assert (case_dir.parent.parent / "cases.jsonl").is_file()
 
 
-# ------------------------------------------------------------------ MLflow
-def runs_of(database):
-    import mlflow
-
-    client = mlflow.MlflowClient(tracking_uri=f"sqlite:///{database}")
-    experiment = client.get_experiment_by_name("sgcad")
-    return client, client.search_runs([experiment.experiment_id], order_by=["attributes.start_time ASC"])
-
-
-@pytest.mark.slow
-def test_mlflow_has_a_parent_a_config_and_a_child_a_case(case_dir):
-    import mlflow
-
-    tracker = MlflowTracker()
-    tracker.log_case("kit", PARAMS, case_dir, RESULT)
-    tracker.log_generation("kit", "c1", Query(task="draw", attempt=2, stage="road"), GENERATION)
-    MlflowTracker().log_case("kit", PARAMS, case_dir, RESULT | {"status": "failed"})
-    client, runs = runs_of(case_dir.parent.parent / "mlflow.db")
-    (parent,) = [r for r in runs if "mlflow.parentRunId" not in r.data.tags]
-    children = [r for r in runs if r.data.tags.get("mlflow.parentRunId") == parent.info.run_id]
-    assert [(r.info.run_name, r.info.status) for r in children] == [("c1", "FINISHED"), ("c1", "FAILED")]
-    child = children[0]
-    assert child.data.params["road_writer_name"] == "template"
-    assert child.data.metrics["collision_realised"] == 1.0
-    history = client.get_metric_history(child.info.run_id, "attempt_road_findings")
-    assert [(m.step, m.value) for m in history] == [(1, 2.0), (2, 0.0)]
-    assert {f.path for f in client.list_artifacts(child.info.run_id)} >= {"player.html", "metrics.json", "attempts"}
-    mlflow.flush_trace_async_logging()
-    (trace,) = client.search_traces(locations=[child.info.experiment_id])
-    (span,) = trace.data.spans
-    assert span.name == "c1[2]"
-    assert span.inputs["task"] == "draw"
-    assert span.outputs["grounding"] == {"$.legs": 0.75}
-    assert span.attributes["attempt"] == 2
-    assert trace.info.trace_metadata["mlflow.sourceRun"] == child.info.run_id
-    assert (span.end_time_ns - span.start_time_ns) / 1e9 == pytest.approx(1.5, abs=0.01)
+def test_parameters_are_called_as_the_yaml_calls_them():
+    params = {"seed": 42, "decoder": {"name": "cad", "alpha": 0.7}, "road_writer": "template", "backbone": None}
+    params["validators"] = [{"name": "topology", "most": 3}, "agreement"]
+    assert parameters(params) == {
+        "seed": "42",
+        "decoder": "cad",
+        "decoder.alpha": "0.7",
+        "road_writer": "template",
+        "backbone": "none",
+        "validators": "topology,agreement",
+        "validators.topology.most": "3",
+    }
 
 
-@pytest.mark.slow
-def test_four_processes_log_to_one_database(case_dir):
-    code = (
-        "import json, sys; from pathlib import Path; from plugins.tracker.mlflow import MlflowTracker\n"
-        "tracker = MlflowTracker(); folder = Path(sys.argv[1])\n"
-        "for _ in range(2): tracker.log_case('kit', {'seed': 1}, folder, json.loads(sys.argv[2]))\n"
-    )
-    MlflowTracker(artifacts=False).log_case("kit", PARAMS, case_dir, RESULT)
-    command = [sys.executable, "-c", code, str(case_dir), json.dumps(RESULT)]
-    started = [subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) for _ in range(4)]
-    ended = [(p.communicate()[1], p.returncode) for p in started]
-    assert [code for _, code in ended] == [0] * 4, ended
-    _, runs = runs_of(case_dir.parent.parent / "mlflow.db")
-    assert sum("mlflow.parentRunId" in r.data.tags for r in runs) == 9
-
-
-def test_a_database_that_is_none_is_refused_with_a_remedy(case_dir, tmp_path):
-    (tmp_path / "no.db").write_text("this is no database, and it is long enough not to look empty " * 20)
-    with pytest.raises(ConfigError, match=r"no.db: cannot be used as MLflow's database .*tracker=jsonl"):
-        MlflowTracker(database=tmp_path / "no.db").log_case("kit", PARAMS, case_dir, RESULT)
+def test_means_are_over_the_cases_that_have_the_figure_and_keep_its_name():
+    generated = {"generated": 1.0, "refused": 0.0, "paper_ice": 0.5, "attempt_road_findings": 3.0}
+    found = means([generated, generated | {"paper_ice": 1.0}, {"generated": 0.0, "refused": 1.0}])
+    assert found["paper_ice"] == 0.75
+    assert found["generated"] == pytest.approx(2 / 3)
+    assert (found["cases"], found["cases_generated"], found["cases_refused"], found["cases_failed"]) == (3, 2, 1, 0)
+    assert "attempt_road_findings" not in found

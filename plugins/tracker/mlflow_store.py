@@ -1,0 +1,249 @@
+"""One MLflow experiment: its client, and the parent run of every arm with the runs of its cases.
+
+Uses the client with explicit run ids (the fluent API's active run is thread-local and a re-entered parent would be
+marked finished). A case has one run a parent: logged again, it takes the place of the one before. Knows MLflow; no
+run folder and no config.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import logging
+import re
+import sqlite3
+import time
+from collections.abc import Iterable, Mapping
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+
+MAX_VALUE = 500
+"""Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
+MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 1000
+"""MLflow's limits of a batch, and of a page of runs."""
+LEVEL, CASE, CONFIG, BATCH, PARENT = "sgcad.level", "sgcad.case", "sgcad.config", "sgcad.batch", "mlflow.parentRunId"
+"""Tags that runs are found by; the last one is what MLflow's pages nest runs by."""
+
+
+@cache
+def store_of(uri: str, experiment: str, artifacts: str) -> Store:
+    """The experiment's store, one a process: arms of a study share it."""
+    return Store(uri, experiment, artifacts)
+
+
+class Store:
+    """One experiment behind one address: sqlite:///<file>, postgresql://..., http://...
+
+    `artifacts` is the address where files go; empty: beside a sqlite file, else where the server keeps them.
+    """
+
+    def __init__(self, uri: str, experiment: str, artifacts: str = "") -> None:
+        self.uri = uri
+        self.experiment = experiment
+        self.artifacts = artifacts
+        self.parents: dict[str, Parent] = {}
+
+    @cached_property
+    def client(self) -> Any:
+        """MlflowClient on the address; a sqlite file is made if there is none. Raises ConfigError."""
+        settings.quiet_libraries()
+        import mlflow
+        from sqlalchemy import Engine, event
+        from sqlalchemy.exc import SQLAlchemyError
+
+        if not event.contains(Engine, "connect", _fast_commits):
+            event.listen(Engine, "connect", _fast_commits)
+        logging.getLogger("mlflow").setLevel(logging.WARNING)
+        try:
+            if self._file:
+                self._file.parent.mkdir(parents=True, exist_ok=True)
+            client = mlflow.MlflowClient(tracking_uri=self.uri)
+            client.get_experiment("0")
+        except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
+            raise ConfigError(
+                f"{self._file or _no_password(self.uri)}: cannot be used as MLflow's database ({_first_line(fault)}); "
+                "move it away, or set tracker.database=<file>, or tracker=jsonl"
+            ) from fault
+        return client
+
+    @property
+    def _file(self) -> Path | None:
+        return Path(self.uri.removeprefix("sqlite:///")) if self.uri.startswith("sqlite:///") else None
+
+    @cached_property
+    def experiment_id(self) -> str:
+        """The experiment's id; artifacts beside a sqlite database are named by an absolute path."""
+        import mlflow
+
+        if found := self.client.get_experiment_by_name(self.experiment):
+            return str(found.experiment_id)
+        place = self.artifacts
+        if self._file and not place:
+            place = (self._file.parent / "mlflow-artifacts" / self.experiment).as_uri()
+        try:
+            return str(self.client.create_experiment(self.experiment, artifact_location=place or None))
+        except mlflow.MlflowException:  # another process was faster
+            found = self.client.get_experiment_by_name(self.experiment)
+            if found is None:
+                raise
+            return str(found.experiment_id)
+
+    # -------------------------------------------------------------- runs
+    def parent(self, config: str, params: Mapping[str, str]) -> Parent:
+        """The parent run of a config with these parameters; found again when a batch is resumed."""
+        key = hashlib.sha256(json.dumps([config, params], sort_keys=True).encode()).hexdigest()[:16]
+        if key not in self.parents:
+            self.parents[key] = Parent(self, self._found_or_made(config, key, params))
+        return self.parents[key]
+
+    def _found_or_made(self, config: str, key: str, params: Mapping[str, str]) -> str:
+        """The oldest of the key: of processes that begin together, one makes the run that stays."""
+        if found := self.run_tagged(BATCH, key):
+            return found
+        tags = {BATCH: key, CONFIG: config, LEVEL: "config", **source_tags()}
+        made = str(self.client.create_run(self.experiment_id, run_name=config, tags=tags).info.run_id)
+        oldest = self.run_tagged(BATCH, key) or made
+        if oldest != made:
+            self.client.delete_run(made)
+            return oldest
+        self.log(made, {}, params)
+        self.client.set_terminated(made)
+        return made
+
+    def run_tagged(self, tag: str, value: str) -> str | None:
+        """The oldest run with a tag's value."""
+        order = ["attributes.start_time ASC", "attributes.run_id ASC"]
+        text = f"tags.`{tag}` = '{value}'"
+        found = self.client.search_runs([self.experiment_id], text, max_results=1, order_by=order)
+        return str(found[0].info.run_id) if found else None
+
+    def log(self, run: str, steps: Mapping[int, Mapping[str, float]], params: Mapping[str, str] | None = None) -> None:
+        """Figures by step and parameters, in as few transactions as MLflow allows."""
+        from mlflow.entities import Metric, Param
+
+        now = int(time.time() * 1000)
+        metrics = [Metric(plain(k), v, now, step) for step, figures in steps.items() for k, v in figures.items()]
+        entries = [Param(plain(name), value[:MAX_VALUE]) for name, value in (params or {}).items()]
+        while metrics or entries:
+            part = entries[:MAX_PARAMS]
+            room = MAX_METRICS - len(part)
+            self.client.log_batch(run, metrics=metrics[:room], params=part)
+            metrics, entries = metrics[room:], entries[MAX_PARAMS:]
+
+
+class Parent:
+    """The run of one arm: its cases' runs, and their means under the cases' own names."""
+
+    def __init__(self, store: Store, run: str) -> None:
+        self.store = store
+        self.run = run
+        self.tags: dict[str, str] = {}
+        self.next_update = 0.0
+        self._monitor: Any = None
+        self.started = store.client.get_run(run).info.start_time / 1000
+
+    @cached_property
+    def runs(self) -> dict[str, str]:
+        """Run ids by case; those of an earlier batch are there from the start."""
+        return {case: str(run.info.run_id) for case, run in self._newest().items()}
+
+    def _newest(self) -> dict[str, Any]:
+        return {run.data.tags.get(CASE, ""): run for run in self._children()}
+
+    def _children(self) -> Iterable[Any]:
+        """All runs of cases, oldest first."""
+        token: str | None = None
+        while True:
+            page = self.store.client.search_runs(
+                [self.store.experiment_id],
+                f"tags.`{PARENT}` = '{self.run}'",
+                max_results=MAX_RUNS,
+                order_by=["attributes.start_time ASC"],
+                page_token=token,
+            )
+            yield from page
+            token = page.token
+            if not token:
+                return
+
+    def new_case(self, case: str, tags: Mapping[str, str], started_s: float) -> Any:
+        """A fresh run of a case, which began at a Unix time; the one before, if any, goes to MLflow's bin."""
+        before = self.runs.get(case)
+        about = {PARENT: self.run, LEVEL: "case", CASE: case, **source_tags(), **self.tags, **tags}
+        client = self.store.client
+        made = client.create_run(self.store.experiment_id, run_name=case, tags=about, start_time=int(started_s * 1000))
+        if before:
+            client.delete_run(before)
+        self.runs[case] = str(made.info.run_id)
+        return made
+
+    def begin(self, about: Mapping[str, str], shared: Mapping[str, str], dataset: Mapping[str, str]) -> None:
+        """Running from now on, with tags, those shared with the cases' runs, and the data set."""
+        from mlflow.entities import Dataset, DatasetInput, InputTag, RunTag
+
+        client, self.tags = self.store.client, dict(shared)
+        client.update_run(self.run, status="RUNNING")
+        tags = [RunTag(plain(name), value[: 10 * MAX_VALUE]) for name, value in {**about, **shared}.items()]
+        client.log_batch(self.run, tags=tags)
+        client.log_inputs(self.run, [DatasetInput(Dataset(**dataset), [InputTag("mlflow.data.context", "evaluation")])])
+
+    def watch(self, interval_s: float) -> None:
+        """Log MLflow's own system metrics into the parent until `end`; 0: none."""
+        if self._monitor is None and interval_s > 0:
+            from mlflow.system_metrics.system_metrics_monitor import SystemMetricsMonitor
+
+            self._monitor = SystemMetricsMonitor(
+                self.run, sampling_interval=interval_s, resume_logging=True, tracking_uri=self.store.uri
+            )
+            self._monitor.start()
+
+    def log_means(self, figures: Mapping[str, float]) -> None:
+        """The arm's figures at this time; the step is seconds since the arm's very first begin."""
+        self.store.log(self.run, {max(0, int(time.time() - self.started)): figures})
+
+    def figures(self) -> list[dict[str, float]]:
+        """Last figures of every case."""
+        return [run.data.metrics for run in self._newest().values()]
+
+    def end(self, finished: bool) -> None:
+        """Stop watching; FINISHED, or KILLED after an interruption."""
+        if self._monitor is not None:
+            self._monitor.finish()
+            self._monitor = None
+        self.store.client.set_terminated(self.run, "FINISHED" if finished else "KILLED")
+
+
+def source_tags() -> dict[str, str]:
+    """What MLflow's pages show as a run's source."""
+    return {"mlflow.source.name": "sgcad", "mlflow.source.type": "LOCAL"}
+
+
+def plain(name: str) -> str:
+    """A name as MLflow takes it: at most 250 letters, digits, "_", "-", ".", "/"."""
+    return re.sub(r"[^\w./-]", "_", name, flags=re.ASCII).strip("./")[:250] or "_"
+
+
+def _fast_commits(connection: Any, record: Any) -> None:
+    """One write a commit instead of two flushes of the disk: 7 commits a case are 10 to 100 ms otherwise.
+
+    With a write-ahead log, "normal" loses at most the last commits to a power cut and never corrupts.
+    """
+    if not isinstance(connection, sqlite3.Connection):
+        return
+    with contextlib.suppress(sqlite3.DatabaseError):  # no database: MLflow says so, here it would try for minutes
+        mode = connection.execute("PRAGMA journal_mode=WAL").fetchone()
+        if mode and str(mode[0]).lower() == "wal":
+            connection.execute("PRAGMA synchronous=NORMAL")
+
+
+def _no_password(uri: str) -> str:
+    return re.sub(r"//[^/@]*@", "//", uri)
+
+
+def _first_line(fault: Exception) -> str:
+    return (str(fault).strip().splitlines() or [type(fault).__name__])[0][:200]

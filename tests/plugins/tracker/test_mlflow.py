@@ -1,0 +1,254 @@
+"""MLflow: a parent an arm with means, a run a case, resumed without loss, from several processes at a time."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from functools import partial
+from itertools import count
+
+import pytest
+
+from plugins.tracker.mlflow import MlflowTracker
+from plugins.tracker.mlflow_store import store_of
+from sgcad_core.arm import Arm, Dataset
+from sgcad_core.errors import ConfigError
+from sgcad_core.records import Generation, Query
+from sgcad_core.settings import ROOT
+
+pytestmark = pytest.mark.slow
+
+RESULT = {
+    "status": "generated",
+    "attempts": {"road": 2, "scenario": 1},
+    "collision": {"declared": {"striker": "V1"}, "observed": {"t_s": 4.2}, "realised": True},
+    "seconds": {"read": 0.1, "road": 1.4},
+}
+REFUSED = {"status": "refused", "seconds": {"read": 0.1}, "collision": {"realised": False}}
+PARAMS = {"seed": 42, "decoder": {"name": "cad", "alpha": 0.7}, "validators": [{"name": "topology"}]}
+GENERATION = Generation(text="{}", seconds=1.5, prompt_tokens=11, model_calls=2, grounding={"$.legs": 0.75})
+numbers = count()
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    """One output folder with cases c1 to c4; making its database costs seconds, so it is shared."""
+    folder = tmp_path_factory.mktemp("out")
+    for case in ("c1", "c2", "c3", "c4"):
+        for number, findings in ((1, 2), (2, 0)):
+            place = folder / "kit" / case / "attempts" / f"road-{number:02d}"
+            place.mkdir(parents=True)
+            (place / "findings.json").write_text(json.dumps([{"severity": "repair"}] * findings))
+            (place / "attempt.json").write_text(json.dumps({"number": number, "seconds": 0.5 * number}))
+        (folder / "kit" / case / "player.html").write_text("<html>")
+    return folder
+
+
+@pytest.fixture
+def tracker(out):
+    """Makes trackers of an experiment of the test's own, each as a process of its own would have it."""
+    experiment = f"study/test-{os.getpid()}-{next(numbers)}"
+
+    def make(**fields):
+        store_of.cache_clear()
+        return MlflowTracker(
+            **{"database": out / "mlflow.db", "experiment": experiment, "system_metrics_s": 0, **fields}
+        )
+
+    return make
+
+
+def arm(out, **changes):
+    dataset = Dataset(name="cases", digest="ab" * 32, source="/cases", cases=4)
+    plugins = {"decoder": "plugins.decoder.cad:Cad 1", "retriever": "plugins.retriever.lancedb:LanceDB 1 kb-v1-aa"}
+    fields = {"config": "kit", "params": PARAMS, "out": str(out), "dataset": dataset, "plugins": plugins}
+    fields |= {"git_commit": "c0ffee", "hardware": {"processor": "a CPU", "cores": 2, "gpus": []}}
+    return Arm(**fields | changes)
+
+
+def runs_of(tracker, text=""):
+    """(client, parents, children by case), found by a search as a person would write it."""
+    store = tracker._store(None)
+    runs = store.client.search_runs([store.experiment_id], text, order_by=["attributes.start_time ASC"])
+    parents = [r for r in runs if "mlflow.parentRunId" not in r.data.tags]
+    return store.client, parents, {r.info.run_name: r for r in runs if "mlflow.parentRunId" in r.data.tags}
+
+
+def log(tracker, out, case, result=RESULT):
+    tracker.log_case("kit", PARAMS, out / "kit" / case, result)
+
+
+def test_an_arm_has_a_parent_with_its_data_plugins_commit_and_hardware_and_the_means_of_its_cases(out, tracker):
+    made = tracker()
+    made.begin(arm(out))
+    (_, (parent,), _) = runs_of(made)
+    assert parent.info.status == "RUNNING"
+    log(made, out, "c1")
+    log(made, out, "c2", REFUSED)
+    log(made, out, "c3", {"status": "failed"})
+    made.end(arm(out), finished=True)
+    client, (parent,), children = runs_of(made)
+    assert parent.info.status == "FINISHED"
+    assert {name: run.info.status for name, run in children.items()} == {
+        "c1": "FINISHED", "c2": "FINISHED", "c3": "FAILED"
+    }  # fmt: skip
+    assert {run.data.tags["mlflow.parentRunId"] for run in children.values()} == {parent.info.run_id}
+    assert parent.data.metrics["collision_realised"] == pytest.approx(1 / 3)
+    assert parent.data.metrics["attempts_road"] == 2.0
+    assert [parent.data.metrics[f"cases{s}"] for s in ("", "_generated", "_refused", "_failed")] == [3, 1, 1, 1]
+    ((used,),) = [[i.dataset for i in parent.inputs.dataset_inputs]]
+    assert (used.name, used.digest, json.loads(used.profile)["cases"]) == ("cases", "ab" * 8, 4)
+    tags = parent.data.tags
+    assert tags["plugin.retriever"].endswith("kb-v1-aa")
+    assert (tags["hardware.processor"], tags["hardware.gpus"]) == ("a CPU", "none")
+    assert {r.data.tags["mlflow.source.git.commit"] for r in (parent, *children.values())} == {"c0ffee"}
+    history = client.get_metric_history(children["c1"].info.run_id, "attempt_road_findings")
+    assert [(m.step, m.value) for m in history] == [(1, 2.0), (2, 0.0)]
+    assert {f.path for f in client.list_artifacts(children["c1"].info.run_id)} == {"player.html", "attempts"}
+
+
+def test_search_needs_no_renaming(out, tracker):
+    made = tracker()
+    log(made, out, "c1")
+    log(made, out, "c2", REFUSED)
+    for text in (
+        "metrics.collision_realised > 0.9",
+        "params.decoder = 'cad' and params.`decoder.alpha` = '0.7' and metrics.generated = 1",
+        "tags.`sgcad.level` = 'case' and tags.`sgcad.status` = 'generated'",
+    ):
+        assert list(runs_of(made, text)[2]) == ["c1"], text
+
+
+def test_a_resumed_arm_goes_on_in_its_run_and_a_case_done_again_takes_its_place(out, tracker):
+    killed = tracker()
+    killed.begin(arm(out))
+    log(killed, out, "c1")
+    log(killed, out, "c2")
+    resumed = tracker()
+    resumed.begin(arm(out))
+    log(resumed, out, "c2", REFUSED)
+    log(resumed, out, "c3")
+    resumed.end(arm(out), finished=True)
+    _, (parent,), children = runs_of(resumed)
+    assert parent.info.status == "FINISHED"
+    assert {name: run.data.tags["sgcad.status"] for name, run in children.items()} == {
+        "c1": "generated", "c2": "refused", "c3": "generated"
+    }  # fmt: skip
+    assert parent.data.metrics["cases"] == 3
+    assert parent.data.metrics["generated"] == pytest.approx(2 / 3)
+
+
+def test_an_interrupted_arm_says_so_until_it_is_resumed(out, tracker):
+    made = tracker()
+    made.begin(arm(out))
+    log(made, out, "c1")
+    made.end(arm(out), finished=False)
+    assert runs_of(made)[1][0].info.status == "KILLED"
+    made.begin(arm(out))
+    assert runs_of(made)[1][0].info.status == "RUNNING"
+    made.end(arm(out), finished=True)
+    assert runs_of(made)[1][0].info.status == "FINISHED"
+
+
+def test_other_parameters_are_another_arm(out, tracker):
+    made = tracker()
+    log(made, out, "c1")
+    made.log_case("kit", PARAMS | {"seed": 7}, out / "kit" / "c1", RESULT)
+    assert {r.data.params["seed"] for r in runs_of(made)[1]} == {"42", "7"}
+
+
+def test_the_machine_is_watched_while_an_arm_runs(out, tracker):
+    made = tracker(system_metrics_s=0.05)
+    made.begin(arm(out))
+    log(made, out, "c1")
+    named = "system/cpu_utilization_percentage"
+    deadline = time.monotonic() + 120
+    while named not in runs_of(made)[1][0].data.metrics and time.monotonic() < deadline:
+        made._begun["kit"]._monitor.mlflow_logger.flush()
+    made.end(arm(out), finished=True)
+    _, (parent,), children = runs_of(made)
+    assert named in parent.data.metrics
+    assert children["c1"].data.metrics["system/process_memory_megabytes"] > 1
+
+
+def test_a_model_call_is_a_trace_of_its_case(out, tracker):
+    import mlflow
+
+    made = tracker()
+    log(made, out, "c1")
+    made.log_generation("kit", "c1", Query(task="draw", attempt=2, stage="road"), GENERATION)
+    mlflow.flush_trace_async_logging()
+    client, _, children = runs_of(made)
+    (trace,) = client.search_traces(locations=[children["c1"].info.experiment_id])
+    (span,) = trace.data.spans
+    assert (span.name, span.inputs["task"], span.attributes["attempt"]) == ("c1[2]", "draw", 2)
+    assert span.outputs["grounding"] == {"$.legs": 0.75}
+    assert trace.info.trace_metadata["mlflow.sourceRun"] == children["c1"].info.run_id
+    assert (span.end_time_ns - span.start_time_ns) / 1e9 == pytest.approx(1.5, abs=0.01)
+
+
+def test_processes_that_begin_together_share_one_parent(out, tracker):
+    made = tracker(artifacts=False)
+    made._store(None).experiment_id  # noqa: B018 - makes the experiment
+    code = (
+        "import json, sys; from pathlib import Path; from plugins.tracker.mlflow import MlflowTracker\n"
+        "given = json.loads(sys.argv[1]); tracker = MlflowTracker.model_validate_json(given['tracker'])\n"
+        "tracker.log_case('kit', given['params'], Path(given['folder']), given['result'])\n"
+    )
+    given = partial(dict, tracker=made.model_dump_json(), params=PARAMS, result=RESULT)
+    commands = [
+        [sys.executable, "-c", code, json.dumps(given(folder=str(out / "kit" / case)))] for case in ("c1", "c2", "c3")
+    ]
+    started = [subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) for command in commands]
+    ended = [(p.communicate()[1], p.returncode) for p in started]
+    assert [code for _, code in ended] == [0] * 3, ended
+    _, parents, children = runs_of(made)
+    assert len(parents) == 1
+    assert set(children) == {"c1", "c2", "c3"}
+
+
+# ------------------------------------------------------------------ training logs
+LINES = [
+    {"event": "begun with", "folder": "weights", "tensors": 128},
+    {"step": 20, "seconds": 23.5, "loss": 0.5, "right": 0.8},
+    {"step": 40, "seconds": 40.25, "loss": 0.25, "right": 0.9},
+]
+
+
+def test_a_training_log_is_logged_once_however_often_it_is_told(tracker):
+    made = tracker()
+    assert made.log_training("mini", {"seed": 0}, LINES[:1]) == 0
+    assert made.log_training("mini", {"seed": 0}, LINES[:2]) == 2
+    assert made.log_training("mini", {"seed": 0}, LINES[:2]) == 0
+    again = tracker()
+    assert again.log_training("mini", {"seed": 0, "size": "tiny"}, LINES) == 1
+    client, (run,), _ = runs_of(again)
+    history = client.get_metric_history(run.info.run_id, "loss")
+    assert [(m.step, m.value, m.timestamp - run.info.start_time) for m in history] == [
+        (20, 0.5, 23_500), (40, 0.25, 40_250)
+    ]  # fmt: skip
+    assert run.data.params == {"seed": "0", "size": "tiny"}
+    assert run.data.tags["event.0"] == "begun with: folder weights, tensors 128"
+
+
+def test_lines_that_a_killed_import_had_written_are_kept_once(tracker):
+    made = tracker()
+    made.log_training("mini", {}, LINES)
+    client, (run,), _ = runs_of(made)
+    client.set_tag(run.info.run_id, "sgcad.lines", "1")
+    made.log_training("mini", {}, LINES)
+    assert [m.step for m in client.get_metric_history(run.info.run_id, "loss")] == [20, 40]
+
+
+def test_a_log_begun_anew_is_another_run(tracker):
+    made = tracker()
+    made.log_training("mini", {}, LINES)
+    made.log_training("mini", {}, [LINES[1] | {"loss": 0.75}])
+    assert sorted(r.data.metrics["loss"] for r in runs_of(made)[1]) == [0.25, 0.75]
+
+
+def test_a_database_that_is_none_is_refused_with_a_remedy(out, tmp_path):
+    (tmp_path / "no.db").write_text("this is no database, and it is long enough not to look empty " * 20)
+    with pytest.raises(ConfigError, match=r"no.db: cannot be used as MLflow's database .*tracker=jsonl"):
+        MlflowTracker(database=tmp_path / "no.db").log_case("kit", PARAMS, out / "kit" / "c1", RESULT)
