@@ -59,6 +59,8 @@ class Claims:
 
     def take(self, digest: str, alone: bool = True) -> Claim | None:
         """Claim a report; None if somebody has it, or if it must be taken alone and is not."""
+        if digest in self._held:
+            return None
         if claim := self._make(digest, 1):
             return claim
         highest = self._highest(digest)

@@ -15,6 +15,8 @@ from typing import Any
 import httpx
 import psutil
 
+from sgcad_core import settings
+
 POOL = "sgcad"
 """The work pool that deploy/prefect.yaml names."""
 ASK_S = 5.0
@@ -70,18 +72,20 @@ def answers(url: str) -> bool:
 
 
 # ------------------------------------------------------------------ what a Prefect server has
-def _asked(api: str, path: str, **body: Any) -> list[dict[str, Any]]:
-    """Raises httpx.HTTPError."""
-    answer = httpx.post(f"{api.rstrip('/')}/{path}", json=body, timeout=ASK_S)
+def _asked(api: str, path: str, auth: str) -> list[dict[str, Any]]:
+    """Raises httpx.HTTPError. `auth`: user:password, where the server wants it (PREFECT_API_AUTH_STRING)."""
+    user, _, password = (auth or settings.environment("PREFECT_API_AUTH_STRING")).partition(":")
+    key = (user, password) if user else None
+    answer = httpx.post(f"{api.rstrip('/')}/{path}", json={}, timeout=ASK_S, auth=key)
     answer.raise_for_status()
     found: list[dict[str, Any]] = answer.json()
     return found
 
 
-def workers_online(api: str, pool: str = POOL) -> list[str]:
+def workers_online(api: str, pool: str = POOL, auth: str = "") -> list[str]:
     """Names of the workers that the server hears of; none if there is no such pool. Raises httpx.HTTPError."""
     try:
-        workers = _asked(api, f"work_pools/{pool}/workers/filter")
+        workers = _asked(api, f"work_pools/{pool}/workers/filter", auth)
     except httpx.HTTPStatusError as fault:
         if fault.response.status_code == httpx.codes.NOT_FOUND:
             return []
@@ -89,9 +93,9 @@ def workers_online(api: str, pool: str = POOL) -> list[str]:
     return [w["name"] for w in workers if w["status"] == "ONLINE"]
 
 
-def deployments(api: str) -> dict[str, str]:
+def deployments(api: str, auth: str = "") -> dict[str, str]:
     """Deployments of our pool, by name, with when they start in words. Raises httpx.HTTPError."""
-    found = _asked(api, "deployments/filter")
+    found = _asked(api, "deployments/filter", auth)
     return {d["name"]: _when(d) for d in sorted(found, key=lambda d: d["name"]) if d["work_pool_name"] == POOL}
 
 
@@ -103,10 +107,10 @@ def _when(deployment: dict[str, Any]) -> str:
     return ", ".join(told) or "by hand"
 
 
-def told(api: str) -> Iterator[tuple[bool, str]]:
+def told(api: str, auth: str = "") -> Iterator[tuple[bool, str]]:
     """What a server has, line by line, and whether that is as it should be."""
     try:
-        workers, deployed = workers_online(api), deployments(api)
+        workers, deployed = workers_online(api, auth=auth), deployments(api, auth)
     except httpx.HTTPError as fault:
         yield False, f"{api} does not answer ({type(fault).__name__})"
         return

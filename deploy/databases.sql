@@ -1,0 +1,2 @@
+-- Run once, when the database volume is new: MLflow's database beside Prefect's.
+CREATE DATABASE mlflow;
