@@ -7,7 +7,7 @@ READY := $(VENV)/.ready
 export HF_HUB_OFFLINE := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-fast test-hosts lint bench bench-decode train-mini qc clean
+.PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -29,6 +29,15 @@ test: setup ## the whole test suite
 
 test-fast: setup ## the tests that take no more than seconds
 	$(BIN)/python -m pytest -m "not slow"
+
+up: setup ## server, worker, MLflow and deployments on this machine (UP="--server-port 4300 ...")
+	$(BIN)/python -m deploy.local up $(UP)
+
+down: ## end what `make up` started; results and logs stay
+	$(BIN)/python -m deploy.local down $(UP)
+
+check-deploy: setup ## the containers' services without containers, on a real PostgreSQL
+	$(BIN)/python -m deploy.check
 
 bench: setup ## time and share of every stage over the demo reports
 	$(BIN)/python -m benchmarks.stages
