@@ -15,13 +15,14 @@ Knows YAML and the names of arms; builds no config.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from flows.cases import safe_id
 from flows.study import crossing
@@ -59,6 +60,14 @@ class Cross(_Part):
     over: dict[str, tuple[Any, ...]] = Field(min_length=1)
     set: tuple[str, ...] = ()
     """Overrides of every arm, before its own values."""
+
+    @model_validator(mode="after")
+    def _can_be_spread(self) -> Self:
+        if not self.config and "config" not in self.over:
+            raise ValueError("config: missing; name one, or vary it: over: {config: [a.yaml, b.yaml]}")
+        if (count := math.prod(map(len, self.over.values()))) > MAX_ARMS:
+            raise ValueError(f"{count} arms; at most {MAX_ARMS}: cross fewer values, or make it several studies")
+        return self
 
     def arms(self) -> tuple[Arm, ...]:
         """All combinations, the last key changing fastest."""
@@ -121,13 +130,8 @@ def load_study(path: Path | str) -> Study:
 
 def study_in(path: Path) -> Path | None:
     """The file, if it is a study's: it has arms or a cross product, or is a name under configs/studies/ only."""
-    for file in (
-        path,
-        settings.CONFIGS / path,
-        settings.CONFIGS / f"{path}.yaml",
-        STUDIES / path,
-        STUDIES / f"{path}.yaml",
-    ):
+    inside = [folder / f"{path}{end}" for folder in (settings.CONFIGS, STUDIES) for end in ("", ".yaml")]
+    for file in (path, *inside):
         if file.is_file():
             return file if is_study(file) else None
     return None
@@ -189,8 +193,6 @@ def _drop(raw: Any, place: tuple[Any, ...]) -> None:
 def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
     """What pydantic cannot see: names, the reference, an empty study."""
     faults = [] if arms else ["no arm: give `arms` (a list) or `cross` (`config` and `over`)"]
-    if len(arms) > MAX_ARMS:
-        faults.append(f"{len(arms)} arms; at most {MAX_ARMS}: cross fewer values, or make it several studies")
     twice = [name for name, n in Counter(arm.name.casefold() for arm in arms).items() if n > 1]
     faults += [f"arm {name!r} stands twice and would share a folder: give each a name of its own" for name in twice]
     for arm in arms:
@@ -199,8 +201,6 @@ def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
     if parsed.reference is not None and parsed.reference not in {arm.name for arm in arms}:
         names = ", ".join(arm.name for arm in arms)
         faults.append(f"reference: no arm is called {parsed.reference!r}; there are: {names}")
-    if parsed.cross and not parsed.cross.config and "config" not in parsed.cross.over:
-        faults.append("cross.config: missing; name a config, or vary it: over: {config: [a.yaml, b.yaml]}")
     if parsed.cross:
         faults += [f"cross.over.{key}: no values; give a list" for key, v in parsed.cross.over.items() if not v]
     return faults
