@@ -143,6 +143,9 @@ class Crew:
     _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
     _threads: ThreadPoolExecutor | None = None
 
+    def __post_init__(self) -> None:
+        self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads than that
+
     def begin(self, plan: Sequence[Job]) -> None:
         """Start what needs no model."""
         waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
@@ -168,7 +171,9 @@ class Crew:
         if done := self.reusable(job):
             return done
         watched = self._unless_stopped(on_attempt)
-        return chain.run_case(job.config, job.case, self.batch.out, job.digest, watched, sharing=job.sharing)
+        with self._places:
+            self._check()
+            return chain.run_case(job.config, job.case, self.batch.out, job.digest, watched, sharing=job.sharing)
 
     def began(self, job: Job) -> bool:
         """Whether the job runs in a worker process (its attempts are then reported when it ends)."""

@@ -25,7 +25,7 @@ from prefect.states import Completed, Crashed, State
 from prefect.task_runners import ThreadPoolTaskRunner
 
 from flows import tracking
-from flows.batch import MAX_JOBS, Job
+from flows.batch import Job
 from flows.chain import Ending
 from flows.evaluate import drive
 from flows.study.lease import BEAT_S
@@ -38,6 +38,8 @@ from flows.tracking import OnEnding
 from sgcad_core.errors import ConfigError
 
 DEPLOYMENT = "shard/shard"
+THREADS = 64
+"""Of a shard's flow run: as many cases can be on their way at a time; `jobs` says how many are."""
 POLL_S = 2.0
 PAGE = 200
 """The server's limit of flow runs an answer."""
@@ -48,7 +50,7 @@ _T = TypeVar("_T")
 @flow(
     name="shard",
     flow_run_name="{study} {shard}",
-    task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS),
+    task_runner=ThreadPoolTaskRunner(max_workers=THREADS),
     persist_result=False,
 )
 def shard_flow(
@@ -151,7 +153,8 @@ def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding)
         return []
     share = Share(hosts.address)
     shards = lay_out(share, study, left, hosts.shards)
-    parameters = {"address": hosts.address, "jobs": hosts.jobs, "beat_s": hosts.beat_s}
+    parameters = {"address": hosts.address, "beat_s": hosts.beat_s}
+    parameters |= {"jobs": hosts.jobs} if hosts.jobs else {}
     pool = PrefectPool(study, parameters, hosts.deployment)
     watch = Watch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
     follow(watch, time.monotonic, lambda: time.sleep(POLL_S))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from flows import cases
-from flows.batch import Batch, Crew, Job, cores
+from flows.batch import MAX_JOBS, Batch, Crew, Job, cores
 from flows.cases import Case
 from flows.chain import Ending
 from flows.sharing import Sharing, keys_of
@@ -181,10 +181,7 @@ def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | Non
     counts = dict.fromkeys(("done", "found", "doubled", "failed"), 0)
     with lease.held():
         plan, counts["found"] = shard.jobs()
-        configs = tuple({job.config.name: job.config for job in plan}.values())
-        at_a_time = jobs or cores()
-        batch = Batch(configs, tuple(job.case for job in plan), shard.scratch, at_a_time, at_a_time)
-        crew = Crew(batch)
+        crew = Crew(_batch(plan, shard.scratch, jobs))
 
         def hand_in(job: Job, ending: Ending, untracked: str) -> None:
             counts[shard.hand_in(lease, job, ending)] += 1
@@ -197,3 +194,12 @@ def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | Non
             raise
         crew.close()
     return Tally(**counts)
+
+
+def _batch(plan: Sequence[Job], scratch: Path, jobs: int | None) -> Batch:
+    """What is left of a shard as a batch: with a model `jobs` cases at a time, without one in processes."""
+    configs = tuple({job.config.name: job.config for job in plan}.values())
+    asks = any(config.backbone for config in configs)
+    return Batch(
+        configs, tuple(job.case for job in plan), scratch, jobs or (MAX_JOBS if asks else cores()), jobs or cores()
+    )

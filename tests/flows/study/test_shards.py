@@ -1,8 +1,10 @@
 """Rules of shards, leases and the watch: nothing lost, nothing twice, the same bytes as one machine."""
 
 import json
+import threading
 import time
 import uuid
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -376,3 +378,27 @@ def test_a_short_cut_is_waited_for_and_a_long_one_is_told():
     follow(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=100.0)
     with pytest.raises(Unreachable, match="gone"):
         follow(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=1.0)
+
+
+def test_a_crew_has_no_more_cases_on_their_way_than_it_was_told(plan):
+    """However many threads ask: a model's memory is laid out for so many."""
+    lock, inside, most = threading.Lock(), [0], [0]
+
+    def watched(work):
+        def turn(name, attempt):
+            with lock:
+                inside[0] += 1
+                most[0] = max(most[0], inside[0])
+            try:
+                return attempt()
+            finally:
+                with lock:
+                    inside[0] -= 1
+
+        return turn
+
+    crew = Crew(batches.Batch((), (), plan[0].folder.out, 2, 1))
+    with ThreadPoolExecutor(8) as threads:
+        endings = list(threads.map(lambda job: crew.finish(job, watched(job)), plan))
+    assert len(endings) == 8
+    assert 1 <= most[0] <= 2

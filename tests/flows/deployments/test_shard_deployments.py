@@ -1,0 +1,36 @@
+"""The shard deployments as deploy/prefect.yaml defines them."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+import yaml
+
+from sgcad_core import settings
+
+DEPLOYMENTS = {
+    one["name"]: one for one in yaml.safe_load((settings.ROOT / "deploy" / "prefect.yaml").read_text())["deployments"]
+}
+
+
+@pytest.mark.parametrize("name", ["shard", "shard-gpu"])
+def test_a_shard_deployment_serves_the_flow_and_gives_it_parameters_that_it_has(name):
+    from flows.deployments.shards import DEPLOYMENT, shard_flow
+
+    file, _, function = DEPLOYMENTS[name]["entrypoint"].partition(":")
+    assert (settings.ROOT / file, function) == (Path(inspect.getfile(shard_flow.fn)), shard_flow.fn.__name__)
+    assert set(DEPLOYMENTS[name].get("parameters", {})) <= set(inspect.signature(shard_flow.fn).parameters)
+    assert DEPLOYMENT.split("/")[0] == shard_flow.name
+
+
+def test_a_card_holds_one_model_whose_batch_serves_many_cases():
+    gpu = DEPLOYMENTS["shard-gpu"]
+    assert gpu["concurrency_limit"] == {"limit": 1, "collision_strategy": "ENQUEUE"}
+    assert gpu["work_pool"]["work_queue_name"] == "gpu" != DEPLOYMENTS["shard"]["work_pool"].get("work_queue_name")
+    assert gpu["parameters"]["jobs"] > 1
+
+
+def test_a_flow_run_has_a_thread_for_every_case_of_the_batch():
+    from flows.deployments.shards import THREADS, shard_flow
+
+    assert shard_flow.task_runner._max_workers == THREADS >= DEPLOYMENTS["shard-gpu"]["parameters"]["jobs"]
