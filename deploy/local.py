@@ -21,6 +21,7 @@ from pathlib import Path
 import psutil
 
 from deploy import services
+from deploy.serve import serve
 from deploy.services import Ports, Service
 from flows.deployments import health
 from flows.deployments.health import Running
@@ -57,12 +58,21 @@ def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
         missing = [s for s in asked if not (s.name in there and there[s.name].alive())]
         _check_ports(missing)
         _start_and_wait([s for s in missing if s.name != "worker"], folder)
-        api = health.noted(folder)["server"].address + "/api"
+        api = f"{health.noted(folder)['server'].address}/api"
         if missing or not _is_deployed(folder):
             _deploy(folder, api)
-        late = [s for s in missing if s.name == "worker"]
-        _start_and_wait(late, folder)
+        _start_and_wait([s for s in missing if s.name == "worker"], folder)
+        _wait_for_worker(api, folder)
         return health.noted(folder)
+
+
+def _wait_for_worker(api: str, folder: Path) -> None:
+    """A worker is well before the server has heard of it."""
+    deadline = time.monotonic() + START_S
+    while not health.workers_online(api):
+        if time.monotonic() > deadline:
+            raise MissingTool(f"the server hears of no worker:\n{_last_words(folder / 'worker.log')}")
+        time.sleep(0.2)
 
 
 def _check_ports(asked: Sequence[Service]) -> None:
@@ -125,16 +135,9 @@ def _last_words(log: Path) -> str:
 
 
 def _deploy(folder: Path, api: str) -> None:
-    """Make the work pool and serve the flows. Raises MissingTool with Prefect's words."""
-    environment = settings.subprocess_environment() | {"PREFECT_HOME": str(folder / "prefect"), **services.QUIET}
-    environment["PREFECT_API_URL"] = api
-    for command, may_fail in ((services.pool_command(), True), (services.deploy_command(), False)):
-        done = subprocess.run(  # noqa: S603 - our own commands
-            command, cwd=settings.ROOT, env=environment, capture_output=True, text=True, timeout=START_S
-        )
-        if done.returncode and not may_fail:
-            raise MissingTool(f"`prefect deploy --all` fails:\n{(done.stdout + done.stderr)[-2000:]}")
-    (folder / DEPLOYED).write_text(services.DEPLOYMENTS.read_text(encoding="utf-8"), encoding="utf-8")
+    """Serve the flows and note what was served."""
+    serve(api)
+    (folder / DEPLOYED).write_bytes(services.DEPLOYMENTS.read_bytes())
 
 
 def _is_deployed(folder: Path) -> bool:

@@ -1,6 +1,6 @@
-"""Makes the work pool and serves every flow of prefect.yaml on the server that PREFECT_API_URL names.
+"""Makes the work pool and serves every flow of prefect.yaml on a Prefect server.
 
-python -m deploy.serve          # in the container `deployments`; `make up` does the same on one machine
+python -m deploy.serve     # on the server that PREFECT_API_URL names: the container `deployments`
 """
 
 from __future__ import annotations
@@ -8,17 +8,46 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import httpx
+
 from deploy import services
+from flows.deployments import health
 from sgcad_core import settings
+from sgcad_core.errors import MissingTool
 
 LIMIT_S = 300.0
 
 
+def serve(api: str) -> None:
+    """Both, as often as wanted. Raises MissingTool with what the server or Prefect says."""
+    _make_pool(api)
+    environment = settings.subprocess_environment() | {**services.QUIET, "PREFECT_API_URL": api}
+    done = subprocess.run(  # noqa: S603 - our own command
+        services.deploy_command(), cwd=settings.ROOT, env=environment, capture_output=True, text=True, timeout=LIMIT_S
+    )
+    if done.returncode:
+        raise MissingTool(f"`prefect deploy --all` fails:\n{(done.stdout + done.stderr)[-2000:]}")
+
+
+def _make_pool(api: str) -> None:
+    """The first worker fills in what its runs need; asking again does no harm."""
+    body = {"name": health.POOL, "type": "process"}
+    try:
+        answer = httpx.post(f"{api}/work_pools/", json=body, timeout=LIMIT_S, auth=health.key_of())
+    except httpx.HTTPError as fault:
+        raise MissingTool(f"{api} does not answer ({type(fault).__name__}): is PREFECT_API_URL right?") from fault
+    if answer.status_code not in (httpx.codes.CREATED, httpx.codes.CONFLICT):
+        raise MissingTool(f"{api}: no work pool can be made: {answer.status_code} {answer.text[:500]}")
+
+
 def main() -> int:
-    """Prefect's exit code; the pool may be there already."""
-    for command in (services.pool_command(), services.deploy_command()):
-        code = subprocess.run(command, cwd=settings.ROOT, timeout=LIMIT_S).returncode  # noqa: S603 - our own commands
-    return code
+    """0, or 2 with a message."""
+    try:
+        serve(settings.prefect_url().rstrip("/"))
+    except MissingTool as fault:
+        sys.stderr.write(f"deploy: error: {fault}\n")
+        return 2
+    return 0
 
 
 if __name__ == "__main__":

@@ -87,11 +87,6 @@ def worker(home: Path, api: str, port: int, name: str = "local", limit: int = 2)
                    health=f"http://127.0.0.1:{port}/health")  # fmt: skip
 
 
-def pool_command() -> tuple[str, ...]:
-    """Makes the work pool; fails harmlessly where it is."""
-    return _here(("prefect", "--no-prompt", "work-pool", "create", POOL, "--type", "process"))
-
-
 def deploy_command() -> tuple[str, ...]:
     """Serves every flow of deploy/prefect.yaml; the working directory is the checkout."""
     return _here(("prefect", "--no-prompt", "deploy", "--all", "--prefect-file", str(DEPLOYMENTS)))

@@ -72,11 +72,15 @@ def answers(url: str) -> bool:
 
 
 # ------------------------------------------------------------------ what a Prefect server has
-def _asked(api: str, path: str, auth: str) -> list[dict[str, Any]]:
-    """Raises httpx.HTTPError. `auth`: user:password, where the server wants it (PREFECT_API_AUTH_STRING)."""
+def key_of(auth: str = "") -> tuple[str, str] | None:
+    """User and password that a server wants, by default of the variable PREFECT_API_AUTH_STRING."""
     user, _, password = (auth or settings.environment("PREFECT_API_AUTH_STRING")).partition(":")
-    key = (user, password) if user else None
-    answer = httpx.post(f"{api.rstrip('/')}/{path}", json={}, timeout=ASK_S, auth=key)
+    return (user, password) if user else None
+
+
+def _asked(api: str, path: str, auth: str) -> list[dict[str, Any]]:
+    """Raises httpx.HTTPError. `auth`: "user:password"."""
+    answer = httpx.post(f"{api.rstrip('/')}/{path}", json={}, timeout=ASK_S, auth=key_of(auth))
     answer.raise_for_status()
     found: list[dict[str, Any]] = answer.json()
     return found

@@ -74,7 +74,9 @@ def test_a_named_volume_is_declared_and_only_the_card_sets_the_workers_apart():
     named = {v.split(":")[0] for s in SERVICES.values() for v in s["volumes"] if not v.startswith(".")}
     assert named == set(document["volumes"])
     cpu, gpu = SERVICES["worker"], SERVICES["worker-gpu"]
-    assert cpu["command"] == gpu["command"]
+    assert set(cpu["command"]) ^ set(gpu["command"]) == {
+        "--work-queue=default", "--limit=2", "--work-queue=gpu", "--limit=1",
+    }  # fmt: skip
     assert (cpu["profiles"], gpu["profiles"]) == (["cpu"], ["gpu"])
     assert gpu["deploy"]["resources"]["reservations"]["devices"][0]["capabilities"] == ["gpu"]
 
@@ -123,11 +125,11 @@ def test_deployments_name_flows_that_are_there_with_parameters_that_they_take():
     import inspect
 
     document = yaml.safe_load((DEPLOY / "prefect.yaml").read_text())
-    assert {d["name"] for d in document["deployments"]} == {"inbox", "nightly", "study", "shard", "reindex"}
+    assert {d["name"] for d in document["deployments"]} >= {"inbox", "nightly", "study", "shard", "reindex"}
     for deployment in document["deployments"]:
         file, name = deployment["entrypoint"].split(":")
         flow = getattr(importlib.import_module(file.removesuffix(".py").replace("/", ".")), name)
-        assert flow.name == deployment["name"]
+        assert deployment["name"].startswith(flow.name)
         assert set(deployment.get("parameters", {})) <= set(inspect.signature(flow.fn).parameters)
         assert deployment["work_pool"]["name"] == POOL
 
