@@ -1,40 +1,96 @@
-"""`sgcad table` and `sgcad report`: from a study's folder to tables, figures and a page. Answers go to stdout."""
+"""`sgcad table` and `sgcad report`: from a study's folder to tables, figures and a page. Answers go to stdout.
+
+Everything heavy is imported inside, so that --help is quick.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-from rich.console import Console
+import typer
 
-from flows.results import writing
-from flows.results.reading import Study, find_study, load_study
-from flows.results.table import tables_of
-from sgcad_core.errors import ConfigError
+if TYPE_CHECKING:
+    from flows.results.plots import Plot
+    from flows.results.table import Tables
 
 TEXT_WIDTH = 120
 """Columns where the output is no terminal."""
+PAGE = "report.html"
+
+Given = Annotated[Path, typer.Argument(help="A study's folder or its name, or a folder of runs.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the results, where a study's name is looked for.")]
+Truth = Annotated[Path | None, typer.Option("--truth", help="Folder of <case>.json; default: the study's own.")]
+Only = Annotated[str, typer.Option("--only", help="Cases whose name begins so.")]
 
 
-def table(given: Path, out: Path, truth: Path | None, only: str, files: dict[str, Path | None]) -> None:
-    """Print a study's tables; `files` may name one under "csv" and one under "latex" to write too."""
-    tables = tables_of(_study(given, out, truth, only))
+def table(
+    study: Given,
+    out: Out = Path("runs"),
+    truth: Truth = None,
+    only: Only = "",
+    csv: Annotated[Path | None, typer.Option("--csv", help="Write one figure a line here, in full precision.")] = None,
+    latex: Annotated[Path | None, typer.Option("--latex", help="Write the tables for LaTeX (booktabs) here.")] = None,
+) -> None:
+    """A study's tables: every arm with n, 95 % intervals and paired tests; published figures in their own columns."""
+    from rich.console import Console
+
+    from flows.results import writing
+
+    tables = _tables(study, out, truth, only)
     console = Console(emoji=False, highlight=False)
     console.width = console.width if console.is_terminal else TEXT_WIDTH
     writing.show(tables, console)
-    for kind, write in (("csv", writing.as_csv), ("latex", writing.as_latex)):
-        if file := files.get(kind):
-            _write(file, write(tables))
-            console.print(f"{kind}: {file}", soft_wrap=True, markup=False)
+    for file, write in ((csv, writing.as_csv), (latex, writing.as_latex)):
+        if file:
+            _write(file, write(tables).encode("utf-8"))
+            typer.echo(f"written: {file}")
 
 
-def _study(given: Path, out: Path, truth: Path | None, only: str) -> Study:
-    return load_study(find_study(given, out), truth, only)
+def report(
+    study: Given,
+    out: Out = Path("runs"),
+    truth: Truth = None,
+    only: Only = "",
+    html: Annotated[Path | None, typer.Option("--html", help="The page; default: report.html in the study.")] = None,
+    figures: Annotated[Path | None, typer.Option("--figures", help="Write the figures as PNG into this folder.")] = None,
+) -> None:
+    """One HTML file with a study's tables, figures and cases; it needs no server and fetches nothing."""
+    from flows.results.page import page
+    from flows.results.plots import plots_of
+    from flows.results.scenes import scenes_of
+
+    tables = _tables(study, out, truth, only)
+    plots = [*plots_of(tables), *scenes_of(tables)]
+    place = html or tables.study.folder / PAGE
+    _write(place, page(tables, plots, place).encode("utf-8"))
+    if figures:
+        _write_figures(figures, plots)
+    for line in (*tables.remarks, *(f"figure left out: {p.title}: {p.reason}" for p in plots if p.png is None)):
+        typer.echo(line)
+    typer.echo(f"look at: {place}")
 
 
-def _write(file: Path, text: str) -> None:
-    """Write a text file. Raises ConfigError where that cannot be."""
+def _tables(given: Path, out: Path, truth: Path | None, only: str) -> Tables:
+    from flows.results.reading import find_study, load_study
+    from flows.results.table import tables_of
+
+    return tables_of(load_study(find_study(given, out), truth, only))
+
+
+def _write_figures(folder: Path, plots: Iterable[Plot]) -> None:
+    for plot in plots:
+        if plot.png is not None:
+            _write(folder / f"{plot.key}.png", plot.png)
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Write a file. Raises ConfigError where that cannot be."""
+    from sgcad_core.errors import ConfigError
+
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        file.write_bytes(content)
     except OSError as fault:
         raise ConfigError(f"{file}: cannot be written ({fault.strerror}); choose another place") from fault

@@ -123,7 +123,6 @@ def _drawn(ran: Ran) -> dict[str, Any] | None:
             }
             for k, (actor, path) in enumerate(paths.items())
         ],
-        "hit": bool(contact),
     }
 
 

@@ -3,7 +3,7 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
 const PAGE = 12;
-const HALF_DM = 420;
+const HALF_DM = 420, PIXELS = 360;
 let shown = [], made = 0;
 
 function element(tag, className, text) {
@@ -97,11 +97,11 @@ function tile(run, arm) {
   }
   if (run.draw && run.status === "generated") {
     const canvas = element("canvas");
-    canvas.width = canvas.height = 360;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "network, paths and first contact");
     box.append(canvas);
-    waiting.set(canvas, run.draw);
+    pictures.set(canvas, run.draw);
+    draw(canvas);
     eye.observe(canvas);
   } else box.append(element("div", "blank " + run.status, run.why || run.status));
   const line = element("p");
@@ -125,15 +125,14 @@ function tile(run, arm) {
 }
 
 // ---------------------------------------------------------------- networks
-const waiting = new Map();
+// Pixels are held near the window only: 500 cases times 7 arms would take 2 GB.
+const pictures = new WeakMap();
 const eye = new IntersectionObserver((seen) => {
-  for (const entry of seen) {
-    if (!entry.isIntersecting) continue;
-    eye.unobserve(entry.target);
-    draw(entry.target, waiting.get(entry.target));
-    waiting.delete(entry.target);
+  for (const { isIntersecting, target } of seen) {
+    if (isIntersecting) draw(target);
+    else target.width = target.height = 1;
   }
-}, { rootMargin: "300px" });
+}, { rootMargin: "900px" });
 
 function trace(pen, flat, close) {
   pen.beginPath();
@@ -141,7 +140,10 @@ function trace(pen, flat, close) {
   if (close) pen.closePath();
 }
 
-function draw(canvas, what) {
+function draw(canvas) {
+  if (canvas.width === PIXELS) return;
+  const what = pictures.get(canvas);
+  canvas.width = canvas.height = PIXELS;
   const pen = canvas.getContext("2d"), scale = canvas.width / (2 * HALF_DM);
   pen.setTransform(scale, 0, 0, -scale, canvas.width / 2, canvas.height / 2);
   pen.lineJoin = "round";
