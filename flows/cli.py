@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | study | plugins | index | check | doctor`.
+"""The command line: `sgcad run | evaluate | study | table | report | plugins | index | check | doctor`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from flows.index import index_app
+from flows.results.commands import report, table
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ app = typer.Typer(
 plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`.")
 app.add_typer(plugins_app, name="plugins")
 app.add_typer(index_app, name="index")
+app.command()(table)
+app.command()(report)
 
 Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YAML; may be given several times.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
