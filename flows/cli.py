@@ -124,13 +124,20 @@ def study(
     out: Out = DEFAULT_OUT,
     jobs: Jobs = None,
     fresh: Fresh = False,
+    hosts: Annotated[str, typer.Option("--hosts", help="fsspec address where hosts meet (docs/scale.md).")] = "",
+    deployment: Annotated[str, typer.Option(help="What the hosts' workers serve.")] = "shard/shard",
 ) -> None:
     """Compare arms over the same cases: stages that arms share are computed once; run again to go on."""
-    from flows.study import plan, running, spec
+    from flows.study import away, plan, running, spec
 
     made = plan.plan(
         spec.load_study(file), out, cases=cases or (), truth=truth, overrides=overrides or (), jobs=jobs, fresh=fresh
     )
+    if hosts:
+        meeting = away.Away(hosts, deployment)
+        code, again = _carry_out(made.batch, lambda on_ending: away.run(made, meeting, on_ending))
+        typer.echo(away.told(again))
+        raise typer.Exit(code)
     code, cost = _carry_out(made.batch, lambda on_ending: running.run(made, on_ending))
     typer.echo(running.told(made, cost))
     raise typer.Exit(code)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 import time
+import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,15 +55,23 @@ _T = TypeVar("_T")
     persist_result=False,
 )
 def shard_flow(
-    address: str, study: str, shard: int, jobs: int | None = None, scratch: str = "", beat_s: float = BEAT_S
+    address: str,
+    study: str,
+    shard: int,
+    laying: str = "",
+    jobs: int | None = None,
+    scratch: str = "",
+    beat_s: float = BEAT_S,
 ) -> State[Any]:
-    """Do one shard of a study laid out at `address`; `jobs` cases at a time share one model and its batch.
+    """Do one shard of a study laid out at `address` (`laying` names the plan).
+
+    `jobs` cases at a time share one model and its batch.
 
     `scratch` is a folder on this host; what it holds from a run that was cut off is handed in, not done again.
     """
     place = Path(scratch or tempfile.gettempdir()) / "sgcad-shards" / hashlib.sha256(address.encode()).hexdigest()[:12]
     place.mkdir(parents=True, exist_ok=True)
-    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place), drive, jobs, beat_s)
+    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place, laying), drive, jobs, beat_s)
     return Completed(message=", ".join(f"{count} {name}" for name, count in vars(tally).items()))
 
 
@@ -148,12 +157,16 @@ def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding)
     Returns which shards were submitted again, and why. Raises ConfigError, Unreachable (the storage or the
     server is gone for ten minutes); started again it goes on.
     """
-    left = list(_not_here(jobs, on_ending))
-    if not left:
-        return []
+    with tracking.following(jobs):
+        left = list(_not_here(jobs, on_ending))
+        return _away(study, left, hosts, on_ending) if left else []
+
+
+def _away(study: str, left: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:
     share = Share(hosts.address)
-    shards = lay_out(share, study, left, hosts.shards)
-    parameters = {"address": hosts.address, "beat_s": hosts.beat_s}
+    laying = str(uuid.uuid4())
+    shards = lay_out(share, study, left, hosts.shards, laying)
+    parameters = {"address": hosts.address, "laying": laying, "beat_s": hosts.beat_s}
     parameters |= {"jobs": hosts.jobs} if hosts.jobs else {}
     pool = PrefectPool(study, parameters, hosts.deployment)
     watch = Watch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)

@@ -18,7 +18,7 @@ from flows.cases import Case
 from flows.chain import Ending
 from flows.sharing import Sharing, keys_of
 from flows.store import CaseFolder
-from flows.study.lease import Lease
+from flows.study.lease import Lease, LeaseLost
 from flows.study.share import Share, mark_name
 from sgcad_core.config import Config, build
 from sgcad_core.errors import ConfigError
@@ -69,10 +69,13 @@ def cut(jobs: Sequence[Job], shards: int | None = None) -> list[list[Work]]:
     return found
 
 
-def lay_out(share: Share, study: str, jobs: Sequence[Job], shards: int | None = None) -> list[list[Work]]:
+def lay_out(
+    share: Share, study: str, jobs: Sequence[Job], shards: int | None = None, laying: str = ""
+) -> list[list[Work]]:
     """Write plan and reports to the share and cut the work. A share that holds another study is refused.
 
-    Laid out again (resumed, or with other arms), finished jobs keep their marks; failed ones are tried again.
+    `laying` names this plan: runs of an earlier one, whose shards were others, leave when they see it. Laid out
+    again (resumed, or with other arms), finished jobs keep their marks; failed ones are tried again.
     """
     there = share.json(PLAN)
     if there is not None and there["study"] != study:
@@ -84,7 +87,7 @@ def lay_out(share: Share, study: str, jobs: Sequence[Job], shards: int | None = 
     made = cut(jobs, shards)
     _give_reports(share, jobs)
     arms = {job.config.name: job.config.raw for job in jobs}
-    plan = {"study": study, "arms": arms, "shards": [[vars(work) for work in shard] for shard in made]}
+    plan = {"study": study, "laying": laying, "arms": arms, "shards": [[vars(w) for w in shard] for shard in made]}
     share.write_json(PLAN, plan)
     return made
 
@@ -120,6 +123,13 @@ class Shard:
     number: int
     run: str
     scratch: Path
+    laying: str = ""
+
+    def check(self) -> None:
+        """Raises LeaseLost if the study was laid out anew since this run was submitted."""
+        plan = self.share.json(PLAN) or {}
+        if self.laying and plan.get("laying") != self.laying:
+            raise LeaseLost("the study was started again and laid out anew; this run's shard is no more")
 
     def jobs(self) -> tuple[list[Job], int]:
         """What is left to do, checked against the plan, and how much was found done."""
@@ -179,6 +189,7 @@ def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | Non
     """Do what is left of a shard and hand in each case as it ends. Raises ConfigError, LeaseLost, Unreachable."""
     lease = Lease(shard.share, shard.number, shard.run, **({"beat_s": beat_s} if beat_s else {}))
     counts = dict.fromkeys(("done", "found", "doubled", "failed"), 0)
+    shard.check()
     with lease.held():
         plan, counts["found"] = shard.jobs()
         crew = Crew(_batch(plan, shard.scratch, jobs))

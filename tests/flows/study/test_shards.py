@@ -149,6 +149,15 @@ def test_who_marks_second_takes_his_object_away(plan, share, tmp_path):
     assert [name.rpartition("/")[2] for name in share.names("results/")] == ["early.tar.gz"]
 
 
+def test_a_run_of_an_earlier_plan_leaves_and_takes_no_lease(plan, share, tmp_path):
+    lay_out(share, "s", plan, 2, laying="first")
+    lay_out(share, "s", plan, 1, laying="second")
+    with pytest.raises(LeaseLost, match="laid out anew"):
+        work_on(Shard(share, 0, "old", tmp_path / "host", "first"), run, 1)
+    assert share.names("leases/") == set()
+    assert work_on(Shard(share, 0, "new", tmp_path / "host", "second"), run, 1).done == 8
+
+
 def test_a_host_with_other_code_refuses(plan, share, tmp_path):
     lay_out(share, "s", [replace(job, digest="0" * 64) for job in plan], 1)
     with pytest.raises(ConfigError, match="install the same version"):
