@@ -204,7 +204,7 @@ def postgres(stage: Stage, service: Mapping[str, Any]) -> Iterator[None]:
             "--auth=scram-sha-256", "-E", "UTF8", "--locale=C"]  # fmt: skip
     subprocess.run(made, user=user, check=True, capture_output=True)  # noqa: S603 - PostgreSQL's own program
     log = (stage.folder / "postgres.log").open("ab")
-    command = [programs / "postgres", "-D", data, "-p", str(port), "-h", "127.0.0.1", "-k", data]
+    command = [str(programs / "postgres"), "-D", str(data), "-p", str(port), "-h", "127.0.0.1", "-k", str(data)]
     process = subprocess.Popen(command, user=user, stdout=log, stderr=log, start_new_session=True)  # noqa: S603
     try:
         ready = [programs / "pg_isready", "-h", "127.0.0.1", "-p", str(port), *service["healthcheck"]["test"][2:]]
@@ -213,7 +213,16 @@ def postgres(stage: Stage, service: Mapping[str, Any]) -> Iterator[None]:
             time.sleep(0.2)
         address = f"postgresql://{environment['POSTGRES_USER']}:{environment['POSTGRES_PASSWORD']}@127.0.0.1:{port}"
         first, second = f"CREATE DATABASE {environment['POSTGRES_DB']}", settings.ROOT / "deploy" / "databases.sql"
-        create = [programs / "psql", f"{address}/postgres", "-v", "ON_ERROR_STOP=1", "-c", first, "-f", second]
+        create = [
+            str(programs / "psql"),
+            f"{address}/postgres",
+            "-v",
+            "ON_ERROR_STOP=1",
+            "-c",
+            first,
+            "-f",
+            str(second),
+        ]
         subprocess.run(create, check=True, capture_output=True)  # noqa: S603 - PostgreSQL's own program
         yield
     finally:

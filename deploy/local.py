@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import httpx
 import psutil
 
 from deploy import services
@@ -69,10 +70,17 @@ def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
 def _wait_for_worker(api: str, folder: Path) -> None:
     """A worker is well before the server has heard of it."""
     deadline = time.monotonic() + START_S
-    while not health.workers_online(api):
+    while not _hears_a_worker(api):
         if time.monotonic() > deadline:
             raise MissingTool(f"the server hears of no worker:\n{_last_words(folder / 'worker.log')}")
         time.sleep(0.2)
+
+
+def _hears_a_worker(api: str) -> bool:
+    try:
+        return bool(health.workers_online(api))
+    except httpx.HTTPError:  # too busy to answer: asked again
+        return False
 
 
 def _check_ports(asked: Sequence[Service]) -> None:
@@ -136,7 +144,7 @@ def _last_words(log: Path) -> str:
 
 def _deploy(folder: Path, api: str) -> None:
     """Serve the flows and note what was served."""
-    serve(api)
+    serve(api, folder / "prefect")
     (folder / DEPLOYED).write_bytes(services.DEPLOYMENTS.read_bytes())
 
 

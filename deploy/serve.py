@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import httpx
 
@@ -18,10 +19,12 @@ from sgcad_core.errors import MissingTool
 LIMIT_S = 300.0
 
 
-def serve(api: str) -> None:
-    """Both, as often as wanted. Raises MissingTool with what the server or Prefect says."""
+def serve(api: str, home: Path | None = None) -> None:
+    """Both, as often as wanted; `home` is Prefect's folder. Raises MissingTool with what server or Prefect say."""
     _make_pool(api)
     environment = settings.subprocess_environment() | {**services.QUIET, "PREFECT_API_URL": api}
+    if home:
+        environment["PREFECT_HOME"] = str(home)
     done = subprocess.run(  # noqa: S603 - our own command
         services.deploy_command(), cwd=settings.ROOT, env=environment, capture_output=True, text=True, timeout=LIMIT_S
     )

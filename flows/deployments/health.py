@@ -19,7 +19,7 @@ from sgcad_core import settings
 
 POOL = "sgcad"
 """The work pool that deploy/prefect.yaml names."""
-ASK_S = 5.0
+ASK_S = 20.0
 SAME_S = 2.0
 """A process is told again by number and start; the start is known to within the clock's adjustments."""
 
@@ -39,7 +39,7 @@ class Running:
         """Whether this very process still runs."""
         try:
             process = psutil.Process(self.pid)
-            return abs(process.create_time() - self.born) < SAME_S and process.status() != psutil.STATUS_ZOMBIE
+            return bool(abs(process.create_time() - self.born) < SAME_S and process.status() != psutil.STATUS_ZOMBIE)
         except psutil.Error:
             return False
 
