@@ -17,6 +17,8 @@ from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, R
 
 Floats = NDArray[np.float64]
 Stage = Literal["road", "scenario"]
+Source = Literal["written", "openstreetmap", "map_library"]
+"""Where a road network's shape comes from: drawn for the report, a real junction, a map that existed before."""
 
 
 class Record(BaseModel):
@@ -59,6 +61,8 @@ class Passage(Record):
     kind: str
     text: str
     score: float = 0.0
+    data: str = Field("", repr=False)
+    """JSON for programs, such as a real junction's legs and plain XML; never part of a prompt."""
 
 
 class Query(Record):
@@ -118,6 +122,7 @@ class RoadNetwork(Record):
     spec: RoadSpec | None = None
     layout: RoadLayout | None = None
     """The layout that `spec` was drawn from, where the writer answered one."""
+    source: Source = "written"
     net_xml: str | None = Field(None, repr=False)
     xodr: str | None = Field(None, repr=False)
     log: str = ""

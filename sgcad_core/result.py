@@ -106,6 +106,7 @@ def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
     graph = parse_net(network.net_xml)
     figures = network_figures(graph)
     return {
+        "source": network.source,
         "intersections": figures.intersections,
         "components": figures.components,
         "mean_lanes": round(figures.mean_lanes, 4),

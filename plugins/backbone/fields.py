@@ -55,7 +55,7 @@ def is_refusal(text: str) -> bool:
     """True if the answer is the schema's refusal branch, {"refuse": reason, "missing": [...]}."""
     try:
         found = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):  # a model that opens brackets without end
         return False
     return isinstance(found, dict) and "refuse" in found
 

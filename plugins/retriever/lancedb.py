@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
-from itertools import chain
+from itertools import chain, zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -17,6 +17,7 @@ from pydantic import Field, PrivateAttr
 from plugins.retriever.knowledge.chunk import KINDS, TASKS, Chunk, Kind, Task
 from plugins.retriever.knowledge.embedders import Embedder, Name, make
 from plugins.retriever.knowledge.manifest import Manifest, read_manifest
+from plugins.retriever.knowledge.topics import topics
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Retriever
 from sgcad_core.records import Passage
@@ -42,6 +43,10 @@ class LanceDB(Retriever):
     """Name of the variable that holds the server's key."""
     kinds: tuple[Kind, ...] = ("example", "junction")
     """What is retrieved; api, snippet and xml serve writers that write code or XML themselves."""
+    road_kinds: tuple[Kind, ...] | None = None
+    """What the road stage retrieves instead, such as xml for a writer of SUMO XML."""
+    scenario_kinds: tuple[Kind, ...] | None = None
+    """What the scenario stage retrieves instead, such as api and snippet for a writer of Python."""
     per_kind: int = Field(2, ge=1, le=20)
     """Passages of each kind."""
     _guard: threading.Lock = PrivateAttr(default_factory=threading.Lock)
@@ -50,12 +55,19 @@ class LanceDB(Retriever):
         """The best of each kind, kinds in the order of the field. Raises ConfigError: no index to read."""
         if task not in TASKS:
             raise ConfigError(f"retriever 'lancedb' serves the tasks {', '.join(TASKS)}, not {task!r}")
-        found = [hit for kind in self.kinds for hit in self.search(text, self.per_kind, (kind,), task)]
-        return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score) for hit in found)
+        own = self.road_kinds if task == "road" else self.scenario_kinds
+        kinds = self.kinds if own is None else own
+        found = [hit for kind in kinds for hit in self._of_kind(text, kind, cast("Task", task))]
+        return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score, data=hit.data) for hit in found)
 
-    def search(
-        self, text: str, k: int = 5, kinds: Sequence[Kind] = (), task: Task | None = None
-    ) -> list[Hit]:
+    def _of_kind(self, text: str, kind: Kind, task: Task) -> list[Hit]:
+        """The best of one kind. Of a language's pieces: those of the task's own topics in turn, then the text's."""
+        asked = (*topics(kind, task), text)
+        lists = [self.search(words, self.per_kind, (kind,), task) for words in asked]
+        in_turn = (hit for rank in zip_longest(*lists) for hit in rank if hit is not None)
+        return list({hit.id: hit for hit in in_turn}.values())[: self.per_kind]
+
+    def search(self, text: str, k: int = 5, kinds: Sequence[Kind] = (), task: Task | None = None) -> list[Hit]:
         """The k best chunks of any of the kinds (all if none is named), best first."""
         return self._index().search(text, k, kinds, task)
 

@@ -53,11 +53,11 @@ class PlainXmlRoad(RoadWriter):
             answer_schema=answer_schema(PlainAnswer) if enveloped else None,
             attempt=attempt,
         )
-        return compile_network(_plain(ask(context, query).text))
+        return compile_network(plain_of_answer(ask(context, query).text))
 
 
-def _plain(answer: str) -> PlainXml:
-    """The three documents of an answer, in whichever form it came."""
+def plain_of_answer(answer: str) -> PlainXml:
+    """The three documents of an answer, in whichever form it came. Raises InvalidOutput, Refused."""
     found = {part: xml_document(answer, part) for part in _PARTS}
     if len(answer) > MAX_ANSWER or _ENVELOPED.search(answer) or not (found["nodes"] or found["edges"]):
         envelope = parse_answer(answer, PlainAnswer)

@@ -10,12 +10,15 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.graph_spec import spec_of_graph
+from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.scenario import compile_scenario
+from sgcad_core.specs import RoadSpec
 
 
 class Rules(ScenarioWriter):
@@ -32,14 +35,18 @@ class Rules(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Write the scenario. Raises Refused without vehicles, InvalidOutput without a road spec."""
-        if network.spec is None:
-            raise InvalidOutput(
-                "rules need the network's road spec: use a road writer that leaves one (template, spec)"
-            )
+        """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
+        spec = network.spec or _read_back(network)
         facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
-        scenario = compile_scenario(behavior_of_facts(facts, network.spec), network)
+        scenario = compile_scenario(behavior_of_facts(facts, spec), network)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
+
+
+def _read_back(network: RoadNetwork) -> RoadSpec:
+    """The roads of a network that was drawn from no spec."""
+    if network.net_xml is None:
+        raise InvalidOutput("the road network has no net.xml: no road to place an actor on")
+    return spec_of_graph(parse_net(network.net_xml))
 
 
 def _inferred(facts: CrashFacts) -> Iterator[str]:

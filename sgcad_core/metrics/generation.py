@@ -30,7 +30,7 @@ _BY_SOURCE: Mapping[str, Layer] = {
     "netconvert": "netconvert",
     "sumo_load": "references", "opendrive": "references", "openscenario": "references", "agreement": "references",
     "scenario": "references", "road": "references", "planner": "references", "net_xml": "references",
-    "xodr": "references",
+    "xodr": "references", "sumo_routes": "references",
     "python": "execution", "python_rules": "execution", "python_limit": "execution",
 }  # fmt: skip
 

@@ -1,0 +1,36 @@
+"""Existing maps only: the map of a library that is most like what the report tells of its roads.
+
+No model: the roads are read off the narrative by rules. Nothing is drawn for the report, so what a map lacks stays
+lacking. Knows the narrative's road facts and the library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar
+
+from plugins.road_writer._maps import compiled, library, nearest
+from sgcad_core.errors import Refused
+from sgcad_core.interfaces import Ask, RoadWriter
+from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
+from sgcad_core.narrative.roads import road_facts
+from sgcad_core.records import Context, Finding, Passage, RoadNetwork
+
+
+class MapLibrary(RoadWriter):
+    """The nearest map by legs, lanes, shape and control, turned so that its legs lie as told."""
+
+    asks_model: ClassVar[bool] = False
+    folder: Path | None = None
+    """Maps of your own (.net.xml, .xodr); the project's twenty where none is named."""
+
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Choose, turn, compile. Raises Refused on a text without a crash, ConfigError for a folder without maps."""
+        facts = road_facts(context.narrative)
+        if not facts.crash.vehicles and not facts.roads:
+            missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
+            raise Refused("the narrative names neither a vehicle nor a road", missing)
+        return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))

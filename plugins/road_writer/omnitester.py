@@ -1,0 +1,91 @@
+"""OmniTester's road half: an interpreter thinks aloud and describes the scene, a net generator writes SUMO XML from it.
+
+The description alone, not the report, reaches the generator, beside real junctions that an index finds for it; faults
+of the schemas, of netconvert and of SUMO come back through the refinement loop. Knows no index but through the
+retriever that it names.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import ClassVar, Literal, cast
+
+from pydantic import Field, PrivateAttr
+
+from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.interfaces import Ask, Retriever, RoadWriter
+from sgcad_core.once import OncePerCase
+from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.registry import plugin_class
+from sgcad_core.specs import Spec
+
+
+class RoadInterpretation(Spec):
+    """What the interpreter answers; the thinking stands first, so that it is done first."""
+
+    reasoning: str = Field(description="step by step: junction, legs, headings, lanes, control, shape")
+    roads: str = Field(min_length=1, description="the whole scene in plain sentences for somebody who draws it")
+
+
+class OmnitesterRoad(RoadWriter):
+    """Interpreter, retrieval of real junctions, net generator."""
+
+    asks_model: ClassVar[bool] = True
+    form: Literal["envelope", "fenced"] = "fenced"
+    folder: Path | None = None
+    """An index of real junctions (`sgcad index build EXTRACT --out FOLDER`); none: nothing is retrieved."""
+    embedder: Literal["none", "minilm", "sentence_transformers", "openai"] = "none"
+    model: str = ""
+    base_url: str = ""
+    junctions: int = Field(2, ge=1, le=5)
+    """Real junctions shown to the net generator."""
+    _seen: OncePerCase[RoadInterpretation] = PrivateAttr(default_factory=OncePerCase)
+
+    @property
+    def stamp(self) -> str:
+        """That of the index, if any. Raises ConfigError where there is none."""
+        return self._retriever.stamp if self._retriever else ""
+
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Interpret (once a case), retrieve, generate, compile. Raises InvalidOutput, Refused, ConfigError."""
+        scene = self._seen.of(context, attempt, lambda: _interpret(context, ask, attempt))
+        query = Query(
+            task=load_prompt("omnitester_net", answer=load_prompt(f"plain_xml_{self.form}")),
+            passages=(*passages, *self._junctions(scene.roads)),
+            answer_schema=answer_schema(PlainAnswer) if self.form == "envelope" else None,
+            attempt=attempt,
+        )
+        return compile_network(plain_of_answer(ask(Context(narrative=scene.roads), query).text))
+
+    def _junctions(self, description: str) -> list[Passage]:
+        if self._retriever is None:
+            return []
+        return [_with_xml(p) for p in self._retriever.retrieve(description, "road")]
+
+    @cached_property
+    def _retriever(self) -> Retriever | None:
+        if self.folder is None:
+            return None
+        fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
+        kinds = {"kinds": ("junction",), "per_kind": self.junctions}
+        return cast("Retriever", plugin_class("retriever", "lancedb")(**fields, **kinds))
+
+
+def _interpret(context: Context, ask: Ask, attempt: int) -> RoadInterpretation:
+    schema = answer_schema(RoadInterpretation)
+    query = Query(task=load_prompt("omnitester_interpreter"), answer_schema=schema, attempt=attempt)
+    return parse_answer(ask(context, query).text, RoadInterpretation)
+
+
+def _with_xml(passage: Passage) -> Passage:
+    """A real junction as the generator sees it: its description and its plain XML."""
+    plain = json.loads(passage.data)["plain"] if passage.data else {}
+    shown = "\n".join(plain[part] for part in ("nodes", "edges") if plain.get(part))
+    return passage.model_copy(update={"text": f"{passage.text}\n{shown}".strip()})

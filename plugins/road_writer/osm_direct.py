@@ -1,0 +1,85 @@
+"""Direct retrieval (OSM-Direct): the nearest real junction to what the report tells of its roads, and nothing drawn.
+
+No model: the template's road facts are put in the words in which an index describes junctions, and the first one found
+is turned so that its legs lie as told, and compiled. A report of a plain road gets a junction too: an index of
+junctions holds nothing else. Knows no index but through the retriever that it names.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Literal, cast
+
+from sgcad_core.errors import ConfigError, Refused
+from sgcad_core.formats.graph_spec import spec_of_graph
+from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.interfaces import Ask, Retriever, RoadWriter
+from sgcad_core.junction_words import JunctionLeg, describe, describe_layout, layout_legs
+from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
+from sgcad_core.narrative.roads import road_facts
+from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
+from sgcad_core.registry import plugin_class
+from sgcad_core.turning import best_turn, turned
+
+
+class OsmDirect(RoadWriter):
+    """The nearest junction of an index that `sgcad index build EXTRACT --out FOLDER` made."""
+
+    asks_model: ClassVar[bool] = False
+
+    folder: Path = Path("knowledge")
+    """The index; relative to the working directory."""
+    embedder: Literal["none", "minilm", "sentence_transformers", "openai"] = "none"
+    """none: full text over the words of a description, which junctions of equal legs and lanes share."""
+    model: str = ""
+    base_url: str = ""
+    turn: bool = True
+    """Turn the junction so that its legs lie as told; else it lies as in the real world, and crashes seldom fit."""
+
+    @property
+    def stamp(self) -> str:
+        """That of the index. Raises ConfigError where there is none."""
+        return self._retriever.stamp
+
+    def write(
+        self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
+    ) -> RoadNetwork:
+        """Describe, look up, turn, compile. Raises Refused (a text of no crash), ConfigError (no junctions)."""
+        facts = road_facts(context.narrative)
+        if not facts.crash.vehicles and not facts.roads:
+            missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
+            raise Refused("the narrative names neither a vehicle nor a road", missing)
+        layout = layout_of_facts(facts, Defaults())
+        found = self._nearest(describe_layout(layout))
+        data: dict[str, Any] = json.loads(found.data)
+        legs = [_leg(leg) for leg in data["legs"]]
+        turn = best_turn(legs, layout_legs(layout))[0] if self.turn else 0.0
+        network = compile_network(turned(PlainXml(**data["plain"]), turn))
+        spec = spec_of_graph(parse_net(network.net_xml)) if network.net_xml else None
+        said = f"osm_direct: {found.id}, turned by {math.degrees(turn):.0f} degrees: {describe(legs, data['control'])}"
+        log = f"{said}\n{network.log}".strip()
+        return network.model_copy(update={"spec": spec, "source": "openstreetmap", "log": log})
+
+    def _nearest(self, words: str) -> Passage:
+        found = [p for p in self._retriever.retrieve(words, "road") if p.data]
+        if not found:
+            raise ConfigError(
+                f"the knowledge base in {self.folder} holds no junction: "
+                f"`sgcad index add EXTRACT.osm.pbf --out {self.folder}` takes those of a map in"
+            )
+        return found[0]
+
+    @cached_property
+    def _retriever(self) -> Retriever:
+        fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
+        found = plugin_class("retriever", "lancedb")(**fields, kinds=("junction",), per_kind=1)  # type: ignore[call-arg]
+        return cast("Retriever", found)
+
+
+def _leg(leg: dict[str, Any]) -> JunctionLeg:
+    return JunctionLeg(math.radians(leg["angle_deg"]), leg["lanes_in"], leg["lanes_out"])

@@ -1,0 +1,69 @@
+"""Whether a route file is one that SUMO runs: schema, references, then SUMO itself in a worker process."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.formats.routes_xml import SOURCE, routes_findings
+from sgcad_core.interfaces import Validator
+from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.workers import Worker
+
+_WORKER = Worker("plugins.validator._sumo_routes:trial")
+
+
+class Routes(Validator):
+    """For scenarios of SUMO routes; an OpenSCENARIO file is passed over."""
+
+    stage: ClassVar[str] = "scenario"
+    longest_s: float = 60.0
+    """Simulated seconds of the trial."""
+    timeout_s: float = 60.0
+    no_collision: Literal["repair", "note"] = "note"
+    """Severity where SUMO's drivers avoid the declared crash."""
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """Schema faults, else references, else what SUMO says of a run: errors, who never drives, no collision."""
+        network = evidence.network
+        if not isinstance(artifact, Scenario) or artifact.routes_xml is None or not network or not network.net_xml:
+            return []
+        actors = [actor.id for actor in artifact.actors]
+        try:
+            if faults := routes_findings(artifact.routes_xml, parse_net(network.net_xml), actors):
+                return faults
+            said, missing, hits = _WORKER.call(
+                network.net_xml, artifact.routes_xml, actors, self.longest_s, timeout_s=self.timeout_s
+            )
+        except InvalidOutput as fault:
+            return list(fault.findings)
+        except SimulationFailed as fault:
+            return [_finding(f"SUMO died of the routes: {fault}", "write plain vehicles with routes")]
+        if said:
+            return [_finding(f"SUMO does not run the routes: {_words(said)}", "mend what SUMO names")]
+        if missing:
+            names = ", ".join(missing)
+            return [
+                _finding("actors that never drive", f"give {names} a free place: other departLane or departPos", names)
+            ]
+        return self._contact(artifact, hits)
+
+    def _contact(self, artifact: Scenario, hits: list[tuple[str, str]]) -> list[Finding]:
+        """Nothing where SUMO sees the declared pair collide."""
+        declared = artifact.declared
+        if declared is None or any({declared.striker, declared.struck} == set(pair) for pair in hits):
+            return []
+        seen = "; ".join(f"{a} into {b}" for a, b in hits) or "no collision"
+        remedy = "lower minGap and tau, set jmIgnoreFoeProb to 1, or move departPos and departSpeed so that they meet"
+        what = f"SUMO's drivers do not bring {declared.striker} into {declared.struck}"
+        return [_finding(what, remedy, seen, self.no_collision)]
+
+
+def _words(message: str) -> str:
+    lines = [line.strip() for line in _WORKER.said().splitlines() if line.strip()]
+    return " | ".join(dict.fromkeys([message, *lines]))[:600]
+
+
+def _finding(what: str, remedy: str, value: str = "", severity: Literal["repair", "note"] = "repair") -> Finding:
+    return Finding(source=SOURCE, severity=severity, what=what, where="routes", value=value, remedy=remedy)
