@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import httpx
 import psutil
 
 from deploy import compose
@@ -31,7 +32,7 @@ from sgcad_core import settings
 from sgcad_core.errors import MissingTool, SgcadError
 
 INNER_PORTS = {"postgres:5432": 0, "server:4200": 0, "mlflow:5000": 0, "worker:8080": 0}
-START_S = 300.0
+START_S, ASK_S = 300.0, 30.0
 ORDER = ("postgres", "server", "mlflow", "deployments", "worker")
 
 
@@ -83,6 +84,7 @@ def check(folder: Path) -> Iterator[str]:
     password, key = secrets.token_hex(12), f"sgcad:{secrets.token_hex(12)}"
     stage = Stage(folder, {"POSTGRES_PASSWORD": password, "PREFECT_AUTH": key, "SERVER_PORT": "4200"})
     found = compose.services(stage.environment)
+    (folder / "data").mkdir()
     with ExitStack() as stack:
         for name in ORDER:
             started = time.monotonic()
@@ -94,6 +96,7 @@ def check(folder: Path) -> Iterator[str]:
                 _keep(stack, stage, name, found[name])
             yield f"{name}: well after {time.monotonic() - started:.0f} s"
         yield from _online(stage, key)
+        yield from _report(stage, key)
 
 
 def needs() -> None:
@@ -163,6 +166,28 @@ def _online(stage: Stage, key: str) -> Iterator[str]:
         if not fine:
             raise MissingTool(line)
         yield line
+
+
+def _report(stage: Stage, key: str) -> Iterator[str]:
+    """One report through the inbox: deployed flow, worker, PostgreSQL, MLflow."""
+    inbox = stage.folder / "data" / "runs" / "inbox"
+    shutil.copytree(settings.ROOT / "docs" / "demo" / "rear-end-on-arterial", inbox / "one")
+    api, auth = f"http://127.0.0.1:{stage.ports['server:4200']}/api", health.key_of(key)
+    deployed = httpx.get(f"{api}/deployments/name/inbox/inbox", auth=auth, timeout=ASK_S).json()
+    body = {"parameters": {"settle_s": 0, "wait_s": 0}, "state": {"type": "SCHEDULED"}}
+    httpx.post(f"{api}/deployments/{deployed['id']}/create_flow_run", json=body, auth=auth, timeout=ASK_S)
+    deadline = time.monotonic() + START_S
+    while not list(inbox.glob("done/one-*/outcome.json")) and time.monotonic() < deadline:
+        time.sleep(0.5)
+    if not list(inbox.glob("done/one-*/one")):
+        raise MissingTool(
+            f"the report in the inbox was not done; the worker says:\n{_last(stage.folder / 'worker.log')}"
+        )
+    found = f"http://127.0.0.1:{stage.ports['mlflow:5000']}/api/2.0/mlflow/experiments/get-by-name"
+    answer = httpx.get(found, params={"experiment_name": "sgcad"}, timeout=ASK_S)
+    if answer.status_code != httpx.codes.OK:
+        raise MissingTool(f"MLflow has no experiment of the report: {answer.text[:500]}")
+    yield "a report in the inbox became a scenario, and MLflow has it"
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -19,14 +19,17 @@ from sgcad_core.errors import MissingTool
 LIMIT_S = 300.0
 
 
-def serve(api: str, home: Path | None = None) -> None:
-    """Both, as often as wanted; `home` is Prefect's folder. Raises MissingTool with what server or Prefect say."""
+def serve(api: str, home: Path | None = None, work: Path = settings.ROOT) -> None:
+    """Both, as often as wanted. Raises MissingTool with what server or Prefect say.
+
+    `home` is Prefect's folder; flow runs start in the folder `work`, which is where relative paths begin.
+    """
     _make_pool(api)
     environment = settings.subprocess_environment() | {**services.QUIET, "PREFECT_API_URL": api}
     if home:
         environment["PREFECT_HOME"] = str(home)
     done = subprocess.run(  # noqa: S603 - our own command
-        services.deploy_command(), cwd=settings.ROOT, env=environment, capture_output=True, text=True, timeout=LIMIT_S
+        services.deploy_command(), cwd=work, env=environment, capture_output=True, text=True, timeout=LIMIT_S
     )
     if done.returncode:
         raise MissingTool(f"`prefect deploy --all` fails:\n{(done.stdout + done.stderr)[-2000:]}")
@@ -46,7 +49,7 @@ def _make_pool(api: str) -> None:
 def main() -> int:
     """0, or 2 with a message."""
     try:
-        serve(settings.prefect_url().rstrip("/"))
+        serve(settings.prefect_url().rstrip("/"), work=Path(settings.environment("SGCAD_WORK") or settings.ROOT))
     except MissingTool as fault:
         sys.stderr.write(f"deploy: error: {fault}\n")
         return 2

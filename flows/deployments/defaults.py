@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from sgcad_core import settings
 
@@ -12,6 +13,12 @@ INBOX = "runs/inbox"
 def inbox_address(address: str | None) -> str:
     """The parameter, else the variable SGCAD_INBOX, else runs/inbox."""
     return address or settings.environment("SGCAD_INBOX") or INBOX
+
+
+def cases_folder(cases: str | None) -> Path:
+    """The parameter, else the variable SGCAD_CASES, else the bundled reports."""
+    named = cases or settings.environment("SGCAD_CASES")
+    return Path(named) if named else settings.ROOT / "docs" / "demo"
 
 
 def overrides_of(overrides: Sequence[str] | None) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ from flows import cases as case_sets
 from flows import store
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
 from flows.chain import Ending
-from flows.deployments.defaults import overrides_of
+from flows.deployments.defaults import cases_folder, overrides_of
 from flows.evaluate import drive
 from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
 from flows.results.reading import Study, load_study
@@ -53,7 +53,7 @@ class Tolerance(NamedTuple):
 
 @flow(name="nightly", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)
 def nightly_flow(
-    cases: str,
+    cases: str | None = None,
     configs: list[str] | None = None,
     truth: str | None = None,
     out: str = "runs/nightly",
@@ -66,11 +66,12 @@ def nightly_flow(
 ) -> State[Any]:
     """Run the benchmark; Failed if a figure is worse than the accepted one by more than the tolerance.
 
-    `cases` and `truth` are folders; without truth only what needs none is measured. Cases that nothing has changed for
-    are not repeated unless `fresh`. `accept` makes this run the measure.
+    `cases` is a folder, by default SGCAD_CASES or the bundled reports; `truth` a folder of labels, without which only
+    what needs none is measured. Cases that nothing has changed for are not repeated unless `fresh`. `accept` makes this
+    run the measure.
     """
     paths = [Path(c) for c in configs or ["template.yaml"]]
-    batch = batch_of(case_sets.cases_in([Path(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
+    batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
     _work(batch)

@@ -127,8 +127,8 @@ def test_deployments_name_flows_that_are_there_with_parameters_that_they_take():
     document = yaml.safe_load((DEPLOY / "prefect.yaml").read_text())
     assert {d["name"] for d in document["deployments"]} >= {"inbox", "nightly", "study", "shard", "reindex"}
     for deployment in document["deployments"]:
-        file, name = deployment["entrypoint"].split(":")
-        flow = getattr(importlib.import_module(file.removesuffix(".py").replace("/", ".")), name)
+        module, _, name = deployment["entrypoint"].rpartition(".")
+        flow = getattr(importlib.import_module(module), name)
         assert deployment["name"].startswith(flow.name)
         assert set(deployment.get("parameters", {})) <= set(inspect.signature(flow.fn).parameters)
         assert deployment["work_pool"]["name"] == POOL
