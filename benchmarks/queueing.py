@@ -1,7 +1,4 @@
-"""What a number of reports a day needs: servers, waiting times, and which part gives way first.
-
-    python -m benchmarks.queueing                         # the tables of docs/scale.md
-    python -m benchmarks.queueing --rate 1e5 --workers 40 --jobs 2
+"""Queues event by event: reports that arrive at random pass stations with several servers each.
 
 `Station` is a queue with several servers (cores of workers, the Prefect server, the tracker, the storage, GPUs);
 `simulate` sends reports through stations one after the other, event by event (heapq, seeded). Reports arrive at
@@ -21,13 +18,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 DAY_S = 86_400.0
+PEAK = 1.9
+"""The busiest hour's rate against the day's mean."""
 
 
 @dataclass(frozen=True)
 class Station:
     """A part that every report passes: so many servers, each busy for about `seconds` a report.
 
-    `variation` is the coefficient of variation of service times (1: exponential, 0: all alike).
+    `variation` is the coefficient of variation of service times (1: exponential, below 0.001: all alike).
     """
 
     name: str
@@ -42,7 +41,7 @@ class Station:
 
     def draw(self, dice: random.Random) -> float:
         """One service time, s: gamma with the station's mean and variation."""
-        if self.variation == 0:
+        if self.variation < 1e-3:
             return self.seconds
         shape = 1 / self.variation**2
         return dice.gammavariate(shape, self.seconds / shape)
@@ -103,7 +102,7 @@ def arrivals(
 
 def working_hours(hour: float) -> float:
     """A day that peaks at 14 h with 1.9 times the mean and ends at night with a tenth of it."""
-    return 1 + 0.9 * math.cos((hour - 14) / 24 * 2 * math.pi)
+    return 1 + (PEAK - 1) * math.cos((hour - 14) / 24 * 2 * math.pi)
 
 
 def simulate(stations: Sequence[Station], times: Iterator[float] | Sequence[float], seed: int = 1) -> Outcome:
@@ -181,56 +180,3 @@ def servers_for(per_day: float, seconds: float, wait_s: float, peak: float = 1.0
     while erlang_c(servers, rate, seconds)[1] > wait_s:
         servers += 1
     return servers
-
-
-# ------------------------------------------------------------------ the tables
-@dataclass(frozen=True)
-class Costs:
-    """Seconds a report at each part, measured (docs/scale.md says how) or computed where it says so."""
-
-    chain_core: float
-    client_core: float
-    prefect: float
-    tracker: float
-    storage: float
-
-
-def stations_for(per_day: float, costs: Costs, parts: dict[str, int] | None = None, peak: float = 1.9) -> list[Station]:
-    """One server of each shared part, unless `parts` says more, and the cores that the peak hour needs."""
-    parts = parts or {}
-    work = costs.chain_core + costs.client_core
-    cores = parts.get("cores") or servers_for(per_day, work, wait_s=60.0, peak=peak)
-    return [
-        Station("cores", cores, work, variation=0.5),
-        Station("storage", parts.get("storage", 16), costs.storage, variation=0.5),
-        Station("Prefect server", parts.get("prefect", 1), costs.prefect, variation=0.5),
-        Station("tracker", parts.get("tracker", 1), costs.tracker, variation=0.5),
-    ]
-
-
-def table(per_day: float, costs: Costs, parts: dict[str, int] | None = None, reports: int = 50_000) -> str:
-    """A simulated day (or its first reports) with a peak hour, as Markdown."""
-    stations = stations_for(per_day, costs, parts)
-    count = int(min(per_day, reports))
-    # A day squeezed into `count` reports would change the rate: simulate the peak hours only where it is cut.
-    times = arrivals(per_day * (1.0 if count == per_day else 1.9), count, random.Random(7),
-                     working_hours if count == per_day else None)  # fmt: skip
-    outcome = simulate(stations, times, seed=7)
-    what = "a whole day" if count == per_day else f"the peak hour's rate, {count:,} reports"
-    lines = [f"{per_day:,.0f} reports a day ({what}):", "",
-             "| part | servers | s a report | most a day | busy | mean wait s | 99 % wait s | longest queue |",
-             "|---|---|---|---|---|---|---|---|"]  # fmt: skip
-    lines += [_row(seen, outcome.elapsed_s) for seen in outcome.seen]
-    through = sorted(outcome.through)
-    median, late = through[len(through) // 2], through[int(0.99 * len(through))]
-    lines += ["", f"From arrival to tracked result: median {median:.1f} s, 99 % {late:.1f} s. "
-              f"First to give way: {outcome.first_to_give_way().station.name}."]  # fmt: skip
-    return "\n".join(lines)
-
-
-def _row(seen: Seen, elapsed_s: float) -> str:
-    one = seen.station
-    busy = f"{seen.utilisation(elapsed_s):.0%}"
-    most = f"{one.capacity * DAY_S:,.0f}"
-    waits = f"{seen.mean_wait:.2f} | {seen.quantile(0.99):.2f} | {seen.longest_queue:,}"
-    return f"| {one.name} | {one.servers} | {one.seconds:.3f} | {most} | {busy} | {waits} |"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from benchmarks.queueing import DAY_S, Station, arrivals, erlang_c, servers_for, simulate, working_hours
 
 REPORTS = 20_000
-CHANCE = settings(max_examples=10, deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
+CHANCE = settings(max_examples=6, deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
 """Tests whose truth is a mean over chance: the same examples every time, and no shrinking."""
 
 
