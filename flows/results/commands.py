@@ -54,7 +54,9 @@ def report(
     truth: Truth = None,
     only: Only = "",
     html: Annotated[Path | None, typer.Option("--html", help="The page; default: report.html in the study.")] = None,
-    figures: Annotated[Path | None, typer.Option("--figures", help="Write the figures as PNG into this folder.")] = None,
+    figures: Annotated[
+        Path | None, typer.Option("--figures", help="Write the figures as PNG into this folder.")
+    ] = None,
 ) -> None:
     """One HTML file with a study's tables, figures and cases; it needs no server and fetches nothing."""
     from flows.results.page import page

@@ -2,7 +2,7 @@
 // The case gallery: filter, sort, and draw what scrolls into view. Everything from a report enters as text.
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
-const PAGE = 12;
+const PAGE = 8;
 const HALF_DM = 420, PIXELS = 360;
 let shown = [], made = 0;
 
