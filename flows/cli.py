@@ -40,8 +40,6 @@ app = typer.Typer(
 plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`.")
 app.add_typer(plugins_app, name="plugins")
 app.add_typer(index_app, name="index")
-app.command()(table)
-app.command()(report)
 
 Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YAML; may be given several times.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
@@ -181,6 +179,10 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
     from flows.doctor import examine
 
     raise typer.Exit(0 if examine(out) else 1)
+
+
+app.command()(table)
+app.command()(report)
 
 
 def main() -> None:
