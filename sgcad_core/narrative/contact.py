@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Told, subject_starts
+from sgcad_core.narrative.contact_nouns import Touch, together, touches
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
 from sgcad_core.narrative.zones import AREA, Zone, area_of, plain
@@ -62,12 +63,16 @@ def _sentence(told: Told, who: Roster) -> list[Blow]:
         blow = _blow(told, text, m, starts, who)
         if blow:
             found.append(blow)
-    for m in (*says.BETWEEN.finditer(text), *says.BOTH_PARTS.finditer(text)):
-        found.append(Blow(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), told.number, told.role, words="between"))
-    for m in says.PUSHED.finditer(text):
-        a, b, area = (m["v1"], m["v2"], m["a2"]) if m["v1"] else (m["v3"], m["v4"], m["a4"])
-        found.append(Blow(a, b, "front", _maybe(area) or "back", told.number, told.role, words="pushed"))
+    found += [_touch(t, told) for t in touches(text)]
+    told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
+    found += [_touch(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
     return [b for b in found if b.actor in who.ids and b.actor != b.other]
+
+
+def _touch(t: Touch, told: Told) -> Blow:
+    if t.by:
+        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words)
+    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words)
 
 
 def _maybe(words: str | None) -> Zone | None:
@@ -81,11 +86,14 @@ def _blow(
     passive = bool(says.PASSIVE.search(before)) and not re.match(r"(?:made|making|came)", m.group(), re.I)
     if (says.NEAR_MISS.search(before) and not says.TO_HIT.search(before)) or _is_noun(before, m.group(), behind):
         return None
+    nxt = HIT.search(behind)
+    scope = behind[: nxt.start()] if nxt else behind
+    thing = says.THING_WAS.search(before) if passive else None
+    if thing:
+        return _thing_hit(told, thing, scope, m.group())
     subjects = _subjects(told, before, m, starts)
     if not subjects:
         return None
-    nxt = HIT.search(behind)
-    scope = behind[: nxt.start()] if nxt else behind
     if len(subjects) > 1:
         return _mutual(told, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], _subject_area(before, subjects[0])
@@ -96,9 +104,19 @@ def _blow(
     )
 
 
+def _thing_hit(told: Told, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
+    """ "A tree was struck by the front of V1"."""
+    by = says.BY.search(scope)
+    if not by:
+        return None
+    return Blow(by["v"], thing["object"].lower(), _maybe(by["area"]), None, told.number, told.role, False, verb.lower())
+
+
 def _is_noun(before: str, word: str, behind: str) -> bool:
     """ "the impact", "at impact", "of contact": no verb."""
-    if word.lower() not in ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike"):
+    if word.lower() not in ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike") or (
+        says.CAUSED.search(before)
+    ):
         return False
     return bool(
         re.search(
@@ -114,6 +132,9 @@ def _subjects(
     told: Told, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
     """The vehicles whose verb this is."""
+    caused = says.CAUSED.search(before)
+    if caused:
+        return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
     if fitting:
         return fitting[-1]
@@ -136,7 +157,8 @@ def _subject_area(before: str, subject: str) -> Zone | None:
 
 
 def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
-    scope = _clause(scope)
+    paired = _paired(scope)
+    scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
@@ -145,7 +167,19 @@ def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, wh
         return None
     if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
         area, other_area = area or "front", other_area or "back"
+    if paired and area is None:
+        area, other_area = paired
     return Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+
+
+def _paired(scope: str) -> tuple[Zone | None, Zone | None] | None:
+    """Both areas of "front to left side" and of "head-on", the subject's first."""
+    if re.match(r"[^,.;]{0,40}\bhead-on\b(?! lane)", scope):
+        return "front", "front"
+    pair = says.PAIRED.search(scope)
+    if not pair or pair.start() > 60 or "with" in pair.group():
+        return None
+    return _maybe(pair["a1"]), _maybe(pair["a2"])
 
 
 def _clause(scope: str) -> str:
@@ -204,8 +238,26 @@ def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, w
         area, other_area = area or "back", other_area or "front"
     if other is None:
         return None
+    area, other_area = _struck_pair(scope, area, other_area)
     other = _not_itself(other, actor, who) or other
     return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+
+
+def _struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple[Zone | None, Zone | None]:
+    """ "V2 was struck by V1, front to left side": the front, where only one is, belongs to the striking vehicle."""
+    against = says.AGAINST.search(scope)
+    by = says.BY.search(scope)
+    if against and by and by["v"] == against["v1"]:
+        return _maybe(against["a2"]), _maybe(against["a1"])
+    pair = None if against or area or other_area else _paired(scope)
+    if not pair:
+        return area, other_area
+    return (pair[1], pair[0]) if _strikes_first(pair) else pair
+
+
+def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
+    """Whether the first of two zones is the front of who strikes."""
+    return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")
 
 
 def _by_area(scope: str) -> Zone | None:

@@ -18,7 +18,7 @@ NEAR_MISS = re.compile(
     r"both|another|further))*|"
     r"to(?: (?:avoid|be|have|get|being|been|not|prevent|make|come|in|into))*)\s*$", re.I)  # fmt: skip
 TO_HIT = re.compile(
-    r"\b(?:caus\w+ (?:\w+ )?|proceed\w* |continu\w* |went on |return\w+ |spin |forc\w+ (?:\w+ "
+    rf"\b(?:caus\w+ (?:the )?(?:(?:{AREA}) of )?(?:\w+ )?|proceed\w* |continu\w* |went on |return\w+ |spin |forc\w+ (?:\w+ "
     r")?)to\s*$",
     re.I,
 )
@@ -46,6 +46,11 @@ OBJECTS = (
     "bicycle", "bicyclist", "cyclist", "signal", "light standard",
 )  # fmt: skip
 OBJECT = re.compile(rf"^[^.;]{{0,70}}?\b(?P<object>{'|'.join(OBJECTS)})s?\b", re.I)
+THING_WAS = re.compile(
+    rf"\b(?P<object>{'|'.join(OBJECTS)})s?(?: (?!V\d)[\w-]+){{0,6}}? (?:was|were|is|are|got)(?: \w+ly| then| also)*\s*$",
+    re.I)  # fmt: skip
+CAUSED = re.compile(rf"\bcaus\w+ (?:the )?(?:(?:{AREA}) of )?(?P<v>V\d+) to\s*$", re.I)
+ASIDE = re.compile(r", (?:which|that|who) (?:was|were|is|had)\b[^,.;]{0,60},(?= (?:in|on|at|with) )", re.I)
 CLAUSE_END = re.compile(
     r"[;.]|, (?:and|then|which|while|causing)\b|\band (?:then|came|the)\b|\bcausing\b|"
     r"\bbefore\b|\bafter\b|\bpushing\b|\bthen\b|\bas\b (?:it|V\d)",

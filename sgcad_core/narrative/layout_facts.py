@@ -162,7 +162,7 @@ class _Builder:
         coming, going = lanes.way(inward), lanes.way(bearing)
         lanes_in, lanes_out = coming.approach, going.through
         if lanes.stated and lanes.total and lanes_in and lanes_out and not far:
-            lanes_in = max(lanes_in, _facing(lanes, going, lanes_out))
+            lanes_in = max(lanes_in, _facing(lanes, coming, going))
         return Leg(
             bearing=bearing, lanes_in=lanes_in, lanes_out=lanes_out,
             turns_in=_turns(coming, lanes_in) if at_junction else (),
@@ -202,9 +202,13 @@ def _plain_leg(leg: Leg, lanes: Carriageway, bearing: Compass, ends: tuple[Compa
     return leg.model_copy(update={"lanes_in": inward, "lanes_out": outward})
 
 
-def _facing(lanes: Carriageway, going: Way, lanes_out: int) -> int:
-    """Lanes towards the hub on the leg that faces a leg with a left-turn lane: the road keeps its total."""
-    return (lanes.total or 0) - lanes_out if going.left_turn and lanes.total else 0
+def _facing(lanes: Carriageway, coming: Way, going: Way) -> int:
+    """Lanes towards the hub on the leg that faces a leg with a left-turn lane: the road keeps its total.
+
+    Where both directions have left-turn lanes, each leg has its own and the total counts both.
+    """
+    facing = going.left_turn and not coming.left_turn
+    return (lanes.total or 0) - going.through if facing else 0
 
 
 def _turns(way: Way, lanes_in: int) -> tuple[Turn, ...]:

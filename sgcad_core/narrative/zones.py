@@ -17,7 +17,7 @@ PART = (
     r"tires?|portion|part|center|middle|area|hand|end|plane|axle|section|half|grille|hood|tailgate|trunk|mirror|"
     r"compartment|"
     r"passenger|driver|forward|lower|upper|trailer|semi-trailer|cab|tractor|hatch|window|pillar|plow|bed|tongue|"
-    r"headlight|taillight|most|most-)"
+    r"headlight|taillight|most|most-|leading|trailing|edge)"
 )  # fmt: skip
 AREA = rf"{PART}(?:(?:[ -]|, | and | \(|/){PART}\)?)*"
 _POSSESSIVE = re.compile(rf"\b(?P<v>V\d+)(?:'s?|s) (?:vehicle'?s? )?(?P<area>{AREA})\b", re.I)
@@ -41,8 +41,8 @@ def area_of(words: str) -> Zone | None:
     """
     text = words.lower().replace("-", " ")
     flank = next((area for area, pattern in _SIDES if re.search(pattern, text)), None)
-    front = bool(re.search(r"\bfront|\bgrille|\bhood|\bheadlight|\bforward", text))
-    back = bool(re.search(r"\brear|\bback\b|\btailgate|\btrunk|\bhatch|\btaillight", text))
+    front = bool(re.search(r"\bfront|\bleading|\bgrille|\bhood|\bheadlight|\bforward", text))
+    back = bool(re.search(r"\brear|\btrailing|\bback\b|\btailgate|\btrunk|\bhatch|\btaillight", text))
     if flank and (front or back) and not _FLANKPARTS.search(text):
         return f"front/{flank}" if front else f"back/{flank}"
     return flank or ("front" if front else "back" if back else None)

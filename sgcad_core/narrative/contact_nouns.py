@@ -1,0 +1,68 @@
+"""Contacts that a sentence tells by nouns: "the impact was between ...", "V1 received an impact to its rear".
+
+Reads sentences in the one form of `sgcad_core.narrative.zones.plain`. Knows no subjects: every vehicle is named.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sgcad_core.narrative import contact_words as says
+from sgcad_core.narrative.zones import AREA, Zone, area_of
+
+
+class Touch(NamedTuple):
+    """Two vehicles and the areas that met; `by` the other: whether the first one was struck."""
+
+    first: str
+    second: str
+    first_area: Zone | None
+    second_area: Zone | None
+    words: str
+    by: bool = False
+
+
+_BLOW = r"(?:impacts?|contacts?|collisions?|crash|hits?|blows?)"
+
+
+def _ends(join: str) -> str:
+    """ "front of V1 <join> the left side of V2" as a pattern."""
+    return rf"(?P<a1>{AREA}) of (?P<v1>V\d+),? {join} (?:to )?(?:the )?(?P<a2>{AREA}) of (?P<v2>V\d+)"
+
+
+_NAMED = re.compile(
+    rf"\b{_BLOW}\b[^.;]{{0,40}}?\b(?:was|is|were|involv\w+|occurred|being)\W+(?:(?:made|from|to|with|by) )?(?:the )?"
+    + _ends("(?:and|to|with|against|into|striking|contacting|on)"), re.I)  # fmt: skip
+_TOOK = re.compile(
+    rf"\b(?P<v1>V\d+) (?:then |also )?(?:receiv\w+|sustain\w+|suffer\w+|absorb\w+|took an?) "
+    rf"(?:(?:an?|the) )?(?P<how>(?:[\w-]+ ){{0,3}}?){_BLOW}\b(?:,? (?:to|on|in|along|at) (?:the |its |his |her )?"
+    rf"(?P<a1>{AREA}))?(?: of V\d+)?,? (?:from|by) (?:the )?(?:(?P<a2>{AREA}) of (?:the )?)?(?P<v2>V\d+)",
+    re.I)  # fmt: skip
+_TOGETHER = re.compile(
+    r"\b" + _ends("(?:was (?:driven |forced |pushed )?)?(?:to|against|into|in contact with)"), re.I)  # fmt: skip
+_NOTHING = re.compile(r"\b(?:no|not|never|without|avoid\w*|prevent\w*)\b[^,;.]{0,30}$", re.I)
+
+
+def touches(text: str) -> Iterator[Touch]:
+    """Every contact that nouns tell in a sentence, in the order of their certainty."""
+    for m in (*says.BETWEEN.finditer(text), *says.BOTH_PARTS.finditer(text), *_NAMED.finditer(text)):
+        if not _NOTHING.search(text[: m.start()]):
+            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "between")
+    for m in says.PUSHED.finditer(text):
+        a, b, area = (m["v1"], m["v2"], m["a2"]) if m["v1"] else (m["v3"], m["v4"], m["a4"])
+        yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
+    for m in _TOOK.finditer(text):
+        yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True)
+
+
+def together(text: str) -> Iterator[Touch]:
+    """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
+    for m in _TOGETHER.finditer(text):
+        if not _NOTHING.search(text[: m.start()]):
+            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
+
+
+def _maybe(words: str | None) -> Zone | None:
+    return area_of(words) if words else None
