@@ -7,12 +7,14 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 from rich.console import Console
 
 from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
 from flows.results.published import publication
 from flows.results.refusal import counts
+from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
 PAPER = Path(__file__).resolve().parents[4] / "shared" / "paper" / "sg-cadvlm.tex"
@@ -190,3 +192,9 @@ def test_every_measure_has_one_name():
     assert len({m.name for m in every}) == len(every)
     assert {m.kind for m in every} <= {"share", "mean", "ratio"}
     assert measures.GENERATION[0].factor == 100.0
+
+
+@pytest.mark.parametrize("file", sorted((settings.CONFIGS / "studies").glob("*.yaml")), ids=lambda f: f.stem)
+def test_every_study_names_rows_that_are_published(file):
+    for arm in yaml.safe_load(file.read_text()).get("arms") or ():
+        publication().row(arm.get("published"))
