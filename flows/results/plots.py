@@ -96,7 +96,10 @@ def sensitivity(tables: Tables) -> Plot:
         axes.set_ylim(-3, 103)
     if len(lines) > 1:
         figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", fontsize=8, ncols=3)
-    caption = f"Over {key}; bars: 95 % bootstrap interval over cases, seeds averaged within a case."
+    caption = (
+        f"Over {key}; ICE, LCE and CE as share of reports with any error. Bars: 95 % bootstrap interval over cases, "
+        "seeds averaged within a case."
+    )
     return Plot("sensitivity", f"Sensitivity to {key}", caption, as_png(figure))
 
 

@@ -198,3 +198,9 @@ def test_every_measure_has_one_name():
 def test_every_study_names_rows_that_are_published(file):
     for arm in yaml.safe_load(file.read_text()).get("arms") or ():
         publication().row(arm.get("published"))
+
+
+def test_a_study_that_has_not_begun_has_no_tables_and_says_so(tables):
+    made = tables({"a": {}, "b": {}}, cases=["c1"])
+    assert made.tables == ()
+    assert "0 of 2 runs are done" in shown(made)
