@@ -13,7 +13,7 @@ from tests.transcripts import DECLARED, EDGES, NODES, REFUSAL, road_answer
 Entry = dict[str, Any]
 SCENE = json.dumps({
     "reasoning": "A T: the road runs north and south, a side road joins from the east.",
-    "roads": "A T-intersection. North and south legs with two lanes in each direction; an east leg of one lane each way.",
+    "roads": "A T-intersection. North and south legs with two lanes each way; an east leg with one lane each way.",
 })  # fmt: skip
 ROLES = json.dumps({
     "reasoning": "V1 stands northbound on edge S, V2 comes behind it.",
@@ -25,7 +25,8 @@ _KEEPS = 'lcStrategic="-1" lcCooperative="0" lcSpeedGain="0" lcKeepRight="0"'
 ROUTES = f"""<routes>
   <vType id="t1" vClass="passenger" length="4.7" width="1.8" sigma="0"/>
   <vType id="t2" vClass="passenger" length="4.7" width="1.8" sigma="0" {_BLIND} {_KEEPS}/>
-  <vehicle id="V1" type="t1" depart="0" departLane="0" departPos="79" departSpeed="0"><route edges="S -N"/>{_STANDS}</vehicle>
+  <vehicle id="V1" type="t1" depart="0" departLane="0" departPos="79" departSpeed="0">
+    <route edges="S -N"/>{_STANDS}</vehicle>
   <vehicle id="V2" type="t2" depart="0" departLane="0" departPos="15" departSpeed="13" insertionChecks="none">
     <route edges="S -N"/></vehicle>
 </routes>"""

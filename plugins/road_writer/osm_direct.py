@@ -14,6 +14,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Literal, cast
 
+from pydantic import Field
+
 from sgcad_core.errors import ConfigError, Refused
 from sgcad_core.formats.graph_spec import spec_of_graph
 from sgcad_core.formats.net_xml import parse_net
@@ -24,6 +26,7 @@ from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
 from sgcad_core.registry import plugin_class
+from sgcad_core.specs import RoadLayout
 from sgcad_core.turning import best_turn, turned
 
 
@@ -38,6 +41,8 @@ class OsmDirect(RoadWriter):
     """none: full text over the words of a description, which junctions of equal legs and lanes share."""
     model: str = ""
     base_url: str = ""
+    among: int = Field(1, ge=1, le=50)
+    """Of so many found, the one whose legs and lanes fit best; 1 takes the first, as the paper does."""
     turn: bool = True
     """Turn the junction so that its legs lie as told; else it lies as in the real world, and crashes seldom fit."""
 
@@ -55,9 +60,8 @@ class OsmDirect(RoadWriter):
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
         layout = layout_of_facts(facts, Defaults())
-        found = self._nearest(describe_layout(layout))
-        data: dict[str, Any] = json.loads(found.data)
-        legs = [_leg(leg) for leg in data["legs"]]
+        found, data = self._nearest(layout)
+        legs = _legs(data)
         turn = best_turn(legs, layout_legs(layout))[0] if self.turn else 0.0
         network = compile_network(turned(PlainXml(**data["plain"]), turn))
         spec = spec_of_graph(parse_net(network.net_xml)) if network.net_xml else None
@@ -65,21 +69,22 @@ class OsmDirect(RoadWriter):
         log = f"{said}\n{network.log}".strip()
         return network.model_copy(update={"spec": spec, "source": "openstreetmap", "log": log})
 
-    def _nearest(self, words: str) -> Passage:
-        found = [p for p in self._retriever.retrieve(words, "road") if p.data]
+    def _nearest(self, layout: RoadLayout) -> tuple[Passage, dict[str, Any]]:
+        found = [(p, json.loads(p.data)) for p in self._retriever.retrieve(describe_layout(layout), "road") if p.data]
         if not found:
             raise ConfigError(
                 f"the knowledge base in {self.folder} holds no junction: "
                 f"`sgcad index add EXTRACT.osm.pbf --out {self.folder}` takes those of a map in"
             )
-        return found[0]
+        wanted = layout_legs(layout)
+        return min(found, key=lambda f: (abs(len(_legs(f[1])) - len(wanted)), best_turn(_legs(f[1]), wanted)[1]))
 
     @cached_property
     def _retriever(self) -> Retriever:
         fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
-        found = plugin_class("retriever", "lancedb")(**fields, kinds=("junction",), per_kind=1)  # type: ignore[call-arg]
+        found = plugin_class("retriever", "lancedb")(**fields, kinds=("junction",), per_kind=self.among)  # type: ignore[call-arg]
         return cast("Retriever", found)
 
 
-def _leg(leg: dict[str, Any]) -> JunctionLeg:
-    return JunctionLeg(math.radians(leg["angle_deg"]), leg["lanes_in"], leg["lanes_out"])
+def _legs(data: dict[str, Any]) -> list[JunctionLeg]:
+    return [JunctionLeg(math.radians(leg["angle_deg"]), leg["lanes_in"], leg["lanes_out"]) for leg in data["legs"]]

@@ -26,6 +26,7 @@ MOST_EDGES = 110
 """What a road spec can hold; larger maps are cut with `sgcad index build` or by hand."""
 OUT_M = 20.0
 """A leg's direction is taken so far from its junction."""
+BESIDE_RAD = math.radians(15)
 _FLAGS = ("--keep-edges.by-vclass", "passenger", "--remove-edges.isolated", "--no-turnarounds", "-X", "never")
 _EDGE = ("numLanes", "speed", "priority", "shape", "spreadType", "width")
 _LINK = ("fromLane", "toLane")
@@ -161,8 +162,21 @@ def hub_legs(plain: PlainXml) -> tuple[tuple[JunctionLeg, ...], str]:
             legs[other] = known._replace(
                 lanes_in=known.lanes_in + count * inward, lanes_out=known.lanes_out + count * (not inward)
             )
-    control = CONTROLS.get(nodes[hub].get("type", ""), "none") if len(legs) > 2 else "none"
-    return tuple(legs.values()), control
+    joined = tuple(_joined(list(legs.values())))
+    return joined, CONTROLS.get(nodes[hub].get("type", ""), "none") if len(joined) > 2 else "none"
+
+
+def _joined(legs: list[JunctionLeg]) -> Iterator[JunctionLeg]:
+    """A way in and a way out that lie side by side are one leg: OpenDRIVE may draw a road a direction."""
+    while legs:
+        leg = legs.pop(0)
+        for other in legs:
+            near = abs(math.remainder(other.angle_rad - leg.angle_rad, math.tau)) < BESIDE_RAD
+            if near and not (leg.lanes_in and other.lanes_in) and not (leg.lanes_out and other.lanes_out):
+                legs.remove(other)
+                leg = leg._replace(lanes_in=leg.lanes_in + other.lanes_in, lanes_out=leg.lanes_out + other.lanes_out)
+                break
+        yield leg
 
 
 def _direction(edge: Element, inward: bool, hub: Element, other: Element) -> float:

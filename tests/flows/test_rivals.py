@@ -1,5 +1,5 @@
-"""The baselines of the paper from report to folder: OmniTester, Text2Scenario and OSM-Direct, through real netconvert and
-SUMO, answered by transcripts (good, flawed, hostile, refusing), and over HTTP by a server that stumbles."""
+"""The paper's rivals from report to folder: OmniTester, Text2Scenario and OSM-Direct, through real netconvert and SUMO,
+answered by transcripts (good, flawed, hostile, refusing), and over HTTP by a server that stumbles."""
 
 from __future__ import annotations
 

@@ -63,6 +63,12 @@ def test_a_narrative_without_vehicles_is_refused(cross: RoadNetwork) -> None:
         _write("Nothing happened on the road.", cross)
 
 
-def test_a_network_without_a_spec_is_not_guessed_at() -> None:
-    with pytest.raises(InvalidOutput, match="road spec"):
+def test_a_network_that_did_not_compile_is_not_guessed_at() -> None:
+    with pytest.raises(InvalidOutput, match=r"no net\.xml"):
         _write("V1 was northbound.", RoadNetwork())
+
+
+def test_without_a_spec_the_roads_are_read_back_from_the_network(cross: RoadNetwork) -> None:
+    text = "V1 was traveling north and V2 was traveling west. V1 struck the right side of V2 with its front."
+    bare = cross.model_copy(update={"spec": None, "layout": None})
+    assert _write(text, bare).behavior == _write(text, cross).behavior
