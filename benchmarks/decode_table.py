@@ -50,18 +50,15 @@ def missing(name: str) -> Row:
     return Row(name, float("nan"), float("nan"), float("nan"), float("nan"))
 
 
-def attempt(name: str, seconds: float, first_s: float, answer: Answer | None) -> tuple[str, ...]:
+def attempt(name: str, seconds: float, first_s: float, answer: Answer) -> tuple[str, ...]:
     """One line of the attempts' table."""
-    prompt = f"{answer.reused_tokens} of {answer.prompt_tokens}" if answer else ""
-    calls = str(answer.model_calls) if answer else ""
-    return name, f"{1e3 * seconds:.0f}", f"{100 * seconds / first_s:.0f} %", prompt, calls
+    prompt = f"{answer.reused_tokens} of {answer.prompt_tokens}"
+    return name, f"{1e3 * seconds:.0f}", f"{100 * seconds / first_s:.0f} %", prompt, str(answer.model_calls)
 
 
 def heading(device: torch.device) -> str:
     """What was measured on what."""
-    card = (
-        torch.cuda.get_device_name(device) if device.type == "cuda" else f"CPU, {torch.get_num_threads()} threads"
-    )
+    card = torch.cuda.get_device_name(device) if device.type == "cuda" else f"CPU, {torch.get_num_threads()} threads"
     versions = f"Python {platform.python_version()}, torch {torch.__version__}, transformers {transformers.__version__}"
     return (
         "# Decoding: measured\n\n"
@@ -106,9 +103,7 @@ def section(bench: Bench, parts: Sequence[Any], grammar: str, floors: str) -> st
 def _line(row: Row, base: float) -> str:
     if row.token_s != row.token_s:
         return f"| {row.name} | not measured | | | |"
-    return (
-        f"| {row.name} | {1e3 * row.token_s:.2f} | {row.token_s / base:.2f} | {row.calls:.2f} | {row.peak_gb:.2f} |"
-    )
+    return f"| {row.name} | {1e3 * row.token_s:.2f} | {row.token_s / base:.2f} | {row.calls:.2f} | {row.peak_gb:.2f} |"
 
 
 # ------------------------------------------------------------------ single figures

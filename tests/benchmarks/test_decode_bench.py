@@ -35,7 +35,8 @@ def test_the_table_has_every_arm() -> None:
     for arm in (
         "greedy, one row: the base", "cad, both rows in one batch", "cad, two caches",
         "two forwards without cache", "transformers' guidance",
-        "cad with grammar and jump-forward", "cad, 2 reports at once", "its repair", "Floors:",
+        "cad with grammar and jump-forward", "cad, 2 reports at once", "its repair with draft",
+        "its repair without draft", "Floors:",
     ):  # fmt: skip
         assert arm in text
     assert "not measured" not in text

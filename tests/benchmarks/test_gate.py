@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks import gate
@@ -48,18 +48,21 @@ def test_a_group_that_tells_nothing_is_left_out() -> None:
     assert choose(samples, GROUPS) == {"lanes": 0.5, "actors": None}
 
 
+@settings(deadline=None)
 @given(SAMPLES)
 def test_the_choice_is_never_worse_than_the_model_alone(samples: list[Sample]) -> None:
     chosen = choose(samples, GROUPS)
     assert score(samples, refused(samples, chosen)).f1 >= score(samples, refused(samples, {})).f1
 
 
+@settings(deadline=None)
 @given(SAMPLES, st.floats(0.3, 1.0))
 def test_a_stated_precision_is_kept_where_the_model_keeps_it(samples: list[Sample], precision: float) -> None:
     if score(samples, refused(samples, {})).precision >= precision:
         assert score(samples, refused(samples, choose(samples, GROUPS, precision))).precision >= precision
 
 
+@settings(deadline=None)
 @given(SAMPLES)
 def test_a_higher_threshold_never_refuses_less(samples: list[Sample]) -> None:
     given_ = [s.given for _, s in sweep(samples, "lanes")]
@@ -67,6 +70,7 @@ def test_a_higher_threshold_never_refuses_less(samples: list[Sample]) -> None:
     assert all(s.right <= min(s.given, s.wanted) for _, s in sweep(samples, "lanes"))
 
 
+@settings(deadline=None)
 @given(SAMPLES)
 def test_the_area_is_the_same_on_any_rising_scale(samples: list[Sample]) -> None:
     scaled = [sample(s.thin, **{k: 8 * v for k, v in s.sums.items()}) for s in samples]
@@ -79,6 +83,7 @@ def test_the_area_is_one_if_every_thin_report_has_less_and_a_half_if_all_are_equ
     assert candidates([sample(True, lanes=2.0)], "lanes") == []
 
 
+@settings(deadline=None)
 @given(SAMPLES)
 def test_a_report_stands_in_one_half_with_all_its_levels(samples: list[Sample]) -> None:
     fit, test = halves(samples)
