@@ -7,7 +7,7 @@ READY := $(VENV)/.ready
 export HF_HUB_OFFLINE := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean
+.PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean pages
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -55,6 +55,9 @@ train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); 
 
 qc: .venv-qc/.ready ## ASAM's checkers over RUNS=runs
 	.venv-qc/bin/python deploy/qc.py $(or $(RUNS),runs)
+
+pages: setup ## headless Chromium looks at MLflow's pages (DATABASE=runs/mlflow.db EXPERIMENT=study/alpha SHOTS=folder)
+	$(BIN)/python deploy/pages.py $(or $(DATABASE),runs/mlflow.db) $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(SHOTS),--shots $(SHOTS))
 
 clean: ## remove environments and caches, never results
 	rm -rf $(VENV) .venv-qc .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
