@@ -17,7 +17,7 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from flows.results.reading import Ran, paths_of
-from flows.results.table import Tables
+from flows.results.table import Tables, reference_of
 from flows.view import COLORS
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
@@ -49,11 +49,12 @@ def gallery(tables: Tables, page: Path) -> dict[str, Any]:
 
 def _case(tables: Tables, case: str, page: Path) -> dict[str, Any]:
     runs = [tables.study.ran[a.name].get(case) for a in tables.study.arms]
-    folder = next(ran.folder for ran in runs if ran)
-    diagram = next((f for ran in runs if ran and (f := ran.folder / "diagram.png").is_file()), None)
+    first = reference_of(tables.study)  # arms may have read a degraded report: the reference's comes first
+    told = sorted((ran for ran in runs if ran), key=lambda ran: ran.arm != first)
+    diagram = next((f for ran in told if (f := ran.folder / "diagram.png").is_file()), None)
     return {
         "id": case,
-        "text": _narrative(folder),
+        "text": _narrative(told[0].folder),
         "img": _thumb(diagram) if diagram else None,
         "arms": [_arm(ran, tables.values[ran.arm][case], page) if ran else None for ran in runs],
     }

@@ -112,7 +112,7 @@ function tile(run, arm) {
   const o = run.observed;
   if (o) box.append(element("p", "", `${o.actor} ${o.actor_area} · ${o.other} ${o.other_area} at ${Number(o.t_s).toFixed(1)} s` + (run.speed != null ? `, ${run.speed.toFixed(0)} m/s` : "")));
   const marks = element("div", "marks");
-  run.right.forEach((v, k) => v !== null && marks.append(element("span", v ? "" : "no", (v ? "✓ " : "✗ ") + data.verdicts[k])));
+  if (run.status === "generated") run.right.forEach((v, k) => v !== null && marks.append(element("span", v ? "" : "no", (v ? "✓ " : "✗ ") + data.verdicts[k])));
   box.append(marks);
   if (run.player) {
     const link = element("a", "", "player");

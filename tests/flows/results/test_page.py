@@ -121,3 +121,8 @@ def dom(file, wish, tmp_path):
         ],
         capture_output=True, text=True, timeout=240,
     ).stdout  # fmt: skip
+
+
+def test_the_reference_arm_tells_the_report_since_others_may_have_read_less(tables, tmp_path):
+    runs = {"sparse": {"c1": {"story": "A collision occurred."}}, "full": {"c1": {"story": "All of it."}}}
+    assert data_of(made(tables, tmp_path, runs, about={"reference": "full"}))["cases"][0]["text"] == "All of it."
