@@ -140,3 +140,12 @@ def test_the_configured_number_of_attempts_is_the_limit(run):
     script = {"name": "scripted", "answers": ["no"] * 5}
     ending, _ = run(**MODEL, backbone=script, max_attempts=4)
     assert (ending.result["status"], ending.result["attempts"]["road"]) == ("exhausted", 4)
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_findings_stand_in_the_next_prompt_unless_the_config_keeps_them_back(run, shown):
+    backbone = {"name": "scripted", "answers": ["no", "ok"]}
+    _, folder = run(**MODEL, backbone=backbone, show_findings=shown)
+    first, second = ((folder / "attempts" / f"road-0{n}" / "prompt.txt").read_text() for n in (1, 2))
+    assert "the answer is not ok" not in first
+    assert ("the answer is not ok" in second) is shown
