@@ -43,8 +43,8 @@ def heard(
         prior = without_context[i]
         logits = [with_context[i]] if prior is None else [with_context[i], prior]
         found[i].fault = tried(partial(_score, found[i], job, logits, words))
-        if isinstance(found[i].fault, TooBig):
-            raise MemoryError(str(found[i].fault))
+        if isinstance(full := found[i].fault, TooBig):
+            raise full
     whole = [(job, one) for job, one in zip(jobs, found, strict=True) if not one.fault]
     numbers = torch.cat([part for _, one in whole for part in one.parts]).tolist() if whole else []
     at = 0
