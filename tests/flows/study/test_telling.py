@@ -1,0 +1,47 @@
+"""What the command says of a study."""
+
+from dataclasses import replace
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from flows.cli import app
+from flows.start import Cost
+from flows.study.plan import plan
+from flows.study.running import told
+from flows.study.spec import load_study
+from sgcad_core.errors import ConfigError
+
+
+@pytest.fixture
+def made(tmp_path, config_file, reports):
+    """The plan of one arm over one case."""
+    config_file()
+    file = tmp_path / "kits.yaml"
+    file.write_text(yaml.safe_dump({"title": "Kits", "arms": [{"name": "one", "config": "kit.yaml"}]}))
+    return plan(load_study(file), tmp_path / "out", cases=[reports(a="")], jobs=2)
+
+
+def test_orchestration_is_told_a_case_and_as_a_share(made):
+    cost = Cost(done=100, elapsed_s=50.0, own_s=4.0, server_s=1.0)
+    assert told(made, cost) == (
+        "100 cases in 50 s; orchestration 50 ms of processor time a case, 5.0% of the time of 2 cores"
+    )
+    assert "without the Prefect server's" in told(made, replace(cost, server_s=None))
+    assert told(made, Cost(0, 1.25)) == "all cached: 1.2 s"
+
+
+def test_check_names_the_arms_of_a_study():
+    said = CliRunner().invoke(app, ["check", "refinement"])
+    assert said.exit_code == 0
+    assert "Refinement, embedded model; 10 arms" in said.output
+    assert "max_attempts_10  mini.yaml max_attempts=10" in said.output
+
+
+def test_a_faulty_study_starts_nothing(tmp_path):
+    said = CliRunner().invoke(app, ["study", "refinement", "--out", str(tmp_path / "out"), "--set", "oops=1"])
+    assert isinstance(said.exception, ConfigError)
+    assert str(said.exception).count("oops: unknown key") == 10
+    assert "no cases: give --cases DIR" in str(said.exception)
+    assert not (tmp_path / "out").exists()
