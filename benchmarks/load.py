@@ -54,23 +54,22 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory() as place:
         case = real_case(Path(place))
-        loads = [
-            prefect_load(options.cases, options.database, Path(place)),
-            mlflow_load(options.cases, options.database, Path(place), case),
-            storage_load(options.cases, options.address or f"file://{place}/share", case),
-        ]
-    show(loads, options.cases)
+        say(f"{options.cases} cases, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n")
+        say("| part | server ms a case | client ms a case | wall ms a case | |\n|---|---|---|---|---|")
+        show(prefect_load(options.cases, options.database, Path(place)))
+        show(mlflow_load(options.cases, options.database, Path(place), case))
+        show(storage_load(options.cases, options.address or f"file://{place}/share", case))
 
 
-def show(loads: list[Load], cases: int) -> None:
-    """The figures as a Markdown table."""
-    rows = [
-        f"| {one.part} | {1000 * one.server:.0f} | {1000 * one.client:.0f} | {1000 * one.wall:.0f} | {one.note} |"
-        for one in loads
-    ]
-    head = ["| part | server ms a case | client ms a case | wall ms a case | |", "|---|---|---|---|---|"]
-    busy = f"{cases} cases, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
-    sys.stdout.write("\n".join([busy, "", *head, *rows]) + "\n")
+def show(one: Load) -> None:
+    """One part as a row of a Markdown table."""
+    say(f"| {one.part} | {1000 * one.server:.0f} | {1000 * one.client:.0f} | {1000 * one.wall:.0f} | {one.note} |")
+
+
+def say(line: str) -> None:
+    """A line on stdout, at once."""
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
 
 
 def real_case(place: Path) -> Path:
@@ -231,7 +230,7 @@ def give_mlflow(cases: int, case: str, uri: str) -> None:
     tracker: Any = plugin_class("tracker", "mlflow")(uri=uri, system_metrics_s=0)
     result = json.loads((Path(case) / "result.json").read_text())
     for number in range(cases):
-        copy = Path(case).parent / f"{number:05d}"
+        copy = Path(case).parent / f"{cases}-{number:05d}"  # a case of its own: the tracker keeps one run of each
         shutil.copytree(case, copy)
         tracker.log_case("load", {"config": "load"}, copy, result)
         shutil.rmtree(copy)
