@@ -114,9 +114,8 @@ def _thing_hit(told: Told, thing: re.Match[str], scope: str, verb: str) -> Blow 
 
 def _is_noun(before: str, word: str, behind: str) -> bool:
     """ "the impact", "at impact", "of contact": no verb."""
-    if word.lower() not in ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike") or (
-        says.CAUSED.search(before)
-    ):
+    nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
+    if word.lower() not in nouns or says.CAUSED.search(before):
         return False
     return bool(
         re.search(
@@ -200,12 +199,23 @@ def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None
         return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or re.match(r"\W*$", scope):
         only = says.THE_AREA.match(scope)
-        return who.other(actor), _maybe(only["area"]) if only else _area_behind(scope)
+        return _the_other(told, actor, who), _maybe(only["area"]) if only else _area_behind(scope) or _damaged(told, who)
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = re.search(rf"\b(?P<area>{AREA}) of (?:the )?{late.group()}", scope, re.I)
         return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
     return None, None
+
+
+def _the_other(told: Told, actor: str, who: Roster) -> str | None:
+    """The vehicle that "it" means: of two the other one, else the first of the sentence that is not the actor."""
+    return who.other(actor) or next((v for v in MENTION.findall(told.text) if v != actor and v in who.ids), None)
+
+
+def _damaged(told: Told, who: Roster) -> Zone | None:
+    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
+    found = says.DAMAGED.match(plain(told, who))
+    return area_of(found["area"]) if found else None
 
 
 def _not_itself(named: str, actor: str, who: Roster) -> str | None:
@@ -239,6 +249,7 @@ def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, w
     if other is None:
         return None
     area, other_area = _struck_pair(scope, area, other_area)
+    area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
     other = _not_itself(other, actor, who) or other
     return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
 

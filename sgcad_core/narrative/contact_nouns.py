@@ -40,6 +40,9 @@ _TOOK = re.compile(
     rf"(?:(?:an?|the) )?(?P<how>(?:[\w-]+ ){{0,3}}?){_BLOW}\b(?:,? (?:to|on|in|along|at) (?:the |its |his |her )?"
     rf"(?P<a1>{AREA}))?(?: of V\d+)?,? (?:from|by) (?:the )?(?:(?P<a2>{AREA}) of (?:the )?)?(?P<v2>V\d+)",
     re.I)  # fmt: skip
+_CAUSED = re.compile(
+    rf"\b(?:caus\w+|result\w+ in|allow\w+) (?:the )?(?P<a1>{AREA}) of (?P<v1>V\d+) to (?:contact|impact|hit|strike|"
+    rf"make contact with|collide with) (?:the )?(?P<a2>{AREA}) of (?P<v2>V\d+)", re.I)  # fmt: skip
 _TOGETHER = re.compile(
     r"\b" + _ends("(?:was (?:driven |forced |pushed )?)?(?:to|against|into|in contact with)"), re.I)  # fmt: skip
 _NOTHING = re.compile(r"\b(?:no|not|never|without|avoid\w*|prevent\w*)\b[^,;.]{0,30}$", re.I)
@@ -47,7 +50,8 @@ _NOTHING = re.compile(r"\b(?:no|not|never|without|avoid\w*|prevent\w*)\b[^,;.]{0
 
 def touches(text: str) -> Iterator[Touch]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
-    for m in (*says.BETWEEN.finditer(text), *says.BOTH_PARTS.finditer(text), *_NAMED.finditer(text)):
+    told = (says.BETWEEN, says.BOTH_PARTS, _NAMED, _CAUSED)
+    for m in (m for pattern in told for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "between")
     for m in says.PUSHED.finditer(text):

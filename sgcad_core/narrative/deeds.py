@@ -37,16 +37,17 @@ _EVASIVE = re.compile(
     r"for)",
     re.I,
 )
-_NOT = re.compile(r"\b(?:not|never|without|instead of|rather than|no)\b(?:\W+[\w'-]+){0,3}\W*$", re.I)
+_NOT = re.compile(
+    r"\b(?:not|never|without|instead of|rather than|no)\b(?:\W+(?!and\b|but\b|then\b)[\w'-]+){0,3}\W*$", re.I)
 
 _DEEDS: tuple[tuple[str, str], ...] = (
     ("parked", r"\bparked\b(?! (?:cars?|vehicles?|van|truck|trailer|tractor|along|on (?:both|either)))|"
-               r"legally parked|unoccupied|\bdisabled\b"),
+               r"\b(?:was|were|is) (?:legally )?parked along\b|legally parked|unoccupied|\bdisabled\b"),
     ("stopped", r"\b(?:was|were|is|been|sat|sitting|being|and|had|already|came to an?|com(?:e|es|ing) to an?|"
                 r"made an?|initially|the) "
                 r"(?:\w+ )?(?:stop(?:ped)?|stationary|standing|stand still)\b(?! (?:sign|at (?:a|"
                 r"the) stop sign and)|ping)|^,? ?stopped|"
-                r"\b(?:waiting|waited) (?:for|to|at|in|behind)|\bat a (?:complete )?stop(?! sign)|"
+                r"\b(?:waiting|waited) (?:for|to|at|in|behind)|\bat a (?:complete )?stop(?! sign)|\bat a stand ?still|"
                 r"(?<!a )(?<!the )(?<!other )(?<!any )\bstopped\b(?! (?:to avoid|vehicles?|cars?|bus|trucks?|vans?|"
                 r"traffic|school))|\bstopped in\b|"
                 r"\bsitting (?:at|in|still)\b|\bidling\b|\bstalled\b"),
@@ -78,31 +79,36 @@ _DEEDS: tuple[tuple[str, str], ...] = (
                   rf"roadway)"),
     ("into_lane", rf"\b(?:travel\w*|driv\w*|going|head\w*) (?:{DIRECTION})(?:bound)?\b[^.;,]{{0,25}}? in the "
                   rf"(?:\w+ )?(?P<bound>(?:{DIRECTION})bound) (?:\w+ )?lanes?"),
-    ("lane_change_left", r"\bchang\w+ (?:\w+ )?lanes? (?:\w+ ){0,3}left|\blane change (?:to the |into the )?left|"
+    ("lane_change_left", r"\bchang\w+ (?:\w+ )?lanes? (?:(?!left|right)\w+ ){0,6}left|\blane change (?:to the |into the )?left|"
                          r"(?:moved?|moving|merged?|steered|swerved) (?:\w+ ){0,3}(?:in)?to the left(?:-|"
                          r" )?(?:hand )?(?:through |travel )?lane|"
-                         r"\bleft lane change"),
-    ("lane_change_right", r"\bchang\w+ (?:\w+ )?lanes? (?:\w+ ){0,3}right|\blane change (?:to the |"
+                         r"\bleft lane change|\b(?:mov|chang)\w+ from the right lane (?:in)?to the left\b"),
+    ("lane_change_right", r"\bchang\w+ (?:\w+ )?lanes? (?:(?!left|right)\w+ ){0,6}right|\blane change (?:to the |"
                           r"into the )?right|(?:moved?|moving|merged?|steered|"
                           r"swerved) (?:\w+ ){0,3}(?:in)?to the right(?:-| )?(?:hand )?(?:through |travel )?lane|"
-                          r"\bright lane change"),
+                          r"\bright lane change|\b(?:mov|chang)\w+ from the left lane (?:in)?to the right\b"),
     ("lane_change", r"\bchang(?:ed|ing) lanes?\b|\blane change\b|\bswitch\w+ lanes?\b"),
     ("overtaking", r"\b(?:pass(?:ed|ing)?(?! by\b)|overtak\w+|overtook|go around|went around|"
                    r"going around) (?:\w+ ){0,3}?(?:v\d+|vehicles?|(?:a|the|another|slower|"
                    r"stopped)\b.{0,20}(?:car|truck|vehicle|van|bus|tractor))|"
-                   r"(?<!vehicle )(?<!vehicles )(?<!traffic )(?<!cars )\bto pass\b|\bpassing maneuver"),
+                   r"(?<!vehicle )(?<!vehicles )(?<!traffic )(?<!cars )\bto pass\b|\bpassing maneuver|"
+                   r"\b(?:attempt\w*|began|trying|tried) to overtake\b"),
     ("merge", r"\bmerg(?:e|ed|ing|es)\b"),
     ("negotiating_curve", r"\b(?:negotiat\w+|round(?:ed|ing)|through|exit(?:ed|ing)|enter(?:ed|ing)|on|in|"
                           r"around) (?:a|the|an) (?:[\w-]+ ){0,3}?(?:curve|bend)\b|\bnegotiating\b"),
     ("departing_road_right", r"\b(?:off|departed|left|leaving|exited|"
-                             r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:right (?:side|edge|shoulder)|road\w* (?:on|"
+                             r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:right (?:side|edge|shoulder|road\w* edge|roadside)|road\w* (?:on|"
                              r"to) the right)"),
     ("departing_road_left", r"\b(?:off|departed|left|leaving|exited|"
-                            r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:left (?:side|edge|shoulder)|road\w* (?:on|"
+                            r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:left (?:side|edge|shoulder|road\w* edge|roadside)|road\w* (?:on|"
                             r"to) the left)"),
+    ("departing_road_right", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?right\b[^.;]{0,30}\b(?:departed|left|"
+                             r"exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
+    ("departing_road_left", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?left\b[^.;]{0,30}\b(?:departed|left|"
+                            r"exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
     ("lost_control", r"\b(?:los[et]|losing) control\b|\bhydroplan\w+|\bfishtail\w*|\bskidd?(?:ed|ing)\b|\bslid\b|"
                      r"\byaw\b"),
-    ("backing", r"\b(?:backing|backed|revers(?:ed|ing)|in reverse)\b(?! up traffic)"),
+    ("backing", r"(?<!traffic )(?<!traffic had )(?<!traffic was )(?<!vehicles )\b(?:backing|backed|revers(?:ed|ing)|in reverse)\b(?! up traffic)"),
     ("leaving_parking", r"\bpull(?:ed|ing) (?:out|away) (?:of|from) (?:a |the |its |his |"
                         r"her )?(?:parking (?:space|spot|position)|curb)|leaving (?:a )?park"),
     ("from_side", r"\b(?:approach\w*|com\w+|enter\w*|emerg\w*|pull\w*|cross\w*|"

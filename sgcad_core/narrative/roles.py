@@ -81,6 +81,8 @@ _MOTION = re.compile(
     r"drift\w*|veer\w*|chang(?:ed|ing) lanes?|pass(?:ed|ing)|merg\w+|negotiat\w+|lost control|pull(?:ed|ing)|"
     r"back(?:ed|ing)|"
     r"attempt\w*|wait\w*|depart\w*|ran (?:off|through|the)|slow(?:ed|ing)|accelerat\w+|decelerat\w+|start\w*|"
+    r"slid(?! (?:sideways )?(?:to|into))|overtak\w+|overtook|execut\w+|perform\w+|(?:moved|went) (?:left|off|over|"
+    r"across)|"
     r"began|ahead of|behind|fail\w* to|(?:north|south|east|west)bound)\b", re.I)  # fmt: skip
 _ACTOR = re.compile(
     r"\b(?:V\d+|both (?:vehicles|drivers)|vehicles?|driver|it|he|she|they|"
@@ -105,6 +107,12 @@ _DRIVEN = re.compile(
     r"){0,3}lane)\b", re.I)  # fmt: skip
 
 
+_ACTED = re.compile(
+    r"^(?:the (?:driver|operator) of )?V\d+\b[^.;]*?\b(?:thought|believed|indicated|estimated)\b[^.;]*?\b(?:and|so|then) "
+    r"(?:\w+ )?(?:turned|made an? (?:left|right|u)|pulled (?:out|into)|proceeded|entered|drove into|changed lanes)\b",
+    re.I)  # fmt: skip
+
+
 def role_of(text: str) -> Role:
     """The role of one normalized sentence. A sentence of two roles gets the one that misleads least."""
     if _OPENING.search(text):
@@ -112,6 +120,8 @@ def role_of(text: str) -> Role:
     noise = _noise(text)
     if noise in ("restraint", "injury", "health") and _DRIVEN.search(text):
         return "impact" if is_impact(text) else "approach"
+    if noise == "interview" and _ACTED.search(text):
+        return "approach"
     if noise in ("restraint", "health") and is_impact(text):
         return "impact"
     if noise:
