@@ -35,7 +35,7 @@ from sgcad_core.interfaces import Plugin
 from sgcad_core.refine import Refinement, Turn
 
 T = TypeVar("T")
-WAIT_S, LOOK_S = 600.0, 0.05
+WAIT_S, LOOK_S = 3600.0, 0.05
 """How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
 UNREADABLE = (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, zlib.error)
 """What a damaged file, or one of other code, raises: it is computed again."""

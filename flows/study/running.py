@@ -8,6 +8,7 @@ Jobs of one arm stand together, so that what arms share is there when the next a
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 
 from flows import start
@@ -18,7 +19,12 @@ from flows.tracking import OnEnding
 
 
 def run(plan: Plan, on_ending: OnEnding) -> Cost:
-    """Write study.json and do all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt."""
+    """Write study.json and do all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+
+    A fresh study forgets what was shared before.
+    """
+    if plan.batch.fresh and plan.batch.shelf:
+        shutil.rmtree(plan.batch.shelf, ignore_errors=True)
     return run_jobs(plan, plan.jobs, on_ending)
 
 

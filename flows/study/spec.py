@@ -179,7 +179,8 @@ def _parsed(raw: dict[str, Any]) -> tuple[_File | None, list[str]]:
 def _line(error: Any) -> str:
     place = ".".join(str(p) for p in error["loc"])
     if error["type"] == "extra_forbidden":
-        part = {"arms": Arm, "cross": Cross}.get(str(error["loc"][0]), _File) if len(error["loc"]) > 1 else _File
+        parts: dict[str, type[_Part]] = {"arms": Arm, "cross": Cross} if len(error["loc"]) > 1 else {}
+        part = parts.get(str(error["loc"][0]), _File)
         return f"{place}: unknown key; known: {', '.join(sorted(part.model_fields))}"
     return f"{place}: {error['msg']} (found {error['input']!r})"
 

@@ -14,6 +14,7 @@ import pytest
 import yaml
 
 from flows.batch import Crew
+from flows.study import running
 from flows.study.plan import plan
 from flows.study.spec import load_study
 from sgcad_core.refine import run_at_once
@@ -123,3 +124,18 @@ def test_what_arms_share_is_computed_once(tmp_path, config_file, reports):
     shutil.rmtree(made.folder / ".stages")
     again = plan(load_study(file), tmp_path / "out", cases=[tmp_path / "cases"], jobs=1)
     assert all(Crew(again.batch).reusable(job) for job in again.jobs), "finished cases need no shelf"
+
+
+def test_a_fresh_study_forgets_what_was_shared(tmp_path, config_file, reports, monkeypatch):
+    config_file()
+    file = tmp_path / "kits.yaml"
+    file.write_text(yaml.safe_dump({"title": "Kits", "arms": [{"name": "one", "config": "kit.yaml"}]}))
+    cases = [reports(a="")]
+    for fresh, left in ((False, True), (True, False)):
+        made = plan(load_study(file), tmp_path / "out", cases=cases, fresh=fresh)
+        old = made.batch.shelf / "ab" / "abc"
+        old.parent.mkdir(parents=True, exist_ok=True)
+        old.write_bytes(b"old")
+        monkeypatch.setattr("flows.start.evaluate", lambda batch, on_ending, jobs: None)  # no server for this
+        running.run(made, print)
+        assert old.exists() is left
