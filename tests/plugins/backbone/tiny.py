@@ -164,7 +164,9 @@ def tokenizer() -> Any:
     made.decoder = decoders.ByteLevel()
     corpus = ['{"legs":[{"bearing":"NE","lanes_in":2,"turns_in":["left","right"]}],"missing":[]}'] * 4
     trainer = trainers.BpeTrainer(
-        vocab_size=290, initial_alphabet=pre_tokenizers.ByteLevel.alphabet(), show_progress=False,
+        vocab_size=290,
+        initial_alphabet=pre_tokenizers.ByteLevel.alphabet(),
+        show_progress=False,
         special_tokens=["<pad>", "<bos>", "<eos>"],
     )
     made.train_from_iterator(corpus, trainer)
