@@ -34,6 +34,7 @@ START_S = 240.0
 STOP_S = 20.0
 """For writing down what is under way; after that the process is ended."""
 LAST_LINES = 15
+LOOK_S = 0.5
 DEPLOYED = "deployed.yaml"
 
 
@@ -73,7 +74,7 @@ def _wait_for_worker(api: str, folder: Path) -> None:
     while not _hears_a_worker(api):
         if time.monotonic() > deadline:
             raise MissingTool(f"the server hears of no worker:\n{_last_words(folder / 'worker.log')}")
-        time.sleep(0.2)
+        time.sleep(LOOK_S)
 
 
 def _hears_a_worker(api: str) -> bool:
@@ -133,7 +134,7 @@ def wait(running: Running, deadline: float) -> None:
     while running.alive() and time.monotonic() < deadline:
         if health.answers(running.health):
             return
-        time.sleep(0.2)
+        time.sleep(LOOK_S)
     how = f"is silent after {START_S:g} s" if running.alive() else "has ended"
     raise MissingTool(f"the {running.name} {how}; {running.log} says:\n{_last_words(Path(running.log))}")
 
