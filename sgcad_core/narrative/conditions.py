@@ -49,8 +49,8 @@ _WEATHER: tuple[tuple[Weather, str], ...] = (
     ("cloudy", r"\b(?:cloud\w*|overcast)\b"),
     ("clear", r"\b(?:clear|sunny|no adverse|no atmospheric|no (?:weather|environmental)|without adverse|"
               r"(?:no|without(?: any)?|free of) precipitation|not (?:raining|snowing)|sun was (?:shining|out))\b"),
-    ("clear", r"\b(?:weather|atmospheric)(?: conditions?)?(?: (?:was|were|being|and))* (?:good|fair|fine|nice|dry|normal|"
-              r"(?:not|never) an? (?:contributing |causal )?factor)\b|"
+    ("clear", r"\b(?:weather|atmospheric)(?: conditions?)?(?: (?:was|were|being|and))* (?:good|fair|fine|nice|dry|"
+              r"normal|(?:not|never) an? (?:contributing |causal )?factor)\b|"
               r"\b(?:good|fair|fine|nice|dry) weather\b"),
     ("rain", r"\brain\b"),
 )  # fmt: skip

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Told, subject_starts
-from sgcad_core.narrative.contact_nouns import Touch, together, touches
+from sgcad_core.narrative.contact_nouns import Touch, paired_areas, struck_pair, together, touches
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
 from sgcad_core.narrative.zones import AREA, Zone, area_of, plain
@@ -156,7 +156,7 @@ def _subject_area(before: str, subject: str) -> Zone | None:
 
 
 def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
-    paired = _paired(scope)
+    pair = paired_areas(scope)
     scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
     area = area_of(own["area"]) if own else area
@@ -166,19 +166,9 @@ def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, wh
         return None
     if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
         area, other_area = area or "front", other_area or "back"
-    if paired and area is None:
-        area, other_area = paired
+    if pair and area is None:
+        area, other_area = pair
     return Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
-
-
-def _paired(scope: str) -> tuple[Zone | None, Zone | None] | None:
-    """Both areas of "front to left side" and of "head-on", the subject's first."""
-    if re.match(r"[^,.;]{0,40}\bhead-on\b(?! lane)", scope):
-        return "front", "front"
-    pair = says.PAIRED.search(scope)
-    if not pair or pair.start() > 60 or "with" in pair.group():
-        return None
-    return _maybe(pair["a1"]), _maybe(pair["a2"])
 
 
 def _clause(scope: str) -> str:
@@ -199,7 +189,9 @@ def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None
         return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or re.match(r"\W*$", scope):
         only = says.THE_AREA.match(scope)
-        return _the_other(told, actor, who), _maybe(only["area"]) if only else _area_behind(scope) or _damaged(told, who)
+        return _the_other(told, actor, who), _maybe(only["area"]) if only else _area_behind(scope) or _damaged(
+            told, who
+        )
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = re.search(rf"\b(?P<area>{AREA}) of (?:the )?{late.group()}", scope, re.I)
@@ -248,27 +240,10 @@ def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, w
         area, other_area = area or "back", other_area or "front"
     if other is None:
         return None
-    area, other_area = _struck_pair(scope, area, other_area)
+    area, other_area = struck_pair(scope, area, other_area)
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
     other = _not_itself(other, actor, who) or other
     return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
-
-
-def _struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple[Zone | None, Zone | None]:
-    """ "V2 was struck by V1, front to left side": the front, where only one is, belongs to the striking vehicle."""
-    against = says.AGAINST.search(scope)
-    by = says.BY.search(scope)
-    if against and by and by["v"] == against["v1"]:
-        return _maybe(against["a2"]), _maybe(against["a1"])
-    pair = None if against or area or other_area else _paired(scope)
-    if not pair:
-        return area, other_area
-    return (pair[1], pair[0]) if _strikes_first(pair) else pair
-
-
-def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
-    """Whether the first of two zones is the front of who strikes."""
-    return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")
 
 
 def _by_area(scope: str) -> Zone | None:

@@ -1,6 +1,6 @@
 """Contacts that a sentence tells by nouns: "the impact was between ...", "V1 received an impact to its rear".
 
-Reads sentences in the one form of `sgcad_core.narrative.zones.plain`. Knows no subjects: every vehicle is named.
+Also the area pairs that stand behind a verb ("front to left side"). Reads sentences in the one form of `sgcad_core.narrative.zones.plain`. Knows no subjects: every vehicle is named.
 """
 
 from __future__ import annotations
@@ -70,3 +70,30 @@ def together(text: str) -> Iterator[Touch]:
 
 def _maybe(words: str | None) -> Zone | None:
     return area_of(words) if words else None
+
+
+def paired_areas(scope: str) -> tuple[Zone | None, Zone | None] | None:
+    """Both areas of "front to left side" and of "head-on", the subject's first."""
+    if re.match(r"[^,.;]{0,40}\bhead-on\b(?! lane)", scope):
+        return "front", "front"
+    pair = says.PAIRED.search(scope)
+    if not pair or pair.start() > 60 or "with" in pair.group():
+        return None
+    return _maybe(pair["a1"]), _maybe(pair["a2"])
+
+
+def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple[Zone | None, Zone | None]:
+    """ "V2 was struck by V1, front to left side": the front, where only one is, belongs to the striking vehicle."""
+    against = says.AGAINST.search(scope)
+    by = says.BY.search(scope)
+    if against and by and by["v"] == against["v1"]:
+        return _maybe(against["a2"]), _maybe(against["a1"])
+    pair = None if against or area or other_area else paired_areas(scope)
+    if not pair:
+        return area, other_area
+    return (pair[1], pair[0]) if _strikes_first(pair) else pair
+
+
+def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
+    """Whether the first of two zones is the front of who strikes."""
+    return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")

@@ -50,7 +50,8 @@ THING_WAS = re.compile(
     rf"\b(?P<object>{'|'.join(OBJECTS)})s?(?: (?!V\d)[\w-]+){{0,6}}? (?:was|were|is|are|got)(?: \w+ly| then| also)*\s*$",
     re.I)  # fmt: skip
 DAMAGED = re.compile(
-    rf"^\W*(?:the )?(?P<area>{AREA}) of (?:the )?V\d+ (?:was|were|is) (?:\w+ed|hit|struck) (?:when|as)\b", re.I)
+    rf"^\W*(?:the )?(?P<area>{AREA}) of (?:the )?V\d+ (?:was|were|is) (?:\w+ed|hit|struck) (?:when|as)\b", re.I
+)
 CAUSED = re.compile(rf"\bcaus\w+ (?:the )?(?:(?P<area>{AREA}) of )?(?P<v>V\d+) to\s*$", re.I)
 ASIDE = re.compile(r", (?:which|that|who) (?:was|were|is|had)\b[^,.;]{0,60},(?= (?:in|on|at|with) )", re.I)
 CLAUSE_END = re.compile(

@@ -38,7 +38,8 @@ _EVASIVE = re.compile(
     re.I,
 )
 _NOT = re.compile(
-    r"\b(?:not|never|without|instead of|rather than|no)\b(?:\W+(?!and\b|but\b|then\b)[\w'-]+){0,3}\W*$", re.I)
+    r"\b(?:not|never|without|instead of|rather than|no)\b(?:\W+(?!and\b|but\b|then\b)[\w'-]+){0,3}\W*$", re.I
+)
 
 _DEEDS: tuple[tuple[str, str], ...] = (
     ("parked", r"\bparked\b(?! (?:cars?|vehicles?|van|truck|trailer|tractor|along|on (?:both|either)))|"

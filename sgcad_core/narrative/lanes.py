@@ -127,6 +127,9 @@ _EACH_TURN = re.compile(
     r"\b(left|right)[ -]turn lanes? (?:in|for|on) (?:(?:each|both|either|all|opposite|opposing) "
     r"(?:direction|side|way|approach|of)|"
     rf"(?:the )?(?:{BOUND}) and (?:the )?(?:{BOUND}))", re.I)  # fmt: skip
+_EACH_WITH_TURN = re.compile(
+    rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]lane "
+    r"(?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
 
 
@@ -146,7 +149,7 @@ class _Item:
 
 def lane_facts(text: str) -> LaneFacts:
     """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
-    marked = _CENTER_TURN.sub(" CENTERLANE ", text)
+    marked = _CENTER_TURN.sub(" CENTERLANE ", _each_spelled_out(text))
     each = _EACH.search(marked)
     own = _OWN.search(marked)
     marked = _OWN.sub(" ", marked)
@@ -166,6 +169,11 @@ def lane_facts(text: str) -> LaneFacts:
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
         own=number(own[1]) if own else None,
     )  # fmt: skip
+
+
+def _each_spelled_out(text: str) -> str:
+    """ "two lanes and a left turn lane in each direction": both are told for each direction."""
+    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)
 
 
 def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None]) -> int | None:
