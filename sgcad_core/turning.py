@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.junction_words import JunctionLeg
@@ -61,6 +62,41 @@ def turned(plain: PlainXml, turn_rad: float) -> PlainXml:
         edges=_turned(plain.edges, "edges", turn_rad),
         connections=_turned(plain.connections, "connections", turn_rad) if plain.connections else "",
     )
+
+
+def prolonged(plain: PlainXml, least_m: float) -> PlainXml:
+    """The same network, its dead ends moved straight on until the roads to them are so long.
+
+    A cut ends at the next junction, often nearer than an approach at speed begins. Raises InvalidOutput as `turned`.
+    """
+    nodes, edges = parse_xml(plain.nodes, "plain_xml nodes"), parse_xml(plain.edges, "plain_xml edges")
+    for node in nodes.iterfind("node[@type='dead_end']"):
+        touching = [e for e in edges if node.get("id") in (e.get("from"), e.get("to")) and e.get("shape")]
+        if touching:
+            _prolong(node, touching, least_m)
+    return plain.model_copy(update={"nodes": to_text(nodes), "edges": to_text(edges)})
+
+
+def _prolong(node: Element, touching: Sequence[Element], least_m: float) -> None:
+    outward = [_outward(edge, node.get("id")) for edge in touching]
+    lacking = least_m - min(sum(math.dist(a, b) for a, b in pairwise(line)) for line in outward)
+    (ax, ay), (bx, by) = outward[0][-2:]
+    if lacking <= 0 or (ax, ay) == (bx, by):
+        return
+    share = lacking / math.dist((ax, ay), (bx, by))
+    dx, dy = (bx - ax) * share, (by - ay) * share
+    node.set("x", f"{float(node.get('x')) + dx:.3f}")
+    node.set("y", f"{float(node.get('y')) + dy:.3f}")
+    for edge, line in zip(touching, outward, strict=True):
+        longer = [*line, (line[-1][0] + dx, line[-1][1] + dy)]
+        points = longer if edge.get("to") == node.get("id") else longer[::-1]
+        edge.set("shape", " ".join(f"{x:.3f},{y:.3f}" for x, y in points))
+
+
+def _outward(edge: Element, end: str) -> list[tuple[float, float]]:
+    """The edge's line towards the node `end`."""
+    line = [(float(x), float(y)) for x, y in (point.split(",")[:2] for point in edge.get("shape").split())]
+    return line if edge.get("to") == end else line[::-1]
 
 
 def _turned(text: str, what: str, turn_rad: float) -> str:

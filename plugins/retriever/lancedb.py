@@ -57,7 +57,7 @@ class LanceDB(Retriever):
             raise ConfigError(f"retriever 'lancedb' serves the tasks {', '.join(TASKS)}, not {task!r}")
         own = self.road_kinds if task == "road" else self.scenario_kinds
         kinds = self.kinds if own is None else own
-        found = [hit for kind in kinds for hit in self._of_kind(text, kind, cast("Task", task))]
+        found = [hit for kind in kinds for hit in self._of_kind(text, kind, task)]
         return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score, data=hit.data) for hit in found)
 
     def _of_kind(self, text: str, kind: Kind, task: Task) -> list[Hit]:

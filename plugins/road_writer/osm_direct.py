@@ -22,12 +22,13 @@ from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.formats.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.junction_words import JunctionLeg, describe, describe_layout, layout_legs
+from sgcad_core.layout import LEG_M
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
 from sgcad_core.registry import plugin_class
 from sgcad_core.specs import RoadLayout
-from sgcad_core.turning import best_turn, turned
+from sgcad_core.turning import best_turn, prolonged, turned
 
 
 class OsmDirect(RoadWriter):
@@ -43,6 +44,8 @@ class OsmDirect(RoadWriter):
     base_url: str = ""
     among: int = Field(1, ge=1, le=50)
     """Of so many found, the one whose legs and lanes fit best; 1 takes the first, as the paper does."""
+    leg_length_m: float = Field(LEG_M, ge=0, le=400)
+    """Roads that a cut ends sooner run straight on so far, else approaches begin off the road; 0 leaves them."""
     turn: bool = True
     """Turn the junction so that its legs lie as told; else it lies as in the real world, and crashes seldom fit."""
 
@@ -63,7 +66,7 @@ class OsmDirect(RoadWriter):
         found, data = self._nearest(layout)
         legs = _legs(data)
         turn = best_turn(legs, layout_legs(layout))[0] if self.turn else 0.0
-        network = compile_network(turned(PlainXml(**data["plain"]), turn))
+        network = compile_network(turned(prolonged(PlainXml(**data["plain"]), self.leg_length_m), turn))
         spec = spec_of_graph(parse_net(network.net_xml)) if network.net_xml else None
         said = f"osm_direct: {found.id}, turned by {math.degrees(turn):.0f} degrees: {describe(legs, data['control'])}"
         log = f"{said}\n{network.log}".strip()

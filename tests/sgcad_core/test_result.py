@@ -69,6 +69,7 @@ def test_a_generated_case_has_every_promised_key():
     assert result["status"] == "generated"
     assert result["attempts"] == {"road": 1, "scenario": 1}
     assert result["network"] == {
+        "source": "written",
         "intersections": 0,
         "components": 1,
         "mean_lanes": 2.0,

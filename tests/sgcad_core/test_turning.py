@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.junction_words import JunctionLeg
 from sgcad_core.records import PlainXml
-from sgcad_core.turning import best_turn, turned
+from sgcad_core.turning import best_turn, prolonged, turned
 
 ANGLES = st.floats(-math.pi, math.pi, allow_nan=False)
 LEGS = st.lists(st.tuples(st.integers(0, 7), st.integers(0, 4), st.integers(0, 4)), min_size=1, max_size=5,
@@ -80,3 +80,19 @@ def test_no_turn_changes_no_byte() -> None:
 def test_what_is_no_xml_is_invalid_output() -> None:
     with pytest.raises(InvalidOutput, match="plain_xml nodes"):
         turned(PlainXml(nodes="<nodes>", edges="<edges/>"), 1.0)
+
+
+def test_a_road_that_ends_too_soon_runs_straight_on_and_others_stay() -> None:
+    nodes = '<nodes><node id="hub" x="0" y="0"/><node id="a" x="0" y="30" type="dead_end"/>' \
+            '<node id="b" x="90" y="0" type="dead_end"/></nodes>'  # fmt: skip
+    there, back = (
+        '<edge id="A" from="a" to="hub" shape="0,30 0,0"/>',
+        '<edge id="-A" from="hub" to="a" shape="2,0 2,30"/>',
+    )
+    edges = f'<edges>{there}{back}<edge id="B" from="b" to="hub" shape="90,0 0,0"/></edges>'
+    longer = prolonged(PlainXml(nodes=nodes, edges=edges), 80)
+    assert 'id="a" x="0.000" y="80.000"' in longer.nodes
+    assert 'id="b" x="90" y="0"' in longer.nodes
+    assert 'shape="0.000,80.000 0.000,30.000 0.000,0.000"' in longer.edges
+    assert 'shape="2.000,0.000 2.000,30.000 2.000,80.000"' in longer.edges
+    assert 'shape="90,0 0,0"' in longer.edges

@@ -77,6 +77,8 @@ class MiniLM:
         self._torch = torch
         self._tokens = AutoTokenizer.from_pretrained(folder, local_files_only=True)
         self._model = AutoModel.from_pretrained(folder, local_files_only=True).eval()
+        if torch.ops.mkldnn._is_mkldnn_bf16_supported():  # half the processor time; cosine to float32 above 0.9999
+            self._model = self._model.to(torch.bfloat16)
 
     def embed(self, texts: Sequence[str]) -> Vectors:
         """Mean of the token vectors, as the model was trained; texts of like length share a batch."""
@@ -97,7 +99,7 @@ class MiniLM:
     def _means(self, texts: Sequence[str]) -> Any:
         batch = self._tokens(list(texts), padding=True, truncation=True, max_length=MINILM_TOKENS, return_tensors="pt")
         with self._torch.inference_mode():
-            states = self._model(**batch).last_hidden_state
+            states = self._model(**batch).last_hidden_state.float()
         mask = batch["attention_mask"].unsqueeze(-1)
         return ((states * mask).sum(1) / mask.sum(1).clamp(min=1)).numpy()
 

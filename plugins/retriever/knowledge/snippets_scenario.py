@@ -237,6 +237,12 @@ def whole_scenario() -> xosc.Scenario:
     save xosc write xml complete scenario header author road file OpenSCENARIO version minor
     """
     return xosc.Scenario(
-        "crash", "author", xosc.ParameterDeclarations(), vehicle_with_bounding_box(), storyboard_nesting(),
-        xosc.RoadNetwork("road.xodr"), xosc.Catalog(), osc_minor_version=2,
+        "crash",
+        "author",
+        xosc.ParameterDeclarations(),
+        vehicle_with_bounding_box(),
+        storyboard_nesting(),
+        xosc.RoadNetwork("road.xodr"),
+        xosc.Catalog(),
+        osc_minor_version=2,
     )  # fmt: skip; .write_xml("scenario.xosc") writes the file

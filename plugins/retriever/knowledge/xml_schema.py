@@ -163,7 +163,7 @@ def _attribute(
 
 
 def examples() -> Mapping[str, str]:
-    """"file/element" -> its example, for checking against the schemas."""
+    """ "file/element" -> its example, for checking against the schemas."""
     return {name: words.example for name, words in ELEMENTS.items() if words.example}
 
 
