@@ -1,7 +1,7 @@
 """What 10^4 and 10^6 reports a day need, and which part gives way first: the tables of docs/scale.md.
 
     python -m benchmarks.scale
-    python -m benchmarks.scale --rate 1e5 --model 3 --set tracker=0.02
+    python -m benchmarks.scale --rate 1e5 --model 3 --set mlflow=0.02 --servers starter=2
 
 Costs a case come from `benchmarks.stages` and `benchmarks.load`; what a card can do is computed from its data
 sheet and says so. The waiting is simulated (benchmarks/queueing.py).
@@ -73,23 +73,26 @@ class Costs:
     """Processor seconds a report at each part, measured as docs/scale.md says; the storage's are a round trip."""
 
     chain: float = 0.88
-    hand_in: float = 0.05
-    prefect: float = 0.05
-    tracker: float = 0.1
-    storage: float = 0.1
+    hand_in: float = 0.06
+    storage: float = 0.13
+    prefect: float = 0.231
+    mlflow: float = 0.171
+    starter: float = 0.084
 
 
-def stations_for(per_day: float, costs: Costs, model_s: float = 0.0, peak: float = PEAK) -> list[Station]:
-    """One server of each shared part, and of cores (and cards) as many as the peak hour needs."""
+SHARED = {"storage": 64, "prefect": 1, "mlflow": 1, "starter": 1}
+"""Servers of the parts that all hosts share: requests at a time, processes."""
+
+
+def stations_for(
+    per_day: float, costs: Costs, model_s: float = 0.0, shared: dict[str, int] | None = None
+) -> list[Station]:
+    """The shared parts, and of cores (and cards) as many as the peak hour needs."""
     work = costs.chain + costs.hand_in
-    cards = [Station("cards", servers_for(per_day, model_s, WAIT_S, peak), model_s, 0.3)] if model_s else []
-    return [
-        *cards,
-        Station("cores", servers_for(per_day, work, WAIT_S, peak), work, 0.5),
-        Station("storage", 64, costs.storage, 0.5),
-        Station("Prefect's server", 1, costs.prefect, 0.5),
-        Station("tracking", 1, costs.tracker, 0.5),
-    ]
+    cards = [Station("cards", servers_for(per_day, model_s, WAIT_S, PEAK), model_s, 0.3)] if model_s else []
+    cores = Station("cores", servers_for(per_day, work, WAIT_S, PEAK), work, 0.5)
+    parts = {**SHARED, **(shared or {})}
+    return [*cards, cores, *(Station(name, parts[name], getattr(costs, name), 0.5) for name in SHARED)]
 
 
 def day(
@@ -102,9 +105,15 @@ def day(
     return simulate(stations, list(arrivals(PEAK * per_day, reports, random.Random(7))), seed=7), "at the peak's rate"
 
 
-def table(per_day: float, costs: Costs, model_s: float = 0.0, reports: int = REPORTS) -> str:
+def table(
+    per_day: float,
+    costs: Costs,
+    model_s: float = 0.0,
+    shared: dict[str, int] | None = None,
+    reports: int = REPORTS,
+) -> str:
     """A simulated day as Markdown."""
-    outcome, what = day(per_day, stations_for(per_day, costs, model_s), reports=reports)
+    outcome, what = day(per_day, stations_for(per_day, costs, model_s, shared), reports=reports)
     lines = [f"{per_day:,.0f} reports a day ({what}, {len(outcome.through):,} reports):", "",
              "| part | servers | s a report | most a day | busy | mean wait s | 99 % wait s | longest queue |",
              "|---|---|---|---|---|---|---|---|"]  # fmt: skip
@@ -145,10 +154,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rate", type=float, nargs="+", default=[1e4, 1e6], help="reports a day")
     parser.add_argument("--set", action="append", default=[], help="a cost, such as prefect=0.02")
+    parser.add_argument("--servers", action="append", default=[], help="of a shared part, such as mlflow=4")
     parser.add_argument("--model", type=float, default=0.0, help="seconds a report on a card; 0: no model")
     options = parser.parse_args()
     costs = replace(Costs(), **{key: float(value) for key, _, value in (one.partition("=") for one in options.set)})
-    parts = [table(rate, costs, options.model) for rate in options.rate]
+    shared = {key: int(value) for key, _, value in (one.partition("=") for one in options.servers)}
+    parts = [table(rate, costs, options.model, shared) for rate in options.rate]
     sys.stdout.write("\n\n".join([*parts, cards()]) + "\n")
 
 
