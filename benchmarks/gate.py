@@ -5,13 +5,14 @@
 
 Every report goes at every robustness level through the first road and scenario answer of the config's model. Levels
 that leave the crash readable should be answered, those that take it away refused. Half of the reports (by a hash
-of their names) choose the thresholds, the other half says what they are worth. Groundings are kept in --samples,
-line by line: run again to go on, or with --precision to choose anew without asking the model.
+of their names) choose the thresholds, the other half says what they are worth. Groundings are kept line by line in a
+file of this config and its weights: run again to go on, or with --precision to choose anew without asking the model.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import io
 import json
 import sys
@@ -125,6 +126,16 @@ def collected(
     return list(known.values())
 
 
+def default_file(config: Config) -> Path:
+    """Where groundings are kept: another file for another model, decoder or prompt form."""
+    stamp = config.backbone.stamp if config.backbone else ""
+    asked = {
+        kind: config.raw.get(kind) for kind in ("backbone", "decoder", "retriever", "road_writer", "scenario_writer")
+    }
+    digest = hashlib.sha256(json.dumps([asked, config.seed, stamp]).encode()).hexdigest()[:8]
+    return Path("runs") / f"gate-{config.name}-{digest}.jsonl"
+
+
 def _sampled(probe: Probe, report: CrashReport, level: Level) -> Sample | None:
     """A sample; None, and a line on stderr, for a report that the model cannot take."""
     try:
@@ -208,7 +219,7 @@ def main() -> None:
     parser.add_argument("--made", type=int, default=0, help="how many reports of mini's generator")
     parser.add_argument("--config", default="mini.yaml")
     parser.add_argument("--set", action="append", default=[], dest="overrides", help="key=value, as for sgcad")
-    parser.add_argument("--samples", type=Path, default=Path("runs/gate.jsonl"), help="kept groundings")
+    parser.add_argument("--samples", type=Path, help="kept groundings; default: a file in runs/ for config and weights")
     parser.add_argument("--precision", type=float, help="choose for recall at this precision instead of for F1")
     parser.add_argument("--jobs", type=int, default=4, help="reports asked at once")
     parser.add_argument("--limit", type=int, help="at most so many reports")
@@ -216,8 +227,9 @@ def main() -> None:
     try:
         config = load(told.config, tuple(told.overrides))
         reports = [*made(told.made), *(read(config, told.cases) if told.cases else ())][: told.limit]
-        told.samples.parent.mkdir(parents=True, exist_ok=True)
-        samples = collected(config, iter(reports), told.samples, told.jobs)
+        file = told.samples or default_file(config)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        samples = collected(config, iter(reports), file, told.jobs)
     except (ConfigError, MissingTool) as fault:
         raise SystemExit(str(fault)) from fault
     sys.stdout.write(report(samples, told.precision))

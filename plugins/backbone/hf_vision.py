@@ -6,18 +6,23 @@ Text models work too; they see no diagrams. Needs no torchvision.
 
 from __future__ import annotations
 
+import hashlib
 import threading
 from collections import OrderedDict
+from pathlib import Path
 from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
 from plugins.backbone import hf_run
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
+from sgcad_core import settings
 from sgcad_core.interfaces import Backbone, Decoder
 from sgcad_core.records import Context, Generation, Query
 
 _KEPT_ANSWERS = 256
+_WHOLE_BYTES = 1 << 24
+"""Files up to here are read whole for the fingerprint; of larger ones as much of either end."""
 
 
 class HfVision(Backbone):
@@ -41,7 +46,16 @@ class HfVision(Backbone):
 
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
     _running: hf_run.Running | None = PrivateAttr(default=None)
+    _stamp: str | None = PrivateAttr(default=None)
     _answers: OrderedDict[str, tuple[str, tuple[int, ...]]] = PrivateAttr(default_factory=OrderedDict)
+
+    @property
+    def stamp(self) -> str:
+        """Fingerprint of the folder of weights; empty for an id, whose revision is a field."""
+        with self._lock:
+            if self._stamp is None:
+                self._stamp = folder_stamp(self.model)
+            return self._stamp
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answer a query; blocks until the loop has it.
@@ -90,3 +104,18 @@ class HfVision(Backbone):
                     pictures_first=self.pictures_first,
                 )
             return self._running
+
+
+def folder_stamp(model: str) -> str:
+    """A digest of a model folder's files but its notes (*.md); "" where there is no such folder."""
+    folder = next((p for p in (Path(model), settings.ROOT / model) if p.is_dir()), None)
+    found = hashlib.sha256()
+    for file in sorted(folder.iterdir()) if folder else ():
+        if file.is_file() and file.suffix != ".md":
+            size = file.stat().st_size
+            found.update(f"{file.name} {size}\0".encode())
+            with file.open("rb") as opened:
+                found.update(opened.read(_WHOLE_BYTES))
+                opened.seek(max(0, size - _WHOLE_BYTES))
+                found.update(opened.read())
+    return found.hexdigest()[:16] if folder else ""

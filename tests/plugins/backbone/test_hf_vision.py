@@ -270,3 +270,14 @@ def test_quantization_without_its_package_says_how_to_install_it(backbones: dict
 def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> None:
     with pytest.raises(ConfigError, match=r"backbone\.device 'gpu7' is unknown to torch"):
         HfVision(**{**backbones["llava"].model_dump(), "device": "gpu7"}).generate(folders.context(), QUERY, Cad())
+
+
+def test_other_weights_in_the_same_folder_are_another_stamp_and_other_notes_are_not(tmp_path: Path) -> None:
+    (tmp_path / "model.safetensors").write_bytes(b"one")
+    stamps = [HfVision(model=str(tmp_path)).stamp]
+    (tmp_path / "README.md").write_text("notes", encoding="utf-8")
+    stamps.append(HfVision(model=str(tmp_path)).stamp)
+    (tmp_path / "model.safetensors").write_bytes(b"two")
+    stamps.append(HfVision(model=str(tmp_path)).stamp)
+    assert stamps[0] == stamps[1] != stamps[2]
+    assert HfVision(model="Qwen/Qwen2.5-VL-7B-Instruct").stamp == ""
