@@ -117,3 +117,16 @@ def test_worked_scenarios_keep_to_their_stage():
         if chunk.kind == "example":
             assert chunk.tasks == (("road",) if chunk.id.endswith("layout") else ("scenario",))
             json.loads(chunk.text.split(": ", 2)[2])
+
+
+def test_writers_of_a_language_are_given_what_any_crash_needs(tmp_path):
+    from plugins.retriever.lancedb import LanceDB
+
+    index = LanceDB(folder=tmp_path / "kb", road_kinds=("xml",), scenario_kinds=("api", "snippet"), per_kind=5)
+    index.build(index.chunks([], True, lambda *_: None), lambda _: None)
+    told = "V1 was traveling north in the left lane. V2 turned left across its path and was struck on the right side."
+    road = {p.id for p in index.retrieve(told, "road")}
+    assert road >= {"xml/edges/edge", "xml/nodes/node", "xml/connections/connection"}
+    scenario = {p.id for p in index.retrieve(told, "scenario")}
+    assert scenario >= {"api/xosc.FollowTrajectoryAction", "api/xosc.Polyline", "snippet/timed_trajectory"}
+    assert {name.split("/")[0] for name in scenario} == {"api", "snippet"}
