@@ -25,6 +25,7 @@ from benchmarks.gate_sweep import Sample, Score, area, choose, halves, refused, 
 from flows.cases import cases_in
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of
+from sgcad_core import settings
 from sgcad_core.config import Config, load
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool, Refused
 from sgcad_core.records import Context, CrashReport, Diagram, Generation, Query, RoadNetwork
@@ -127,12 +128,13 @@ def collected(
 
 
 def default_file(config: Config) -> Path:
-    """Where groundings are kept: another file for another model, decoder or prompt form."""
+    """Where groundings are kept: another file for another model, decoder or prompt."""
     stamp = config.backbone.stamp if config.backbone else ""
     asked = {
         kind: config.raw.get(kind) for kind in ("backbone", "decoder", "retriever", "road_writer", "scenario_writer")
     }
-    digest = hashlib.sha256(json.dumps([asked, config.seed, stamp]).encode()).hexdigest()[:8]
+    prompts = [file.read_text(encoding="utf-8") for file in sorted(settings.PROMPTS.glob("*.md"))]
+    digest = hashlib.sha256(json.dumps([asked, config.seed, stamp, prompts]).encode()).hexdigest()[:8]
     return Path("runs") / f"gate-{config.name}-{digest}.jsonl"
 
 

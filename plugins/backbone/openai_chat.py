@@ -136,9 +136,7 @@ class OpenAIChat(Backbone):
         except ValueError:
             body = None
         if not isinstance(body, dict) or not body.get("choices"):
-            raise ConfigError(
-                f"{self._url} answered no chat completion but {_said(response)}; mend backbone.base_url"
-            )
+            raise ConfigError(f"{self._url} answered no chat completion but {_said(response)}; mend backbone.base_url")
         return body
 
     def _answer(self, body: dict[str, Any]) -> tuple[str, dict[str, Any]]:
