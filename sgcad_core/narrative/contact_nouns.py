@@ -1,6 +1,7 @@
 """Contacts that a sentence tells by nouns: "the impact was between ...", "V1 received an impact to its rear".
 
-Also the area pairs that stand behind a verb ("front to left side"). Reads sentences in the one form of `sgcad_core.narrative.zones.plain`. Knows no subjects: every vehicle is named.
+Also the area pairs that stand behind a verb ("front to left side"). Reads sentences in the one form of
+`sgcad_core.narrative.zones.plain`. Knows no subjects: every vehicle is named.
 """
 
 from __future__ import annotations

@@ -18,8 +18,8 @@ NEAR_MISS = re.compile(
     r"both|another|further))*|"
     r"to(?: (?:avoid|be|have|get|being|been|not|prevent|make|come|in|into))*)\s*$", re.I)  # fmt: skip
 TO_HIT = re.compile(
-    rf"\b(?:caus\w+ (?:the )?(?:(?:{AREA}) of )?(?:\w+ )?|proceed\w* |continu\w* |went on |return\w+ |spin |forc\w+ (?:\w+ "
-    r")?)to\s*$",
+    rf"\b(?:caus\w+ (?:the )?(?:(?:{AREA}) of )?(?:\w+ )?|proceed\w* |continu\w* |went on |return\w+ |"
+    r"spin |forc\w+ (?:\w+ )?)to\s*$",
     re.I,
 )
 ACTIVE_OBJECT = re.compile(
@@ -47,8 +47,9 @@ OBJECTS = (
 )  # fmt: skip
 OBJECT = re.compile(rf"^[^.;]{{0,70}}?\b(?P<object>{'|'.join(OBJECTS)})s?\b", re.I)
 THING_WAS = re.compile(
-    rf"\b(?P<object>{'|'.join(OBJECTS)})s?(?: (?!V\d)[\w-]+){{0,6}}? (?:was|were|is|are|got)(?: \w+ly| then| also)*\s*$",
-    re.I)  # fmt: skip
+    rf"(?:^|[;,] |\band )(?:an?|the|two|some) (?:[\w-]+ ){{0,3}}?(?P<object>{'|'.join(OBJECTS)})s?"
+    r"(?: (?!V\d|(?:and|but|then|which|that|when|where)\b)[\w-]+){0,6}? (?:was|were|is|are|got)"
+    r"(?: \w+ly| then| also)*\s*$", re.I)  # fmt: skip
 DAMAGED = re.compile(
     rf"^\W*(?:the )?(?P<area>{AREA}) of (?:the )?V\d+ (?:was|were|is) (?:\w+ed|hit|struck) (?:when|as)\b", re.I
 )

@@ -80,7 +80,8 @@ _DEEDS: tuple[tuple[str, str], ...] = (
                   rf"roadway)"),
     ("into_lane", rf"\b(?:travel\w*|driv\w*|going|head\w*) (?:{DIRECTION})(?:bound)?\b[^.;,]{{0,25}}? in the "
                   rf"(?:\w+ )?(?P<bound>(?:{DIRECTION})bound) (?:\w+ )?lanes?"),
-    ("lane_change_left", r"\bchang\w+ (?:\w+ )?lanes? (?:(?!left|right)\w+ ){0,6}left|\blane change (?:to the |into the )?left|"
+    ("lane_change_left", r"\bchang\w+ (?:\w+ )?lanes? (?:(?!left|right)\w+ ){0,6}left|"
+                         r"\blane change (?:to the |into the )?left|"
                          r"(?:moved?|moving|merged?|steered|swerved) (?:\w+ ){0,3}(?:in)?to the left(?:-|"
                          r" )?(?:hand )?(?:through |travel )?lane|"
                          r"\bleft lane change|\b(?:mov|chang)\w+ from the right lane (?:in)?to the left\b"),
@@ -98,18 +99,19 @@ _DEEDS: tuple[tuple[str, str], ...] = (
     ("negotiating_curve", r"\b(?:negotiat\w+|round(?:ed|ing)|through|exit(?:ed|ing)|enter(?:ed|ing)|on|in|"
                           r"around) (?:a|the|an) (?:[\w-]+ ){0,3}?(?:curve|bend)\b|\bnegotiating\b"),
     ("departing_road_right", r"\b(?:off|departed|left|leaving|exited|"
-                             r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:right (?:side|edge|shoulder|road\w* edge|roadside)|road\w* (?:on|"
-                             r"to) the right)"),
+                             r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:right (?:side|edge|shoulder|road\w* edge|"
+                             r"roadside)|road\w* (?:on|to) the right)"),
     ("departing_road_left", r"\b(?:off|departed|left|leaving|exited|"
-                            r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:left (?:side|edge|shoulder|road\w* edge|roadside)|road\w* (?:on|"
-                            r"to) the left)"),
-    ("departing_road_right", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?right\b[^.;]{0,30}\b(?:departed|left|"
-                             r"exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
-    ("departing_road_left", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?left\b[^.;]{0,30}\b(?:departed|left|"
-                            r"exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
+                            r"ran off) (?:of )?(?:the )?(?:\w+ )?(?:left (?:side|edge|shoulder|road\w* edge|"
+                            r"roadside)|road\w* (?:on|to) the left)"),
+    ("departing_road_right", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?right\b[^.;]{0,30}\b(?:departed|"
+                             r"left|exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
+    ("departing_road_left", r"\b(?:drift|steer|veer|swerv|slid|pull)\w* (?:to the )?left\b[^.;]{0,30}\b(?:departed|"
+                            r"left|exited|(?:ran|went|drove) off) (?:of )?the (?:road\w*|pavement|highway|street)\b"),
     ("lost_control", r"\b(?:los[et]|losing) control\b|\bhydroplan\w+|\bfishtail\w*|\bskidd?(?:ed|ing)\b|\bslid\b|"
                      r"\byaw\b"),
-    ("backing", r"(?<!traffic )(?<!traffic had )(?<!traffic was )(?<!vehicles )\b(?:backing|backed|revers(?:ed|ing)|in reverse)\b(?! up traffic)"),
+    ("backing", r"(?<!traffic )(?<!traffic had )(?<!traffic was )(?<!vehicles )"
+                r"\b(?:backing|backed|revers(?:ed|ing)|in reverse)\b(?! up traffic)"),
     ("leaving_parking", r"\bpull(?:ed|ing) (?:out|away) (?:of|from) (?:a |the |its |his |"
                         r"her )?(?:parking (?:space|spot|position)|curb)|leaving (?:a )?park"),
     ("from_side", r"\b(?:approach\w*|com\w+|enter\w*|emerg\w*|pull\w*|cross\w*|"

@@ -108,7 +108,7 @@ _DRIVEN = re.compile(
 
 
 _ACTED = re.compile(
-    r"^(?:the (?:driver|operator) of )?V\d+\b[^.;]*?\b(?:thought|believed|indicated|estimated)\b[^.;]*?\b(?:and|so|then) "
+    r"^(?:the (?:driver|operator) of )?V\d+\b[^.;]*?\b(?:thought|believed|estimated)\b[^.;]*?\b(?:and|so|then) "
     r"(?:\w+ )?(?:turned|made an? (?:left|right|u)|pulled (?:out|into)|proceeded|entered|drove into|changed lanes)\b",
     re.I)  # fmt: skip
 
