@@ -96,7 +96,9 @@ def seconds_with(workers: int, options: argparse.Namespace, url: str, place: Pat
         words = [str(write_study(options, url, place, workers)), str(place / "cases"), str(place / f"out{workers}")]
         command = [sys.executable, "-m", "benchmarks.hosts", "--inside", *words, f"file://{place}/share{workers}"]
         command += ["--shards", str(options.shards), "--jobs", str(options.jobs)]
-        done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)  # noqa: S603 - our own module
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)  # noqa: S603 - our own module
+    if done.returncode:
+        raise RuntimeError(f"the study with {workers} worker(s) failed: {done.stderr[-3000:]}")
     seconds, cases = done.stdout.split()[-2:]
     if int(cases) != options.cases:
         raise RuntimeError(f"{cases} of {options.cases} cases came home: {done.stderr[-2000:]}")
