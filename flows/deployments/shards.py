@@ -102,23 +102,34 @@ class PrefectPool:
     def states(self, runs: Sequence[str]) -> dict[str, tuple[Standing, str]]:
         """State and message of each run; a run that the server does not know (any more) has ended."""
         found: dict[str, tuple[Standing, str]] = dict.fromkeys(runs, ("ended", "the server has no such run"))
-        with get_client(sync_client=True) as client:
-            for start in range(0, len(runs), PAGE):
-                wanted = FlowRunFilter(id=FlowRunFilterId(any_=list(runs[start : start + PAGE])))
-                read = _ask(lambda wanted=wanted: client.read_flow_runs(flow_run_filter=wanted, limit=PAGE))
-                found |= {str(run.id): (_standing(run.state), _words(run.state)) for run in read}
+        for start in range(0, len(runs), PAGE):
+            wanted = FlowRunFilter(id=FlowRunFilterId(any_=list(runs[start : start + PAGE])))
+            read = _told(lambda client, wanted=wanted: client.read_flow_runs(flow_run_filter=wanted, limit=PAGE))
+            found |= {str(run.id): (_standing(run.state), _words(run.state)) for run in read}
         return found
 
     def give_up(self, run: str, reason: str) -> None:
         """Mark a run as crashed: its place in the pool is free again, and its message says why."""
+        _told(lambda client: client.set_flow_run_state(run, Crashed(message=reason), force=True))
+
+
+def _told(request: Callable[[Any], _T]) -> _T:
+    """What a client answers."""
+
+    def ask() -> _T:
         with get_client(sync_client=True) as client:
-            _ask(lambda: client.set_flow_run_state(run, Crashed(message=reason), force=True))
+            return request(client)
+
+    return _ask(ask)
 
 
 def _ask(request: Callable[[], _T]) -> _T:
+    """A request's answer. Raises Unreachable for a server that is gone or too slow, whichever way Prefect says so."""
     try:
         return request()
-    except httpx.HTTPError as fault:
+    except (httpx.HTTPError, RuntimeError) as fault:
+        if isinstance(fault, RuntimeError) and not str(fault).startswith("Failed to reach API"):
+            raise
         raise Unreachable(f"Prefect's server does not answer ({type(fault).__name__}: {fault})") from fault
 
 

@@ -7,6 +7,7 @@ import yaml
 
 from sgcad_core import settings
 
+RUN = "00000000-0000-0000-0000-000000000001"
 DEPLOYMENTS = {
     one["name"]: one for one in yaml.safe_load((settings.ROOT / "deploy" / "prefect.yaml").read_text())["deployments"]
 }
@@ -32,3 +33,17 @@ def test_a_flow_run_has_a_thread_for_every_case_of_the_batch():
     from flows.deployments.shards import THREADS, shard_flow
 
     assert shard_flow.task_runner._max_workers == THREADS >= DEPLOYMENTS["shard-gpu"]["parameters"]["jobs"]
+
+
+def test_a_server_that_is_gone_is_waited_for_whichever_way_prefect_says_so():
+    """Opening a client raises RuntimeError, a request httpx's errors: both mean try again."""
+    from prefect.settings import PREFECT_API_URL, PREFECT_CLIENT_MAX_RETRIES, temporary_settings
+
+    from flows.deployments.shards import PrefectPool
+    from flows.study.share import Unreachable
+
+    pool = PrefectPool("s", {})
+    with temporary_settings({PREFECT_API_URL: "http://127.0.0.1:9/api", PREFECT_CLIENT_MAX_RETRIES: 0}):
+        for act in (lambda: pool.states([RUN]), lambda: pool.submit(0), lambda: pool.give_up(RUN, "gone")):
+            with pytest.raises(Unreachable, match="server does not answer"):
+                act()
