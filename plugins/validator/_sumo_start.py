@@ -11,7 +11,7 @@ STEPS = 2
 
 
 def start(net_xml: str) -> str:
-    """"" if SUMO loads the network and steps on it, else SUMO's message (details stand on stderr)."""
+    """ "" if SUMO loads the network and steps on it, else SUMO's message (details stand on stderr)."""
     with tempfile.TemporaryDirectory(prefix="sgcad-load-") as folder:
         file = Path(folder) / "road.net.xml"
         file.write_text(net_xml, encoding="utf-8")

@@ -141,7 +141,5 @@ def _seen(contact: ObservedContact | None) -> str:
     return f"{sides} at {contact.t_s:.2f} s"
 
 
-def _finding(
-    what: str, where: str, value: str, remedy: str, severity: Literal["repair", "note"] = "repair"
-) -> Finding:
+def _finding(what: str, where: str, value: str, remedy: str, severity: Literal["repair", "note"] = "repair") -> Finding:
     return Finding(source="agreement", severity=severity, what=what, where=where, value=value, remedy=remedy)

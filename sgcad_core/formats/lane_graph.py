@@ -18,7 +18,6 @@ Floats = NDArray[np.float64]
 Direction = Literal["left", "through", "right", "u_turn"]
 
 
-
 class NetNode(NamedTuple):
     """A SUMO node: place in metres and type ("priority", "traffic_light", "dead_end", ...)."""
 
