@@ -36,7 +36,8 @@ up: setup ## server, worker, MLflow and deployments on this machine (UP="--serve
 down: ## end what `make up` started; results and logs stay
 	$(BIN)/python -m deploy.local down $(UP)
 
-check-deploy: setup ## the containers' services without containers, on a real PostgreSQL
+check-deploy: setup ## every service started for real, and the containers' services without containers
+	SGCAD_SERVICES=1 $(BIN)/python -m pytest tests/deploy -q
 	$(BIN)/python -m deploy.check
 
 bench: setup ## time and share of every stage over the demo reports

@@ -1,5 +1,6 @@
 """All services of one machine: started once, found well, used, and ended."""
 
+import os
 import socket
 import time
 
@@ -60,6 +61,7 @@ def test_a_service_that_ends_at_once_is_told_with_its_last_words(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif("SGCAD_SERVICES" not in os.environ, reason="starts every service; run by `make check-deploy`")
 def test_up_starts_everything_once_and_deploys_and_down_ends_it(tmp_path, monkeypatch):
     for name in ("PREFECT_API_URL", "PREFECT_HOME"):
         monkeypatch.delenv(name, raising=False)
