@@ -7,16 +7,15 @@ edges and connections for cars are kept. Knows no crash.
 from __future__ import annotations
 
 import math
-import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from lxml import etree
 
-from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.graph_spec import CONTROLS
+from sgcad_core.formats.netconvert import plain_files
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.junction_words import JunctionLeg
 from sgcad_core.records import PlainXml
@@ -35,8 +34,7 @@ _LINK = ("fromLane", "toLane")
 def read_map(file: Path) -> PlainXml:
     """Read a map. Raises ConfigError naming the file for one that netconvert cannot read or that is too large."""
     with tempfile.TemporaryDirectory(prefix="sgcad-map-") as folder:
-        _convert(file, Path(folder))
-        parts = [(Path(folder) / f"map.{part}.xml").read_text(encoding="utf-8") for part in ("nod", "edg", "con")]
+        parts = _converted(file, Path(folder))
     try:
         nodes, edges, links = (parse_xml(text, file.name) for text in parts)
     except InvalidOutput as fault:
@@ -47,19 +45,10 @@ def read_map(file: Path) -> PlainXml:
     return _renamed(nodes, found, links)
 
 
-def _convert(file: Path, folder: Path) -> None:
+def _converted(file: Path, folder: Path) -> list[str]:
     kind = "--opendrive-files" if file.name.endswith(".xodr") else "--sumo-net-file"
-    command = [str(settings.netconvert()), kind, str(file.resolve()), "--plain-output-prefix", "map", *_FLAGS]
-    try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
-            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=TIMEOUT_S,
-            check=False,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired as fault:
-        raise ConfigError(f"{file}: netconvert took longer than {TIMEOUT_S:g} s; cut the map smaller") from fault
-    if done.returncode:
-        said = (done.stderr + done.stdout).decode("utf-8", "replace").strip()[-300:]
-        raise ConfigError(f"{file}: netconvert cannot read it (exit {done.returncode}): {said}")
+    parts = plain_files(file, (kind, str(file.resolve()), *_FLAGS), folder, TIMEOUT_S)
+    return [part.read_text(encoding="utf-8") for part in parts]
 
 
 # ------------------------------------------------------------------ ids

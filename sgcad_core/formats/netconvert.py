@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from sgcad_core import settings
-from sgcad_core.errors import InvalidOutput
+from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.plain_xml import xsd_findings
 from sgcad_core.formats.xodr import mend
 from sgcad_core.records import PlainXml, RoadNetwork
@@ -73,3 +74,23 @@ def _read(file: Path) -> str | None:
     if not file.exists():
         return None
     return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
+
+
+def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:
+    """Node, edge and connection file of a user's map, written to `folder`; `source`: netconvert's flags for reading it.
+
+    Raises ConfigError naming the file where netconvert cannot read it or takes longer than `timeout_s`; MissingTool.
+    """
+    command = [str(settings.netconvert()), *source, "--plain-output-prefix", "map"]
+    try:
+        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
+            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=timeout_s,
+            check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as fault:
+        raise ConfigError(f"{file}: netconvert took longer than {timeout_s:g} s; cut the map smaller") from fault
+    if done.returncode:
+        said = (done.stderr + done.stdout).decode("utf-8", "replace").strip()[-500:]
+        raise ConfigError(f"{file}: netconvert cannot read it (exit {done.returncode}): {said}")
+    nodes, edges, connections = (folder / f"map.{part}.xml" for part in ("nod", "edg", "con"))
+    return nodes, edges, connections

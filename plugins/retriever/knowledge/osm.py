@@ -9,12 +9,11 @@ from __future__ import annotations
 import bz2
 import importlib
 import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
-from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.formats.netconvert import plain_files
 
 ENDINGS = (".osm", ".osm.gz", ".osm.bz2", ".osm.pbf")
 TIMEOUT_S = 3600.0
@@ -32,19 +31,7 @@ FLAGS = (
 def plain_of(extract: Path, folder: Path) -> tuple[Path, Path, Path]:
     """Node, edge and connection file of an extract, made in `folder`. Raises ConfigError, MissingTool."""
     source = _readable(extract, folder)
-    command = [str(settings.netconvert()), "--osm-files", str(source), "--plain-output-prefix", "osm", *FLAGS]
-    try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
-            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=TIMEOUT_S,
-            check=False,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired as fault:
-        raise ConfigError(f"{extract}: netconvert took longer than {TIMEOUT_S:g} s; cut the extract smaller") from fault
-    if done.returncode:
-        said = (done.stderr + done.stdout).decode("utf-8", "replace").strip()[-500:]
-        raise ConfigError(f"{extract}: netconvert cannot import it (exit {done.returncode}): {said}")
-    nodes, edges, connections = (folder / f"osm.{part}.xml" for part in ("nod", "edg", "con"))
-    return nodes, edges, connections
+    return plain_files(extract, ("--osm-files", str(source), *FLAGS), folder, TIMEOUT_S)
 
 
 def _readable(extract: Path, folder: Path) -> Path:

@@ -115,7 +115,7 @@ def test_a_pbf_gives_the_same_junctions(chunks, town, tmp_path):
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("bad.osm", b"this is no map", "netconvert cannot import it"),
+        ("bad.osm", b"this is no map", "netconvert cannot read it"),
         ("bad.osm.bz2", b"this is not packed", "damaged"),
         ("town.shp", b"", "unknown kind of file"),
         ("own.jsonl", b'{"id": "x"}\n', r"own.jsonl, line 1: kind: Field required"),
