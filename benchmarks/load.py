@@ -20,8 +20,9 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any, NamedTuple
 
 import httpx
@@ -113,6 +114,34 @@ def answers(address: str) -> bool:
         return False
 
 
+class Memory(Thread):
+    """Resident memory of a process and all that it started, MB, once a second until `stop`."""
+
+    def __init__(self, process: psutil.Process) -> None:
+        super().__init__(daemon=True)
+        self.process, self.seen, self._ended = process, [self._now(process)], Event()
+
+    def run(self) -> None:
+        """Look once a second."""
+        while not self._ended.wait(1.0):
+            self.seen.append(self._now(self.process))
+
+    def stop(self) -> str:
+        """What it was after a tenth of the time, half of it, and at the end."""
+        self._ended.set()
+        self.join()
+        at = [self.seen[int(share * (len(self.seen) - 1))] for share in (0.1, 0.5, 1.0)]
+        return "server memory after a tenth, a half, all: " + ", ".join(f"{mb:.0f}" for mb in at) + " MB"
+
+    @staticmethod
+    def _now(process: psutil.Process) -> float:
+        total = 0
+        for one in (process, *process.children(recursive=True)):
+            with suppress(psutil.NoSuchProcess):
+                total += one.memory_info().rss
+        return total / 2**20
+
+
 def spent(process: psutil.Process) -> float:
     """Processor seconds of a process and all that it started."""
     family = [process, *process.children(recursive=True)]
@@ -169,12 +198,14 @@ def run_client(
     server: psutil.Process, client: list[str], environment: dict[str, str]
 ) -> tuple[float, float, float, str]:
     """(server, client, wall) seconds of one client, and what it says at its end."""
-    before, started = spent(server), time.perf_counter()
+    before, started, memory = spent(server), time.perf_counter(), Memory(server)
+    memory.start()
     done = subprocess.run(client, capture_output=True, text=True, env={**os.environ, **environment}, check=False)  # noqa: S603 - our own module
     if done.returncode:
         raise RuntimeError(done.stderr[-2000:])
     used, _, note = done.stdout.strip().splitlines()[-1].partition(" ")
-    return spent(server) - before, float(used), time.perf_counter() - started, note
+    took, memory_told = time.perf_counter() - started, memory.stop()
+    return spent(server) - before, float(used), took, f"{note}; {memory_told}"
 
 
 # ------------------------------------------------------------------ clients, in processes of their own
