@@ -18,10 +18,12 @@ from typing import Any
 import torch
 from transformers import Qwen2_5_VLForConditionalGeneration
 
+from mini import north
 from mini.decode import Answerer
 from mini.feed import HELD_OUT_BASE, drawing
 from mini.generator.report import Report, make_report
 from mini.model import Forward
+from mini.north import NorthFinder
 from mini.rows import evidence
 from mini.tokens import Coder, load_tokenizer
 
@@ -30,16 +32,21 @@ REFUSED = ("thin", "no_crash", "conflict")
 Answer = tuple[Any, Any]
 
 
-def load(folder: Path) -> tuple[Forward, Coder]:
-    """A saved model, in fp32 (a CPU without bf16 is slow in it)."""
+def load(folder: Path) -> tuple[Forward, Coder, NorthFinder | None]:
+    """A saved model, in fp32 (a CPU without bf16 is slow in it), and what turns drawings upright for it."""
     model = Qwen2_5_VLForConditionalGeneration.from_pretrained(
         folder, dtype=torch.float32, local_files_only=True
     ).eval()
-    return Forward(model), Coder(load_tokenizer(folder))
+    return Forward(model), Coder(load_tokenizer(folder)), north.load(folder)
 
 
 def answers_of(
-    forward: Forward, coder: Coder, reports: Sequence[Report], blind: bool = False, batch: int = 24
+    forward: Forward,
+    coder: Coder,
+    finder: NorthFinder | None,
+    reports: Sequence[Report],
+    blind: bool = False,
+    batch: int = 24,
 ) -> list[Answer]:
     """Greedy answers, reports sorted by length within the call."""
     order = sorted(range(len(reports)), key=lambda i: len(reports[i].narrative))
@@ -47,7 +54,9 @@ def answers_of(
     answerer = Answerer(forward, coder)
     for start in range(0, len(order), batch):
         some = order[start : start + batch]
-        rows = [evidence(coder, reports[i].narrative, None if blind else drawing(reports[i])) for i in some]
+        drawings = [None if blind else drawing(reports[i]) for i in some]
+        upright = [finder.upright(image) if finder and image else image for image in drawings]
+        rows = [evidence(coder, reports[i].narrative, image) for i, image in zip(some, upright, strict=True)]
         found |= dict(zip(some, answerer.answer(rows), strict=True))
     return [found[i] for i in range(len(reports))]
 
@@ -142,15 +151,20 @@ def refusals(reports: Sequence[Report], answers: Sequence[Answer]) -> dict[str, 
 
 
 def measure(
-    forward: Forward, coder: Coder, count: int, held_out: bool = True, base: int = HELD_OUT_BASE
+    forward: Forward,
+    coder: Coder,
+    finder: NorthFinder | None,
+    count: int,
+    held_out: bool = True,
+    base: int = HELD_OUT_BASE,
 ) -> dict[str, Any]:
     """All figures on `count` reports."""
     reports = [make_report(base + i, held_out, 0.6, MODES) for i in range(count)]
-    found = answers_of(forward, coder, reports)
+    found = answers_of(forward, coder, finder, reports)
     figures: dict[str, Any] = tally(reports, found)
     seeing = [i for i, r in enumerate(reports) if r.mode == "both"]
     some = [reports[i] for i in seeing]
-    blind = tally(some, answers_of(forward, coder, some, blind=True), "blind_")
+    blind = tally(some, answers_of(forward, coder, finder, some, blind=True), "blind_")
     figures["blind"] = blind.get("blind_diagram", {})
     figures["sighted"] = tally(some, [found[i] for i in seeing]).get("diagram", {})
     figures["refusals"] = refusals(reports, found)

@@ -1,8 +1,8 @@
 """Training rows without end, made in worker processes: seed number n gives the same row everywhere.
 
-The curriculum goes by progress (0 to 1) of the budget: text only and short at first, then all modes and longer
-texts. A row's seed, mode and length follow from its number and the progress, so a resumed run goes on where it
-stopped.
+The curriculum goes by stage (narratives, drawings, then everything) and by progress (0 to 1) of the budget: short
+texts first, longer ones later. A row's seed, mode and length follow from its number and the progress, so a resumed
+run goes on where it stopped.
 """
 
 from __future__ import annotations
@@ -14,52 +14,82 @@ from queue import Empty
 from random import Random
 from typing import Any
 
+from PIL import Image
+
 from mini.generator.report import MODES, TEXT_MODES, Report, make_report
+from mini.picture import quarters_of, turn_points, turn_upright
+from mini.renderer.draw import Shape, draw_labeled
 from mini.rows import MAX_TEXT, Row, training_row
 from mini.tokens import Coder, load_tokenizer
 
 POOL = 96
 AHEAD = 3
-TEXT_STAGE = 0.2
 HELD_OUT_BASE = 50_000_000
 """Seeds from here on are for measuring."""
 
 
-def length_for(rng: Random, progress: float) -> float:
+STAGES: dict[str, dict[str, float]] = {"text": TEXT_MODES, "pictures": {"image": 1.0}, "all": MODES}
+"""What a stage of training shows: narratives only, drawings only, or everything."""
+
+
+PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))
+"""Shares of the budget of a run that goes through the stages by itself."""
+
+
+def moment(stage: str, progress: float) -> tuple[str, float]:
+    """The stage at a progress (0 to 1) of a run and the progress within it; "auto" goes through all of them."""
+    if stage != "auto":
+        return stage, progress
+    begun = 0.0
+    for name, share in PARTS[:-1]:
+        if progress < begun + share:
+            return name, (progress - begun) / share
+        begun += share
+    return PARTS[-1][0], min(1.0, (progress - begun) / PARTS[-1][1])
+
+
+def length_for(rng: Random, stage: str, progress: float) -> float:
     """How much noise a report gets: little at first, later up to as much as real ones have."""
-    if progress < TEXT_STAGE:
-        return rng.random() * 0.35
-    return rng.random() ** 2 * (0.4 + 0.8 * min(1.0, (progress - TEXT_STAGE) / 0.5))
+    if stage == "text":
+        return rng.random() * (0.1 + 0.5 * progress)
+    return rng.random() ** (1.6 - 0.6 * progress) * (0.5 + 0.9 * progress)
 
 
-def one_row(coder: Coder, seed: int, progress: float) -> Row:
+def one_row(coder: Coder, seed: int, progress: float, stage: str = "all") -> Row:
     """The row of a seed; reports that are too long are told again with less noise."""
     rng = Random(seed)
-    length = length_for(rng, progress)
-    modes = TEXT_MODES if progress < TEXT_STAGE else MODES
+    length, modes = length_for(rng, stage, progress), STAGES[stage]
     while True:
         report = make_report(seed, False, length, modes)
         if len(report.narrative) < MAX_TEXT * 4.6 or length < 0.05:
-            return training_row(coder, report, drawing(report))
+            return training_row(coder, report, *labeled(report))
         length *= 0.7
 
 
-def drawing(report: Report) -> Any:
-    """The report's diagram, or None."""
+def labeled(report: Report) -> tuple[Image.Image | None, list[Shape]]:
+    """The report's diagram, turned so that north is up, and its shapes; None where it has none."""
     if not report.has_image:
-        return None
-    from mini.renderer.draw import draw_report
+        return None, []
+    drawn = draw_labeled(report)
+    quarters = quarters_of(drawn.turn)
+    size = drawn.image.size
+    shapes = [Shape(turn_points(s.corners, size, quarters), s.tags, s.least) for s in drawn.shapes]
+    return turn_upright(drawn.image, quarters), shapes
 
-    return draw_report(report)
+
+def drawing(report: Report) -> Image.Image | None:
+    """The report's diagram as it was drawn, or None."""
+    return draw_labeled(report).image if report.has_image else None
 
 
-def pool(coder: Coder, number: int, progress: float) -> list[Row]:
+def pool(coder: Coder, number: int, progress: float, stage: str = "all") -> list[Row]:
     """POOL rows, sorted by length."""
-    rows = [one_row(coder, number * POOL + i, progress) for i in range(POOL)]
+    stage, within = moment(stage, progress)
+    rows = [one_row(coder, number * POOL + i, within, stage) for i in range(POOL)]
     return sorted(rows, key=lambda row: len(row.ids))
 
 
-def _work(folder: str, jobs: Any, done: Any) -> None:
+def _work(folder: str, stage: str, jobs: Any, done: Any) -> None:
     import torch
 
     torch.set_num_threads(1)
@@ -73,21 +103,25 @@ def _work(folder: str, jobs: Any, done: Any) -> None:
         if job is None:
             break
         number, progress = job
-        done.put((number, progress, pool(coder, number, progress)))
+        done.put((number, progress, pool(coder, number, progress, stage)))
     done.cancel_join_thread()
 
 
 class Feed:
     """Pools in order, a few ahead."""
 
-    def __init__(self, folder: str, workers: int, start: int, stride: int = 1, first: float | None = None) -> None:
+    def __init__(
+        self, folder: str, workers: int, start: int, stride: int = 1, first: float | None = None, stage: str = "all"
+    ) -> None:
+        self.stage = stage
         context = mp.get_context("spawn")
         self.jobs: Any = context.Queue()
         self.done: Any = context.Queue()
         self.next, self.asked, self.stride, self.first = start, start, stride, first
         self.ready: dict[int, tuple[float, list[Row]]] = {}
         self.workers = [
-            context.Process(target=_work, args=(folder, self.jobs, self.done), daemon=True) for _ in range(workers)
+            context.Process(target=_work, args=(folder, stage, self.jobs, self.done), daemon=True)
+            for _ in range(workers)
         ]
         self.coder = None if workers else Coder(load_tokenizer(folder))  # type: ignore[arg-type]
         for worker in self.workers:
@@ -98,7 +132,7 @@ class Feed:
         while True:
             if self.coder is not None:
                 at = self._progress(progress)
-                yield self.next, at, pool(self.coder, self.next, at)
+                yield self.next, at, pool(self.coder, self.next, at, self.stage)
             else:
                 yield self.next, *self._ordered(progress)
             self.next += self.stride

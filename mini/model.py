@@ -85,7 +85,8 @@ class Batch:
 
     ids (B, L); positions (3, B, L); patches (N, P, 5 * 14 * 14), grids (N, P, 2) row and column of each patch, lengths
     (N,) real patches; image_index flat places of picture tokens, patch_index which tokens stand there; picks (M,) flat
-    places before a value, wanted (M,) its token, weights (M,).
+    places before a value, wanted (M,) its token, weights (M,); ends (S,) flat places of sentence ends, told (S, T) what
+    those sentences tell; drawn (sum of picture tokens, D) what each of `patch_index` shows.
     """
 
     ids: Tensor
@@ -98,6 +99,9 @@ class Batch:
     picks: Tensor
     wanted: Tensor
     weights: Tensor
+    ends: Tensor
+    told: Tensor
+    drawn: Tensor
 
     def to(self, device: str) -> Batch:
         """The batch on another device."""
@@ -112,10 +116,72 @@ def rotate(x: Tensor, cos: Tensor, sin: Tensor) -> Tensor:
     )
 
 
+def causal(q: Tensor, k: Tensor, v: Tensor, mask: Tensor, block: int = 128) -> Tensor:
+    """Causal attention: q (N, G, L, D) scaled, k and v (N, L, D), mask (L, L); queries in blocks, each of which looks
+    only at keys that it can see (half the work of a full square at these lengths)."""
+    n, groups, length, d = q.shape
+    out = []
+    for start in range(0, length, block):
+        end = min(start + block, length)
+        some = q[:, :, start:end].reshape(n, -1, d)
+        out.append(attend(some, k[:, :end], v[:, :end], mask[start:end, :end].repeat(groups, 1)).view(n, groups, -1, d))
+    return torch.cat(out, dim=2)
+
+
 def attend(q: Tensor, k: Tensor, v: Tensor, mask: Tensor) -> Tensor:
     """Attention by two batched products: q (N, G * L, D) scaled, k and v (N, L, D), mask broadcast to (N, G * L, L)."""
     scores = torch.baddbmm(mask, q, k.transpose(1, 2))
     return torch.bmm(torch.softmax(scores, dim=-1), v)
+
+
+@dataclass
+class Pass:
+    """States on one way through: last (B, L, hidden) or (M, hidden), middle (B, L, hidden), seen (tokens, hidden)."""
+
+    last: Tensor
+    middle: Tensor
+    seen: Tensor
+
+
+@dataclass
+class Lesson:
+    """Losses of one batch, and the share of sure answers that are right."""
+
+    answers: Tensor
+    right: Tensor
+    sentences: Tensor
+    drawings: Tensor
+
+
+class Taggers(nn.Module):
+    """The heads that ask what a sentence told and what a picture token shows; used in training only."""
+
+    def __init__(self, hidden: int, sentence_tags: int, picture_tags: int, blank: float = 0.2) -> None:
+        super().__init__()
+        self.sentence, self.picture = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, picture_tags)
+        self.blank = blank
+        """Weight of a picture token that shows nothing."""
+        for head in (self.sentence, self.picture):
+            nn.init.zeros_(head.weight)
+            nn.init.constant_(head.bias, -4.0)
+
+    def sentences(self, states: Tensor, told: Tensor) -> Tensor:
+        """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
+        if not len(states):
+            return states.sum()
+        return self._loss(self.sentence, states, told).mean()
+
+    def drawings(self, states: Tensor, drawn: Tensor) -> Tensor:
+        """The same over picture tokens, blank ones with less weight; states (N, hidden), drawn (N, D)."""
+        if not len(states):
+            return states.sum()
+        weight = torch.where(drawn.any(dim=1), 1.0, self.blank)
+        return (self._loss(self.picture, states, drawn) * weight).sum() / weight.sum()
+
+    @staticmethod
+    def _loss(head: nn.Linear, states: Tensor, wanted: Tensor) -> Tensor:
+        logits = head(F.rms_norm(states, states.shape[-1:])).float()
+        return F.binary_cross_entropy_with_logits(logits, wanted, reduction="none").sum(dim=1)
 
 
 class _RmsNorm(torch.autograd.Function):
@@ -155,6 +221,8 @@ class Forward:
         self.heads = model.config.text_config.num_attention_heads
         self.kv = model.config.text_config.num_key_value_heads
         self.text_inv = self.text.rotary_emb.original_inv_freq.float().clone()
+        self.middle = max(1, len(self.text.layers) * 2 // 3)
+        """Layers after which a sentence's end is asked what it told; the rest carry it to the answers."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
 
     @property
@@ -162,23 +230,34 @@ class Forward:
         """Of the weights."""
         return self.model.lm_head.weight.dtype
 
-    def hidden(self, batch: Batch, places: Tensor | None = None) -> Tensor:
-        """Last hidden states (B, L, hidden), normed; at flat `places` only, (M, hidden), if they are given."""
+    def hidden(self, batch: Batch) -> Tensor:
+        """Last hidden states (B, L, hidden), normed."""
+        return self.run(batch).last
+
+    def seen(self, batch: Batch) -> Tensor:
+        """Tokens of all pictures in the order of `patch_index`, (sum of picture tokens, hidden)."""
+        if not batch.patches.shape[0]:
+            return torch.zeros(0, self.model.lm_head.weight.shape[1], dtype=self.dtype, device=batch.ids.device)
+        found = self.pictures(batch.patches.to(self.dtype), batch.grids, batch.lengths)
+        return found.reshape(-1, found.shape[-1])[batch.patch_index]
+
+    def run(self, batch: Batch, places: Tensor | None = None) -> Pass:
+        """The whole way; last states at flat `places` only, (M, hidden), if they are given."""
         x = self.text.embed_tokens(batch.ids)
-        if batch.patches.shape[0]:
-            seen = self.pictures(batch.patches.to(x.dtype), batch.grids, batch.lengths)
-            flat = x.view(-1, x.shape[-1])
-            flat = flat.index_copy(0, batch.image_index, seen.reshape(-1, x.shape[-1])[batch.patch_index])
-            x = flat.view(x.shape)
+        seen = self.seen(batch)
+        if len(seen):
+            x = x.view(-1, x.shape[-1]).index_copy(0, batch.image_index, seen).view(x.shape)
+        middle = x
         cos, sin = self._rope(batch.positions)
-        length, groups = x.shape[1], self.heads // self.kv
-        mask = torch.full((length, length), float("-inf"), device=x.device, dtype=x.dtype).triu(1).repeat(groups, 1)
-        for layer in self.text.layers:
+        mask = torch.full((x.shape[1], x.shape[1]), float("-inf"), device=x.device, dtype=x.dtype).triu(1)
+        for number, layer in enumerate(self.text.layers, 1):
             x = x + self._attention(layer.self_attn, norm(layer.input_layernorm, x), cos, sin, mask)
             if places is not None and layer is self.text.layers[-1]:
                 x = x.view(-1, x.shape[-1])[places]
             x = x + self._mlp(layer.mlp, norm(layer.post_attention_layernorm, x))
-        return norm(self.text.norm, x)
+            if number == self.middle:
+                middle = x
+        return Pass(norm(self.text.norm, x), middle, seen)
 
     def _rope(self, positions: Tensor) -> tuple[Tensor, Tensor]:
         """cos and sin, (B, 1, L, D / 2)."""
@@ -195,9 +274,8 @@ class Forward:
         q, k, v = parts.split((self.heads, self.kv, self.kv), dim=1)
         d = q.shape[-1]
         q, k = rotate(q, cos * d**-0.5, sin * d**-0.5), rotate(k, cos, sin)
-        out = attend(
-            q.reshape(b * self.kv, -1, d), k.reshape(b * self.kv, length, d), v.reshape(b * self.kv, length, d), mask
-        )
+        k, v = (part.reshape(b * self.kv, length, d) for part in (k, v))
+        out = causal(q.reshape(b * self.kv, self.heads // self.kv, length, d), k, v, mask)
         return block.o_proj(out.view(b, self.heads, length, d).transpose(1, 2).reshape(b, length, dim))
 
     @staticmethod
@@ -235,7 +313,16 @@ class Forward:
 
         `candidates` (sorted token ids with all wanted ones among them) narrows the softmax.
         """
-        picked = self.hidden(batch, batch.picks)
+        return self._answers(batch, self.run(batch, batch.picks).last, candidates)
+
+    def lesson(self, batch: Batch, candidates: Tensor | None, taggers: Taggers) -> Lesson:
+        """The losses of answers, sentences and drawings."""
+        way = self.run(batch, batch.picks)
+        answers, right = self._answers(batch, way.last, candidates)
+        middle = way.middle.view(-1, way.middle.shape[-1])[batch.ends]
+        return Lesson(answers, right, taggers.sentences(middle, batch.told), taggers.drawings(way.seen, batch.drawn))
+
+    def _answers(self, batch: Batch, picked: Tensor, candidates: Tensor | None) -> tuple[Tensor, Tensor]:
         weight, wanted = self.model.lm_head.weight, batch.wanted
         if candidates is not None:
             weight, wanted = weight[candidates], torch.searchsorted(candidates, wanted)

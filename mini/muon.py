@@ -29,13 +29,24 @@ def orthogonal(g: Tensor, steps: int = 5) -> Tensor:
 class Optimizer:
     """step(scale) with learning rates times scale; state_dict and load_state_dict for resuming."""
 
-    def __init__(self, model: nn.Module, muon_lr: float, adam_lr: float, decay: float = 0.01) -> None:
+    def __init__(
+        self,
+        model: nn.Module,
+        muon_lr: float,
+        adam_lr: float,
+        decay: float = 0.01,
+        heads: nn.Module | None = None,
+    ) -> None:
+        """`heads` are further weights, stepped by AdamW under names that begin with "heads."."""
         self.muon_lr, self.adam_lr, self.decay = muon_lr, adam_lr, decay
         self.live = dict(model.named_parameters())
+        self.live |= {f"heads.{k}": p for k, p in heads.named_parameters()} if heads is not None else {}
         named = {k: p.detach().to(torch.float32).clone().requires_grad_() for k, p in self.live.items()}
         self.master = named
         self.matrices = {
-            k: p for k, p in named.items() if p.ndim == 2 and "embed_tokens" not in k and "lm_head" not in k
+            k: p
+            for k, p in named.items()
+            if p.ndim == 2 and "embed_tokens" not in k and "lm_head" not in k and not k.startswith("heads.")
         }
         rest = [p for k, p in named.items() if k not in self.matrices]
         self.momentum = {k: torch.zeros_like(p) for k, p in self.matrices.items()}

@@ -6,6 +6,8 @@ Ink is averaged and then raised to a power below one, since a one-pixel line wou
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -33,22 +35,72 @@ def fit_grid(width: int, height: int) -> tuple[int, int]:
     return min(GRIDS, key=lambda g: abs(np.log(g[1] / g[0]) - np.log(width / height)))
 
 
+@dataclass(frozen=True)
+class Fit:
+    """How a drawing is laid on the model's sheet: crop, then scale, then shift."""
+
+    box: tuple[int, int, int, int]
+    grid: tuple[int, int]
+    scale: float
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the crop on the sheet."""
+        width, height = self.box[2] - self.box[0], self.box[3] - self.box[1]
+        return max(1, round(width * self.scale)), max(1, round(height * self.scale))
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Left and top of the crop on the sheet."""
+        return (self.grid[1] * PATCH - self.size[0]) // 2, (self.grid[0] * PATCH - self.size[1]) // 2
+
+    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Pixels of the drawing (n, 2) to pixels of the sheet."""
+        return (points - np.array(self.box[:2])) * self.scale + np.array(self.corner)
+
+
+def fit(image: Image.Image) -> Fit:
+    """Crop, grid and scale of a drawing."""
+    box = crop_box(255 - np.asarray(image.convert("L")))
+    width, height = box[2] - box[0], box[3] - box[1]
+    grid = fit_grid(width, height)
+    return Fit(box, grid, min(grid[1] * PATCH / width, grid[0] * PATCH / height))
+
+
 def look(image: Image.Image) -> tuple[Floats, tuple[int, int]]:
     """Channels (5, H, W) and the grid of patches (rows, columns)."""
     rgb = image.convert("RGB")
-    gray = 255 - np.asarray(rgb.convert("L"))
-    left, top, right, bottom = crop_box(gray)
-    rgb = rgb.crop((left, top, right, bottom))
-    rows, columns = fit_grid(*rgb.size)
-    width, height = columns * PATCH, rows * PATCH
-    scale = min(width / rgb.width, height / rgb.height)
-    size = (max(1, round(rgb.width * scale)), max(1, round(rgb.height * scale)))
-    small = rgb.resize(size, Image.Resampling.BOX if scale < 1 else Image.Resampling.BILINEAR)
+    laid = fit(rgb)
+    small = rgb.crop(laid.box).resize(laid.size, Image.Resampling.BOX if laid.scale < 1 else Image.Resampling.BILINEAR)
+    height, width = laid.grid[0] * PATCH, laid.grid[1] * PATCH
+    (at_x, at_y), size = laid.corner, laid.size
     sheet = np.zeros((3, height, width), np.float32)
-    at_y, at_x = (height - size[1]) // 2, (width - size[0]) // 2
     ink = 1 - np.asarray(small, np.float32).transpose(2, 0, 1) / 255
     sheet[:, at_y : at_y + size[1], at_x : at_x + size[0]] = ink**GAMMA
-    return np.concatenate((sheet * 2 - 0.3, place(height, width))), (rows, columns)
+    return np.concatenate((sheet * 2 - 0.3, place(height, width))), laid.grid
+
+
+# ------------------------------------------------------------------ turning
+_TURNS = {1: Image.Transpose.ROTATE_270, 2: Image.Transpose.ROTATE_180, 3: Image.Transpose.ROTATE_90}
+
+
+def quarters_of(turn: float) -> int:
+    """Quarter turns (0 to 3) nearest to an angle in radians, counter-clockwise."""
+    return round(turn / (np.pi / 2)) % 4
+
+
+def turn_upright(image: Image.Image, quarters: int) -> Image.Image:
+    """A drawing that is turned by quarters counter-clockwise, turned back."""
+    return image.transpose(_TURNS[quarters]) if quarters % 4 else image
+
+
+def turn_points(points: NDArray[np.float64], size: tuple[int, int], quarters: int) -> NDArray[np.float64]:
+    """Where the pixels (n, 2) of a drawing of (width, height) go when it is turned back."""
+    x, y = points[:, 0], points[:, 1]
+    width, height = size
+    return np.stack(
+        {0: (x, y), 1: (height - y, x), 2: (width - x, height - y), 3: (y, width - x)}[quarters % 4], axis=1
+    )
 
 
 def place(height: int, width: int) -> Floats:

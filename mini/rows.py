@@ -9,18 +9,24 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageDraw
 
-from mini import answers, picture
+from mini import answers, picture, tags
 from mini.generator.report import Report
 from mini.model import Batch
 from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
 
+if TYPE_CHECKING:
+    from mini.renderer.draw import Shape
+
 Ints = NDArray[np.int64]
+FINE = 4
+"""Pixels along a token in which coverage is counted."""
 MAX_TEXT = 640
 """Tokens of narrative that a training row may have; longer ones are made anew, shorter."""
 
@@ -35,6 +41,10 @@ class Row:
     grid: tuple[int, int] = (0, 0)
     image_start: int = 0
     pieces: list[tuple[str, str]] = field(default_factory=list)
+    text_tags: list[tuple[int, list[int]]] = field(default_factory=list)
+    """Place of the last token of each sentence and what the sentence tells, as indices into `tags.TEXT`."""
+    picture_tags: NDArray[np.uint8] | None = None
+    """What each picture token shows, (tokens, len(tags.PICTURE)) of 0 and 1."""
 
 
 def evidence(coder: Coder, narrative: str, image: Image.Image | None) -> Row:
@@ -58,9 +68,32 @@ def road_ids(road: answers.Any) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*legs, *outer, *ends]))
 
 
-def training_row(coder: Coder, report: Report, image: Image.Image | None) -> Row:
-    """Evidence and both answers."""
+def tag_text(coder: Coder, row: Row, report: Report) -> None:
+    """Note at the end of every sentence what it tells."""
+    ends = np.array([end for _, end in coder.offsets(report.narrative)])
+    for end, facts in report.sentences:
+        row.text_tags.append((int(np.searchsorted(ends, end)), tags.told(report.crash, facts)))
+
+
+def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape]) -> None:
+    """Note for every token of a picture which shapes cover it."""
+    fit = picture.fit(image)
+    rows, columns = fit.grid[0] // 2, fit.grid[1] // 2
+    row.picture_tags = np.zeros((rows * columns, len(tags.PICTURE)), np.uint8)
+    for shape in shapes:
+        sheet = Image.new("L", (columns * FINE, rows * FINE))
+        corners = fit(shape.corners) * (FINE / (2 * picture.PATCH))
+        ImageDraw.Draw(sheet).polygon([tuple(p) for p in corners], fill=255)
+        share = np.asarray(sheet, np.float32).reshape(rows, FINE, columns, FINE).mean(axis=(1, 3)).reshape(-1) / 255
+        row.picture_tags[np.ix_(share >= shape.least, shape.tags)] = 1
+
+
+def training_row(coder: Coder, report: Report, image: Image.Image | None, shapes: Sequence[Shape] = ()) -> Row:
+    """Evidence and both answers, and the tags of both sources."""
     row = evidence(coder, report.narrative, image)
+    tag_text(coder, row, report)
+    if image is not None:
+        tag_picture(row, image, shapes)
     _answer(coder, row, ROAD, answers.write(answers.road_walk(), report.road), report)
     if report.behavior is not None:
         walk = answers.behavior_walk(road_ids(report.road))
@@ -99,6 +132,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
     ids = np.full((len(rows), longest), coder.special[PAD])
     place = np.zeros((3, len(rows), longest), np.int64)
     picks, wanted, weights = [], [], []
+    ends, told = [], np.zeros((sum(len(row.text_tags) for row in rows), len(tags.TEXT)), np.float32)
     for i, row in enumerate(rows):
         n = len(row.ids)
         ids[i, :n], place[:, i, :n] = row.ids, positions(row)
@@ -106,6 +140,9 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
             picks.append(i * longest + at - 1)
             wanted.append(row.ids[at])
             weights.append(weight)
+        for at, found in row.text_tags:
+            told[len(ends), found] = 1
+            ends.append(i * longest + at)
     return Batch(
         torch.from_numpy(ids),
         torch.from_numpy(place),
@@ -113,7 +150,17 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         torch.tensor(picks),
         torch.tensor(wanted),
         torch.tensor(weights),
+        torch.tensor(ends, dtype=torch.int64),
+        torch.from_numpy(told),
+        _drawn(rows),
     )
+
+
+def _drawn(rows: Sequence[Row]) -> torch.Tensor:
+    """Tags of all picture tokens, in the order of `Batch.patch_index`."""
+    found = [row.picture_tags for row in rows if row.picture_tags is not None]
+    empty = np.zeros((0, len(tags.PICTURE)), np.uint8)
+    return torch.from_numpy(np.concatenate((empty, *found))).float()
 
 
 def _pictures(rows: Sequence[Row], longest: int) -> tuple[torch.Tensor, ...]:

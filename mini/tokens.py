@@ -134,6 +134,10 @@ class Coder:
     def _piece(self, text: str) -> tuple[int, ...]:
         return tuple(self.raw.encode(text, add_special_tokens=False).ids)
 
+    def offsets(self, text: str) -> list[tuple[int, int]]:
+        """First letter and the letter after the last of every token of a narrative without special tokens."""
+        return list(self.raw.encode(text, add_special_tokens=False).offsets)
+
     def text(self, text: str) -> list[int]:
         """Ids of a narrative; words that look like special tokens are kept as text."""
         return list(self.raw.encode(text.replace("<|", "< |"), add_special_tokens=False).ids)

@@ -22,17 +22,20 @@ from typing import Any
 
 import numpy as np
 import torch
+from safetensors.torch import load_file, save_file
 
+from mini import tags
 from mini.export import export
-from mini.feed import Feed
+from mini.feed import Feed, moment
 from mini.generator.report import make_report
-from mini.model import Forward, make_config, make_model
+from mini.model import Batch, Forward, Lesson, Taggers, make_config, make_model
 from mini.muon import Optimizer
 from mini.ranks import Ranks
 from mini.rows import Row, collate
 from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
 
 TOKENIZER_BASE = 40_000_000
+HEADS = "tags.safetensors"
 
 
 @dataclass
@@ -64,6 +67,15 @@ class Options:
     """Exported weights to begin with (`mini/weights`), with fresh optimizer state."""
     hold: float = 0.4
     """Share of the budget with the full learning rate."""
+    stage: str = "auto"
+    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the vision tower alone), "all", or all of
+    these in turn ("auto")."""
+    eyes: str = ""
+    """Exported weights whose vision tower is taken in place of that of `start`."""
+    sentences: float = 0.1
+    """Weight of what sentences tell, beside the answers."""
+    drawings: float = 0.1
+    """Weight of what the tokens of drawings show."""
 
 
 def schedule(progress: float, hold: float = 0.4) -> float:
@@ -104,8 +116,11 @@ class Trainer:
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
         self.forward = Forward(self.model)
         self.answer_tokens = answer_tokens(self.coder)
-        self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr)
+        self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
+        self.taggers.to(options.device)
+        self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, heads=self.taggers)
         self.model.to(torch.bfloat16)
+        self.taggers.to(torch.bfloat16)
         self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
         self.pool_progress: float | None = None
         self._resume()
@@ -137,15 +152,25 @@ class Trainer:
         """Fresh weights, or exported ones; from then on rows that those have not seen."""
         if not self.options.start:
             return
-        exported = type(self.model).from_pretrained(self.options.start, dtype=torch.float32, local_files_only=True)
-        found = dict(exported.named_parameters())
+        found = self._exported(self.options.start)
+        if self.options.eyes:
+            eyes = self._exported(self.options.eyes)
+            found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture."))}
         masters = self.optimizer.master
         with torch.no_grad():
             for key, value in found.items():
-                masters[key].copy_(value)
+                if value.shape == masters[key].shape or not key.startswith("heads."):
+                    masters[key].copy_(value)
         self.optimizer.publish()
         self.pool += 100_000
         self.log.write(event="begun with", folder=self.options.start, tensors=len(found))
+
+    def _exported(self, folder: str) -> dict[str, torch.Tensor]:
+        """Weights of an export, and of the heads beside them where there are some."""
+        exported = type(self.model).from_pretrained(folder, dtype=torch.float32, local_files_only=True)
+        found = dict(exported.named_parameters())
+        heads = Path(folder) / HEADS
+        return found | ({f"heads.{k}": v for k, v in load_file(heads).items()} if heads.is_file() else {})
 
     def save(self) -> None:
         """State and export, each replaced whole; the first rank's business."""
@@ -164,6 +189,8 @@ class Trainer:
         torch.save(state, path.with_suffix(".new"))
         os.replace(path.with_suffix(".new"), path)
         export(self.model, self.tokenizer, self.options.out / "export")
+        heads = {k: v.contiguous() for k, v in self.taggers.state_dict().items()}
+        save_file(heads, self.options.out / "export" / HEADS)
 
     @property
     def progress(self) -> float:
@@ -176,7 +203,12 @@ class Trainer:
         """Train until the budget, the call or the steps are spent; saves at the end."""
         options, begun = self.options, time.monotonic()
         feed = Feed(
-            str(options.out / "tokenizer"), options.workers, self.pool + options.rank, options.ranks, self.pool_progress
+            str(options.out / "tokenizer"),
+            options.workers,
+            self.pool + options.rank,
+            options.ranks,
+            self.pool_progress,
+            options.stage,
         )
         saved, before, over = begun, self.spent, False
         try:
@@ -212,12 +244,21 @@ class Trainer:
         others = torch.randint(len(self.tokenizer), (len(self.tokenizer) // 10,), generator=seeded)
         return torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted)).unique()
 
+    def _lesson(self, batch: Batch) -> Lesson:
+        """The losses of the stage."""
+        if moment(self.options.stage, self.pool_progress or 0.0)[0] != "pictures":
+            return self.forward.lesson(batch, self._candidates(batch.wanted), self.taggers)
+        drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
+        nothing = torch.zeros(())
+        return Lesson(nothing, nothing, nothing, drawings)
+
     def _step(self, rows: list[Row]) -> None:
         batch = collate(rows, self.coder).to(self.options.device)
         started = time.monotonic()
-        loss, right = self.forward.loss(batch, self._candidates(batch.wanted))
+        options, lesson = self.options, self._lesson(batch)
+        loss = lesson.answers + options.sentences * lesson.sentences + options.drawings * lesson.drawings
         loss.backward()
-        self.ranks.average(self.model.parameters())
+        self.ranks.average(self.optimizer.live.values())
         self.optimizer.step(schedule(self.progress, self.options.hold))
         self.steps += 1
         self.rows += len(rows) * self.options.ranks
@@ -227,8 +268,10 @@ class Trainer:
                 step=self.steps,
                 seconds=self.spent,
                 rows=self.rows,
-                loss=float(loss.detach()),
-                right=float(right),
+                loss=float(lesson.answers.detach()),
+                right=float(lesson.right),
+                sentences=float(lesson.sentences.detach()),
+                drawings=float(lesson.drawings.detach()),
                 step_s=took,
                 batch=len(rows),
                 tokens=batch.ids.shape[1],
@@ -260,7 +303,7 @@ def parse(arguments: list[str] | None = None) -> Options:
     parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
     for name in (
         "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
-        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every",
+        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings",
     ):  # fmt: skip
         usual = getattr(Options, name)
         parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)

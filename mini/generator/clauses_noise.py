@@ -108,6 +108,16 @@ A vehicle ahead [of {V} |]slowed to turn {anyside} into a [driveway|parking lot]
 Another [driver|motorist] waved {V} on
 """)
 
+SPEED = clauses("""
+The driver of {V} [estimated|stated|reported|claimed] that {he} was [traveling|driving|going] {spd}[ at the time of impact| prior to the crash|]
+The driver of {V} was traveling {spd} [at the time of impact|before the crash]
+{V} was traveling {spd}[ prior to impact| when the crash occurred|]
+{He} stated that {he} was traveling {spd}
+The [estimated |]travel speed of {V} was {spd}
+~By the account of its driver {V} went {spd}
+~{V} moved {spd}, as its driver recalls
+""")
+
 GROUPS = {
     "tow": TOW, "occupant": OCCUPANT, "interview": INTERVIEW, "health": HEALTH, "codes": CODES, "police": POLICE,
     "noncontact": NONCONTACT,

@@ -10,7 +10,7 @@ from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
-from mini.generator.grammar import choose, clauses, families
+from mini.generator.grammar import Told, choose, clauses, families
 from mini.generator.world import Contact, Crash
 
 
@@ -21,7 +21,7 @@ class EventsMixin:
     crash: Crash
     held_out: bool
     ciren: bool
-    told: set[str]
+    told: Told
     who: tuple[int, int]
 
     say: Any
@@ -45,12 +45,12 @@ class EventsMixin:
         key = {"left_lateral": "turn_left", "right_into": "turn_right"}.get(config, config)
         out = []
         if rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4):
-            out.append(self.say(motion.CRITICAL[key], v, w, turn=self._turn(v)))
             self.told |= {
                 f"man.{self.id_of(v)}",
                 f"exit.{self.id_of(v)}",
                 *({f"man.{self.id_of(w)}"} if config in ("crossing", "head_on") else ()),
             }
+            out.append(self.say(motion.CRITICAL[key], v, w, turn=self._turn(v)))
         if rng.random() < (0.12 if self.ciren else 0.4):
             out.append(self.say(told.AVOID, v, w))
         for number, contact in enumerate(self.crash.contacts):

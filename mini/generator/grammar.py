@@ -8,11 +8,11 @@ facts the text told.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from random import Random
 
 _CHOICE = re.compile(r"\[([^\[\]]*)\]")
-_SLOT = re.compile(r"\{(\w+)\}")
+SLOTS = re.compile(r"\{(\w+)\}")
 Fill = Callable[[str], str]
 
 
@@ -39,11 +39,57 @@ def choose(rng: Random, clause: str) -> str:
 
 def fill(clause: str, slot: Fill) -> str:
     """Put slot values in and tidy the spaces."""
-    text = _SLOT.sub(lambda m: slot(m[1]), clause)
+    text = SLOTS.sub(lambda m: slot(m[1]), clause)
     text = re.sub(r" +", " ", text)
     text = re.sub(r" ([,.;])", r"\1", text)
     text = re.sub(r",+(?=[,.;])", "", text)
     return text.strip()
+
+
+MARK = 0xE000
+"""Private-use letters from here on stand behind the sentences of a report while it is written."""
+
+
+HINT = "~"
+"""First letter of notes on how a sentence is built, which tell nothing of the crash."""
+
+
+class Told(set[str]):
+    """Facts that a text told; `take` hands out those of one sentence, repeated ones too."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._fresh: set[str] = set()
+
+    def add(self, fact: str) -> None:
+        """Note one fact."""
+        super().add(fact)
+        self._fresh.add(fact)
+
+    def __ior__(self, facts: Iterable[str]) -> Told:  # type: ignore[override, misc]
+        """Note several."""
+        for fact in facts:
+            self.add(fact)
+        return self
+
+    def take(self) -> frozenset[str]:
+        """Facts noted since the last call."""
+        fresh, self._fresh = frozenset(self._fresh), set()
+        return fresh
+
+
+def unmark(text: str) -> tuple[str, list[tuple[int, int]]]:
+    """A text without its marks, and (end, number) of every marked sentence."""
+    out, marks = [], []
+    length = 0
+    for letter in text:
+        number = ord(letter) - MARK
+        if 0 <= number < 0x1900:
+            marks.append((length, number))
+        else:
+            out.append(letter)
+            length += 1
+    return "".join(out), marks
 
 
 def sentence(text: str) -> str:

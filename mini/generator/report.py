@@ -13,6 +13,7 @@ from typing import Any
 
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
+from mini.generator.grammar import HINT, unmark
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash
 from mini.generator.writer import Writer
@@ -36,6 +37,8 @@ class Report:
     targets: Targets | None
     told: set[str]
     drawn: set[str] = field(default_factory=set)
+    sentences: list[tuple[int, frozenset[str]]] = field(default_factory=list)
+    """Where each sentence of the narrative ends and which facts it tells."""
 
     def weight(self, path: tuple[Any, ...]) -> float:
         """Weight of a value in the loss."""
@@ -51,26 +54,36 @@ def make_report(
     mode = rng.choices(list(weights), list(weights.values()))[0]
     crash = sample_crash(rng)
     writer = Writer(rng, crash, held_out, length)
-    control, access = rng.random() < 0.6, bool(crash.accesses)
+    control, arrows, access = rng.random() < 0.6, rng.random() < 0.85, bool(crash.accesses)
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
-    narrative = writer.write()
-    drawn = drawn_facts(crash, control, access)
+    narrative, sentences = writer.finish(writer.write())
+    drawn = drawn_facts(crash, control, arrows, access)
     if mode in ("image", "none"):
-        narrative = ""
-    told = {"image": set(), "none": set()}.get(mode, writer.told)
+        narrative, sentences = "", []
+    told = {fact for _, facts in sentences for fact in facts if not fact.startswith(HINT)}
     seen = drawn if mode in ("both", "image") else set()
     targets = Targets(crash, told | seen)
     if mode == "none":
         targets = _prior(crash, rng)
     return Report(
-        seed, mode, crash, narrative, mode in ("both", "image"), targets.road, targets.behavior, targets, told, drawn
+        seed,
+        mode,
+        crash,
+        narrative,
+        mode in ("both", "image"),
+        targets.road,
+        targets.behavior,
+        targets,
+        told,
+        drawn,
+        sentences,
     )
 
 
 def _prior(crash: Crash, rng: Random) -> Targets:
     """What would be answered to this crash had somebody told a part of it: the distribution without context."""
-    facts = drawn_facts(crash, True, False) | {"light", "weather", "surface"}
+    facts = drawn_facts(crash, True, True, False) | {"light", "weather", "surface"}
     facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
     targets = Targets(crash, {fact for fact in facts if rng.random() < 0.8})
     targets.weights = dict.fromkeys(targets.weights, 0.5)
@@ -84,7 +97,7 @@ def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) ->
         narrative = " ".join(writer.aftermath())
     else:
         narrative = " ".join(writer.place() + writer.aftermath())
-    told = set(writer.told)
+    narrative, told = unmark(narrative)[0], {fact for fact in writer.told if not fact.startswith(HINT)}
     if mode == "no_crash":
         targets = Targets(crash, told)
         known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"

@@ -8,7 +8,7 @@ from typing import Any
 
 from mini.generator import clauses_scene as scene
 from mini.generator import words
-from mini.generator.grammar import choose, families
+from mini.generator.grammar import Told, choose, families
 from mini.generator.world import WORDS, Crash, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
@@ -27,7 +27,7 @@ class SceneMixin:
     crash: Crash
     held_out: bool
     ciren: bool
-    told: set[str]
+    told: Told
     stated: set[str]
     roads_left: bool
 

@@ -14,6 +14,8 @@ Json = dict[str, Any]
 GUESS = 0.25
 """Weight of a value that the evidence does not tell and that has no null."""
 SURE = 1.0
+RARE = 2.0
+"""Of a value that is told and seldom other than the usual one: a curve, a turn lane's use, a speed."""
 CONTACT = 3.0
 
 
@@ -44,6 +46,8 @@ class Targets:
         if not lanes or (leg.turns_in and not turns):
             self._unsure(path, "lanes_in", "lanes_out")
         median = leg.median if f"median.{axis}" in self.known else "none"
+        if leg.curve != "none" and "curve" in self.known:
+            self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.known else ()))
         self._unsure(path, *(("center_turn_lane",) if not lanes else ()))
         return {
@@ -101,6 +105,8 @@ class Targets:
         self._unsure(path, *(("maneuver",) if not sure else ()))
         for key in ("direction", "length_m", "width_m"):
             self.weights[(*path, key)] = 0.1
+        if actor.speed and f"speed.{actor.id}" in known:
+            self.weights[(*path, "speed_mph")] = RARE
         leaves = actor.out is not None and sure and f"heading.{actor.id}" in known
         return {
             "id": actor.id,
@@ -143,11 +149,11 @@ class Targets:
         }
 
 
-def drawn_facts(crash: Crash, control: bool, access: bool) -> set[str]:
+def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
     """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather."""
     facts = {"layout", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:
-        facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "turns", "median")}
+        facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "median", *(("turns",) if arrows else ()))}
     for actor in crash.actors:
         facts |= {f"{key}.{actor.id}" for key in ("heading", "man", "exit", "lane")}
         if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):

@@ -10,9 +10,9 @@ from random import Random
 
 from mini.generator import clauses_motion as motion
 from mini.generator import words
-from mini.generator.clauses_noise import GROUPS
+from mini.generator.clauses_noise import GROUPS, SPEED
 from mini.generator.events import EventsMixin
-from mini.generator.grammar import choose, families, fill, sentence
+from mini.generator.grammar import HINT, MARK, SLOTS, Told, choose, families, fill, sentence, unmark
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.scene import SceneMixin
@@ -39,7 +39,9 @@ class Writer(SceneMixin, EventsMixin):
         self.rng, self.crash, self.held_out, self.length = rng, crash, held_out, length
         self.ciren = rng.random() < 0.45
         self.mentions = Mentions(rng, crash, self.ciren)
-        self.told: set[str] = set()
+        self.told = Told()
+        self.sentences: list[frozenset[str]] = []
+        """Facts of every sentence that was written, by the number of its mark."""
         self.stated: set[str] = set()
         self.who = self.culprit()
         self.roads_left = rng.random() < 0.85
@@ -84,8 +86,12 @@ class Writer(SceneMixin, EventsMixin):
 
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
+        speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
         out = (
-            self._noise("occupant", 1.2, index) + self._noise("interview", 1.6, index) + self._noise("tow", 0.6, index)
+            ([self.say(SPEED, index, **words.person(self.rng))] if speed else [])
+            + self._noise("occupant", 1.2, index)
+            + self._noise("interview", 1.6, index)
+            + self._noise("tow", 0.6, index)
         )
         return (
             out
@@ -93,6 +99,11 @@ class Writer(SceneMixin, EventsMixin):
             + self._noise("codes", 2.6, index)
             + self._noise("police", 0.5, index)
         )
+
+    def finish(self, text: str) -> tuple[str, list[tuple[int, frozenset[str]]]]:
+        """The plain text, and the facts of each of its sentences with the place where it ends."""
+        plain, marks = unmark(text)
+        return plain, [(end, self.sentences[number]) for end, number in marks]
 
     # -------------------------------------------------------------- parts, for depleted reports
     def aftermath(self) -> list[str]:
@@ -115,7 +126,20 @@ class Writer(SceneMixin, EventsMixin):
         """One sentence of a role about actors v and w."""
         clause = choose(self.rng, self.rng.choice(families(options, self.held_out)))
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
-        return sentence(fill(clause, lambda slot: self._slot(slot, v, other, extra)))
+        self.told |= self._hints(clause, v, other)
+        text = sentence(fill(clause, lambda slot: self._slot(slot, v, other, extra)))
+        self.sentences.append(self.told.take())
+        return text + chr(MARK + len(self.sentences) - 1)
+
+    def _hints(self, clause: str, v: int, w: int) -> set[str]:
+        """How a clause is built, which is no fact of the crash but what its facts are read from: who is named first and
+        second, and whether an impact is told from the one who strikes (active) or from the one who is struck."""
+        named = [slot for slot in SLOTS.findall(clause) if slot in "VWST"]
+        order = list(dict.fromkeys(v if slot in "VS" else w for slot in named))
+        hints = {f"{HINT}named{place}.{self.id_of(index)}" for place, index in enumerate(order[:2])}
+        if "S" in named and "T" in named:
+            hints.add(f"{HINT}voice.{'active' if named[0] == 'S' else 'passive'}")
+        return hints
 
     def _slot(self, slot: str, v: int, w: int, extra: dict[str, str]) -> str:
         if slot in extra:

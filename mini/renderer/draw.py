@@ -7,12 +7,14 @@ names are only captions, too small to read at the size that the model sees.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from random import Random
 from typing import Any
 
 import numpy as np
 from PIL import Image, ImageFilter
 
+from mini import tags
 from mini.generator.report import Report
 from mini.generator.world import Crash
 from mini.renderer.lines import Ground, Points
@@ -22,8 +24,8 @@ from mini.renderer.road_marks import RoadMarks
 
 COLORS: dict[int, tuple[Color, ...]] = {
     1: ((230, 20, 20), (240, 15, 40), (190, 15, 20), (235, 40, 90)),
-    2: ((200, 200, 200), (190, 190, 190), (35, 130, 190), (10, 20, 210), (30, 160, 190)),
-    3: ((15, 140, 50), (200, 200, 200), (30, 200, 60), (230, 180, 30)),
+    2: ((200, 200, 200), (150, 150, 150), (175, 175, 175), (25, 90, 150), (10, 20, 210), (30, 140, 190)),
+    3: ((15, 140, 50), (20, 110, 40), (30, 200, 60), (230, 180, 30)),
     4: ((230, 180, 30), (150, 60, 180)),
     5: ((150, 60, 180),),
 }
@@ -43,19 +45,62 @@ NOTES = (
 )
 
 
+@dataclass(frozen=True)
+class Shape:
+    """A part of a drawing: corners in pixels (n, 2), what it shows as indices into `tags.PICTURE`, and the least
+    share of a token that it must cover to be asked for there."""
+
+    corners: Points
+    tags: list[int]
+    least: float
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A drawing as an investigator leaves it (RGB), what is where in it, and how far it is turned: radians
+    counter-clockwise from north up."""
+
+    image: Image.Image
+    shapes: list[Shape]
+    turn: float
+
+
 def draw_report(report: Report) -> Image.Image:
     """The drawing of a report, RGB."""
+    return draw_labeled(report).image
+
+
+def draw_labeled(report: Report) -> Drawing:
+    """The drawing of a report with its labels."""
     rng = Random(report.seed * 7 + 3)
     crash = report.crash
     pen, ground = _sheet(rng, crash)
     tracks = Stage(rng, crash, ground, rng.uniform(1.0, 1.45)).tracks()
     _aim(rng, pen, tracks)
     marks = RoadMarks(rng, pen, crash, ground)
-    marks.draw(arrows=rng.random() < 0.85, signs="control" in report.drawn)
+    arrows = any(fact.startswith("turns.") for fact in report.drawn)
+    marks.draw(arrows=arrows, signs="control" in report.drawn)
     _vehicles(rng, pen, tracks)
-    _north(rng, pen)
+    shapes = _shapes(report, pen, ground, tracks, arrows) + _north(rng, pen)
     _captions(rng, pen)
-    return scan(rng, pen.image)
+    return Drawing(scan(rng, pen.image), shapes, pen.turn)
+
+
+def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrows: bool) -> list[Shape]:
+    """The legs and the vehicles at their poses."""
+    found = []
+    for band in ground.bands.values():
+        s = np.arange(ground.setback(band.leg.bearing, 1.0), band.length, 2.0)
+        outline = np.concatenate((band.at(s, band.right), band.at(s, band.left)[::-1]))
+        shows = tags.drawn_leg(band.leg, "control" in report.drawn, arrows)
+        found.append(Shape(pen.px(outline), shows, 0.3))
+    for track in tracks:
+        for i, pose in enumerate(track.poses):
+            when = "contact" if i == track.contact else "before" if i < track.contact else "after"
+            faces = round((math.pi / 2 - pose.heading) / (math.pi / 4)) % 8
+            shows = tags.drawn_actor(report.crash, track.actor, when, faces)
+            found.append(Shape(pen.px(corners(pose, track.size)), shows, 0.04))
+    return found
 
 
 def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
@@ -198,21 +243,26 @@ def _round(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: 
 
 
 # ------------------------------------------------------------------ around
-def _north(rng: Random, pen: Pen) -> None:
+def _north(rng: Random, pen: Pen) -> list[Shape]:
     """An arrow with an N; missing now and then where north is up."""
     if abs(pen.turn) < 0.01 and rng.random() < 0.08:
-        return
+        return []
     w, h = pen.image.size
-    length = rng.uniform(26, 46)
+    length = rng.uniform(18, 46)
     x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94))) * w
     y = rng.choice((rng.uniform(0.08, 0.25), rng.uniform(0.75, 0.92))) * h
     x, y = min(max(x, length), w - length), min(max(y, length), h - length)
     up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
-    center = np.array([x, y])
+    center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.6))
     pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
-    pen.arrow(center - up * length / 2, center + up * length * 0.3, width=rng.choice((2, 3)), head=rng.uniform(9, 14))
-    place = center + up * length * (0.62 if rng.random() < 0.7 else -0.7)
-    pen.text(*place, "N", int(rng.uniform(14, 22)))
+    head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 2, 2, 3))
+    ahead = rng.random() < 0.5
+    tail, tip = center - up * length * (0.5 if ahead else 0.25), center + up * length * (0.3 if ahead else 0.5)
+    pen.arrow(tail, tip, width=width, head=head, barb=rng.choice((0.0, 0.3, 0.45)))
+    place = tip + up * size * 0.75 if ahead else tail - up * size * 0.6
+    pen.text(*place, "N", round(size), angle=math.degrees(pen.turn) if rng.random() < 0.35 else 0.0)
+    square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
+    return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
 
 
 def _captions(rng: Random, pen: Pen) -> None:
@@ -233,7 +283,7 @@ def _captions(rng: Random, pen: Pen) -> None:
 
 def scan(rng: Random, image: Image.Image) -> Image.Image:
     """What copying does: gray, blur, low resolution, skew, specks; most drawings are clean."""
-    if rng.random() < 0.12:
+    if rng.random() < 0.06:
         image = image.convert("L").convert("RGB")
     if rng.random() < 0.15:
         factor = rng.uniform(0.45, 0.8)

@@ -58,16 +58,19 @@ class Pen:
         """A closed shape of world points."""
         self.draw.polygon([tuple(p) for p in self.px(points)], fill=fill, outline=outline, width=width)
 
-    def arrow(self, start: Points, end: Points, width: int = 2, head: float = 9.0, color: Color = BLACK) -> None:
-        """An arrow between two pixel points."""
+    def arrow(
+        self, start: Points, end: Points, width: int = 2, head: float = 9.0, color: Color = BLACK, barb: float = 0.0
+    ) -> None:
+        """An arrow between two pixel points; `barb` is how far its head is notched, as a share."""
         start, end = np.asarray(start, float), np.asarray(end, float)
         self.draw.line([tuple(start), tuple(end)], fill=color, width=width)
-        self.head(end, math.atan2(*(end - start)[::-1]), head, color)
+        self.head(end, math.atan2(*(end - start)[::-1]), head, color, barb)
 
-    def head(self, tip: Points, angle: float, size: float, color: Color = BLACK) -> None:
+    def head(self, tip: Points, angle: float, size: float, color: Color = BLACK, barb: float = 0.0) -> None:
         """A filled arrow head in pixels."""
         sides = [(tip[0] - size * math.cos(angle + d), tip[1] - size * math.sin(angle + d)) for d in (-0.4, 0.4)]
-        self.draw.polygon([tuple(tip), *sides], fill=color)
+        notch = [(tip[0] - size * (1 - barb) * math.cos(angle), tip[1] - size * (1 - barb) * math.sin(angle))]
+        self.draw.polygon([tuple(tip), sides[0], *(notch if barb else []), sides[1]], fill=color)
 
     def text(self, x: float, y: float, text: str, size: int, color: Color = BLACK, angle: float = 0.0) -> None:
         """Text centered at a pixel, turned by degrees."""

@@ -115,7 +115,7 @@ def _not_loaded(place: str, fault: Exception) -> ConfigError:
 # ------------------------------------------------------------------ pictures and chat template
 def _prepare(place: str, revision: str | None) -> Prepare:
     if _own_kind(place) == "MiniImageProcessor":
-        return _mini
+        return _mini(Path(place))
     try:
         processor = tf.AutoImageProcessor.from_pretrained(place, revision=revision, backend="pil")
     except ImportError as fault:
@@ -140,15 +140,21 @@ def _own_kind(place: str) -> str:
         raise ConfigError(f"{file}: is no JSON: {fault}") from fault
 
 
-def _mini(picture: Image.Image) -> Mapping[str, Any]:
-    """The embedded model's own pictures: five channels, place among them."""
+def _mini(folder: Path) -> Prepare:
+    """The embedded model's own pictures: turned until north is up, five channels, place among them."""
+    from mini.north import load
     from mini.picture import look, patches
 
-    channels, grid = look(picture)
-    return {
-        "pixel_values": torch.from_numpy(patches(channels, grid)).float(),
-        "image_grid_thw": torch.tensor([[1, *grid]]),
-    }
+    finder = load(folder)
+
+    def prepare(picture: Image.Image) -> Mapping[str, Any]:
+        channels, grid = look(finder.upright(picture) if finder else picture)
+        return {
+            "pixel_values": torch.from_numpy(patches(channels, grid)).float(),
+            "image_grid_thw": torch.tensor([[1, *grid]]),
+        }
+
+    return prepare
 
 
 def _template(tokenizer: Any, place: str, revision: str | None) -> str | None:

@@ -95,7 +95,7 @@ def test_the_learning_rate_decays_to_a_fiftieth() -> None:
 def options(folder: Path, steps: int) -> list[str]:
     return [
         "--out", str(folder), "--size", "tiny", "--workers", "0", "--ranks", "1", "--texts", "100", "--tokens", "1500",
-        "--total-steps", "8", "--max-steps", str(steps), "--budget", "1000",
+        "--total-steps", "8", "--max-steps", str(steps), "--budget", "1000", "--stage", "all",
     ]  # fmt: skip
 
 

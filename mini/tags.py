@@ -1,0 +1,137 @@
+"""Tags: what a place in the evidence tells, as labels that train the reading itself.
+
+Answers alone teach slowly: one value of a long answer must find, through all layers, the one clause or the one
+spot of the drawing that tells it. While training, small heads that are thrown away afterwards also ask at the
+end of every sentence which facts it told, and at every token of a drawing what is drawn there. Knows reports;
+knows no tokens and no model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mini.answers import AREAS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
+from mini.generator.grammar import HINT
+from mini.generator.world import Actor, Crash, Leg
+
+BEARINGS = range(8)
+LANES = range(6)
+IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
+POSES = ("before", "contact", "after")
+KINDS_OF_LEG = ("road", "driveway", "ramp")
+CONTROLS = ("none", "signal", "flashing", "stop", "yield")
+CURVES = ("left", "right")
+
+
+def _text_tags() -> dict[str, int]:
+    names = [f"{i}.heading={b}" for i in IDS for b in BEARINGS]
+    names += [f"{i}.maneuver={m}" for i in IDS for m in MANEUVERS]
+    names += [f"{i}.lane={n}" for i in IDS for n in range(1, 6)]
+    names += [f"{i}.kind={k}" for i in IDS for k in KINDS]
+    names += [f"{i}.speed={s}" for i in IDS for s in range(0, 100, 5)]
+    names += [f"leg={b}" for b in BEARINGS]
+    names += [f"leg{b}.{way}={n}" for b in BEARINGS for way in ("in", "out") for n in LANES]
+    names += [f"leg{b}.use={t}" for b in BEARINGS for t in TURNS]
+    names += [f"leg{b}.control={c}" for b in BEARINGS for c in CONTROLS]
+    names += [f"leg{b}.curve={c}" for b in BEARINGS for c in CURVES]
+    names += [f"axis{a}.median={m}" for a in range(4) for m in MEDIANS]
+    names += [f"axis{a}.limit={n}" for a in range(4) for n in range(5, 90, 5)]
+    names += [f"axis{a}.center" for a in range(4)]
+    names += [f"contact{k}.{who}={i}" for k in (0, 1) for who in ("striker", "struck") for i in IDS]
+    names += [f"contact{k}.{who}_area={a}" for k in (0, 1) for who in ("striker", "struck") for a in AREAS]
+    conditions = {"light": LIGHTS, "weather": WEATHERS, "surface": SURFACES}
+    names += [f"{key}={value}" for key, values in conditions.items() for value in values]
+    names += [f"access.leg={b}" for b in BEARINGS] + [f"access.side={s}" for s in ("left", "right", "both")]
+    names += [f"~named{place}={i}" for place in (0, 1) for i in IDS] + [f"~voice={v}" for v in ("active", "passive")]
+    return {name: i for i, name in enumerate(names)}
+
+
+def _picture_tags() -> dict[str, int]:
+    names = [f"leg={b}" for b in BEARINGS] + [f"{way}={n}" for way in ("in", "out") for n in LANES]
+    names += [f"median={m}" for m in MEDIANS] + ["center"] + [f"use={t}" for t in TURNS]
+    names += [f"control={c}" for c in CONTROLS] + [f"curve={c}" for c in CURVES]
+    names += [f"kind={k}" for k in KINDS_OF_LEG] + [f"north={b}" for b in BEARINGS] + ["access"]
+    names += [f"id={i}" for i in IDS] + [f"heading={b}" for b in BEARINGS] + [f"faces={b}" for b in BEARINGS]
+    names += [f"pose={p}" for p in POSES] + [f"maneuver={m}" for m in MANEUVERS] + [f"lane={n}" for n in range(1, 6)]
+    names += [f"type={k}" for k in KINDS] + ["striker", "struck"] + [f"area={a}" for a in AREAS]
+    return {name: i for i, name in enumerate(names)}
+
+
+TEXT = _text_tags()
+PICTURE = _picture_tags()
+
+
+def told(crash: Crash, facts: Iterable[str]) -> list[int]:
+    """Indices into `TEXT` of what a sentence that tells these facts says of a crash."""
+    names: list[str] = []
+    for fact in sorted(facts):
+        key, _, rest = fact.partition(".")
+        if key.startswith(HINT):
+            names.append(f"{key}={rest}")
+        elif key in ("layout", "control", "curve"):
+            names += [name for leg in crash.legs for name in _of_leg(key, leg)]
+        elif key in ("lanes", "turns", "median", "limit"):
+            names += [n for leg in crash.legs if leg.bearing % 4 == int(rest) for n in _of_leg(key, leg)]
+        elif key in ("contact", "areas"):
+            names += _of_contact(key, int(rest), crash)
+        elif key in ("light", "weather", "surface"):
+            names.append(f"{key}={getattr(crash, key)}")
+        elif key == "access" and crash.accesses:
+            names += [f"access.leg={crash.accesses[0].leg}", f"access.side={crash.accesses[0].side}"]
+        else:
+            names += [n for actor in crash.actors if actor.id == rest for n in _of_actor(key, actor)]
+    return sorted({TEXT[name] for name in names if name in TEXT})
+
+
+def _of_leg(key: str, leg: Leg) -> list[str]:
+    b, axis = leg.bearing, leg.bearing % 4
+    return {
+        "layout": [f"leg={b}"],
+        "control": [f"leg{b}.control={leg.control}"],
+        "curve": [f"leg{b}.curve={leg.curve}"],
+        "lanes": [f"leg{b}.in={leg.lanes_in}", f"leg{b}.out={leg.lanes_out}"] + [f"axis{axis}.center"] * leg.twltl,
+        "turns": [f"leg{b}.use={use}" for use in leg.turns_in],
+        "median": [f"axis{axis}.median={leg.median}"],
+        "limit": [f"axis{axis}.limit={leg.limit}"],
+    }[key]
+
+
+def _of_contact(key: str, number: int, crash: Crash) -> list[str]:
+    if number >= len(crash.contacts):
+        return []
+    contact, start = crash.contacts[number], f"contact{number}"
+    if key == "areas":
+        return [f"{start}.striker_area={contact.striker_area}", f"{start}.struck_area={contact.struck_area}"]
+    return [f"{start}.striker={crash.actors[contact.striker].id}", f"{start}.struck={crash.actors[contact.struck].id}"]
+
+
+def _of_actor(key: str, actor: Actor) -> list[str]:
+    speed = 5 * round((actor.speed or 0) / 5)
+    return {
+        "heading": [f"{actor.id}.heading={actor.heading}"],
+        "man": [f"{actor.id}.maneuver={actor.maneuver}"],
+        "lane": [f"{actor.id}.lane={actor.lane}"],
+        "kind": [f"{actor.id}.kind={actor.kind}"],
+        "speed": [f"{actor.id}.speed={speed}"],
+    }.get(key, [])
+
+
+# ------------------------------------------------------------------ drawings
+def drawn_leg(leg: Leg, control: bool, turns: bool) -> list[int]:
+    """Indices into `PICTURE` of what the pavement of a leg shows."""
+    names = [f"leg={leg.bearing}", f"in={leg.lanes_in}", f"out={leg.lanes_out}", f"median={leg.median}"]
+    names += [f"kind={leg.kind}", f"curve={leg.curve}"] + ["center"] * leg.twltl
+    names += [f"control={leg.control}"] * control + [f"use={use}" for use in leg.turns_in] * turns
+    return [PICTURE[name] for name in names if name in PICTURE]
+
+
+def drawn_actor(crash: Crash, actor: Actor, pose: str, faces: int) -> list[int]:
+    """Indices into `PICTURE` of what a vehicle drawn at a pose shows; `faces` is the bearing of its nose."""
+    names = [f"id={actor.id}", f"type={actor.kind}", f"pose={pose}", f"faces={faces % 8}"]
+    if actor.kind not in ("object", "pedestrian", "bicycle"):
+        names += [f"heading={actor.heading}", f"maneuver={actor.maneuver}", f"lane={actor.lane}"]
+    for contact in crash.contacts[:1] if pose == "contact" else ():
+        for who in ("striker", "struck"):
+            if crash.actors[getattr(contact, who)] is actor:
+                names += [who, f"area={getattr(contact, who + '_area')}"]
+    return [PICTURE[name] for name in names if name in PICTURE]

@@ -1,0 +1,110 @@
+"""Training of the north finder on made drawings: `python -m mini.train_north --out mini/weights`, some minutes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from safetensors.torch import save_file
+from torch import Tensor
+from torch.nn import functional as F
+
+from mini import picture
+from mini.generator.report import make_report
+from mini.north import FILE, SHEET, STRIDE, Floats, NorthFinder, load, sheet
+from mini.renderer.draw import Drawing, draw_labeled
+from mini.tags import PICTURE
+
+NORTHS = {index for name, index in PICTURE.items() if name.startswith("north=")}
+SEEDS, HELD_OUT = 70_000_000, 60_000_000
+"""Where the seeds of its drawings begin; the model's own are far below."""
+
+
+def lesson(drawing: Drawing, turned: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Sheet and class of every place (4: no arrow, -1: too near to tell) of a drawing, turned a further `turned`."""
+    image = picture.turn_upright(drawing.image, turned)
+    ink, scale = sheet(image)
+    wanted = np.full((SHEET // STRIDE, SHEET // STRIDE), 4)
+    quarters = picture.quarters_of(drawing.turn - turned * np.pi / 2)
+    for shape in drawing.shapes:
+        if not set(shape.tags) & NORTHS:
+            continue
+        corners = picture.turn_points(shape.corners, drawing.image.size, turned) * scale
+        middle, reach = corners.mean(axis=0), float(np.ptp(corners, axis=0).max()) / 2
+        y, x = np.mgrid[0 : SHEET // STRIDE, 0 : SHEET // STRIDE] * STRIDE + STRIDE / 2
+        far = np.hypot(x - middle[0], y - middle[1])
+        wanted[far < 1.6 * reach] = -1
+        wanted[far < max(0.5 * reach, 0.75 * STRIDE)] = quarters
+    return ink, wanted
+
+
+def lessons(seed: int) -> Iterator[tuple[Floats, NDArray[np.int64]]]:
+    """Lessons without end; every drawing is shown at two quarter turns, so that all four are equally common."""
+    while True:
+        drawing = draw_labeled(make_report(seed, modes={"image": 1.0}))
+        for turned in (seed % 4, (seed + 2) % 4):
+            yield lesson(drawing, turned)
+        seed += 1
+
+
+def loss_of(finder: NorthFinder, sheets: Tensor, wanted: Tensor) -> Tensor:
+    """Cross-entropy over places; those with an arrow weigh as much as all others together."""
+    each = F.cross_entropy(finder(sheets), wanted, ignore_index=-1, reduction="none")
+    arrow = (wanted >= 0) & (wanted < 4)
+    return each[arrow].sum() / arrow.sum().clamp(min=1) + each[wanted == 4].mean()
+
+
+def accuracy(finder: NorthFinder, count: int, seed: int = HELD_OUT) -> float:
+    """Share of held-out drawings that are turned upright."""
+    drawings = [draw_labeled(make_report(seed + i, modes={"image": 1.0})) for i in range(count)]
+    return sum(finder.quarters(d.image) == picture.quarters_of(d.turn) for d in drawings) / count
+
+
+def train(out: Path, budget: float, batch: int = 16, peak: float = 4e-3, steps: int = 10**9) -> NorthFinder:
+    """Train for `budget` seconds or `steps`, from the weights in `out` if there are some; written at the end."""
+    torch.manual_seed(0)
+    finder, begun, step = load(out) or NorthFinder(), time.monotonic(), 0
+    feed = lessons(SEEDS + int(finder.seen))
+    finder.train()
+    optimizer = torch.optim.AdamW(finder.parameters(), lr=peak, weight_decay=1e-4)
+    while (spent := (time.monotonic() - begun) / budget) < 1 and step < steps:
+        sheets, wanted = zip(*(next(feed) for _ in range(batch)), strict=True)
+        loss = loss_of(finder, torch.from_numpy(np.stack(sheets)), torch.from_numpy(np.stack(wanted)))
+        optimizer.zero_grad()
+        loss.backward()
+        for group in optimizer.param_groups:
+            group["lr"] = peak * min(1.0, 0.1 + step / 50) * (1.0 if spent < 0.4 else max(0.02, (1 - spent) / 0.6))
+        optimizer.step()
+        finder.seen += batch // 2
+        step += 1
+        if step % 25 == 0:
+            sys.stderr.write(json.dumps({"step": step, "spent": round(spent, 3), "loss": round(loss.item(), 4)}) + "\n")
+    finder.eval()
+    save_file(finder.state_dict(), out / FILE)
+    return finder
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(prog="python -m mini.train_north", description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("mini/weights"))
+    parser.add_argument("--budget", type=float, default=400.0, help="seconds")
+    parser.add_argument("--check", type=int, default=400, help="held-out drawings to count on")
+    options = parser.parse_args()
+    torch.set_num_threads(1)
+    options.out.mkdir(parents=True, exist_ok=True)
+    train(options.out, options.budget)
+    finder = load(options.out)
+    assert finder is not None  # noqa: S101 - just written
+    sys.stdout.write(f"upright: {accuracy(finder, options.check):.3f} of {options.check} held-out drawings\n")
+
+
+if __name__ == "__main__":
+    main()
