@@ -37,9 +37,9 @@ LAYOUTS = {
     "pedestrian": {"plain": 2.0, "four": 2.0, "t": 1.0},
     "merge": {"merge": 1.0},
     "u_turn": {"plain": 3.0, "t": 1.0, "four": 1.0},
-    "lane_change": {"plain": 5.0, "four": 1.0, "t": 1.0},
+    "lane_change": {"plain": 5.0, "four": 1.5, "t": 1.5},
     "overtaking": {"plain": 2.0, "driveway": 1.0, "t": 1.0},
-    "head_on": {"plain": 8.0, "t": 0.6, "four": 0.4},
+    "head_on": {"plain": 6.5, "t": 1.5, "four": 1.0},
 }
 FAMILY_ODDS = {"rural": 0.42, "urban": 0.46, "highway": 0.12}
 

@@ -277,7 +277,8 @@ class Writer(SceneMixin, EventsMixin):
         """What the vehicle comes to and means to do."""
         rng, actor = self.rng, self.crash.actors[index]
         text = ""
-        if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren else 0.4):
+        beside = self.crash.config in ("head_on", "rear_end", "lane_change")
+        if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren and not beside else 0.4):
             place = "the same intersection" if later else self.scene_junction()
             text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:

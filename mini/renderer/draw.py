@@ -132,11 +132,16 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
 
 
 def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
-    """Center the sheet between the hub and the impact, so that both are on it."""
+    """Center the sheet somewhere between the hub and the impact, so that both are on it."""
     at = [track.poses[track.contact] for track in tracks]
     x, y = sum(p.x for p in at) / len(at), sum(p.y for p in at) / len(at)
-    room = 0.08 * min(pen.image.size) / pen.scale
-    pen.center = (0.45 * x + rng.uniform(-room, room), 0.45 * y + rng.uniform(-room, room))
+    room, share = 0.16 * min(pen.image.size) / pen.scale, rng.uniform(0.3, 0.85)
+    shift = rng.uniform(-room, room), rng.uniform(-room, room)
+    for closer in (1.0, 0.8, 0.6, 0.4, 0.2):
+        pen.center = (closer * (share * x + shift[0]), closer * (share * y + shift[1]))
+        seen = pen.px(np.array([(0.0, 0.0), (x, y)])) / pen.image.size
+        if (seen > 0.1).all() and (seen < 0.9).all():
+            return
 
 
 # ------------------------------------------------------------------ vehicles

@@ -111,7 +111,9 @@ class Stage:
             back = self.rng.choice((3, 3, 6, 12, 18)) if not self.ground.plain else self.rng.randint(-16, 16)
             return min(max(before - int(back / STEP), 20), len(mine) - 8)
         if same_road or by.kind in ("object", "pedestrian", "bicycle"):
-            near = before + int(self.rng.uniform(-14, 8 if self.ground.plain else -2) / STEP)
+            near = before + int(
+                self.rng.uniform(-14 if self.ground.plain else -30, 8 if self.ground.plain else -2) / STEP
+            )
             return min(max(near, 20), len(mine) - 8)
         gaps = np.hypot(*(mine[:, None] - self.ways[other][None]).transpose(2, 0, 1))
         return int(min(max(np.unravel_index(gaps.argmin(), gaps.shape)[0], 10), len(mine) - 6))
