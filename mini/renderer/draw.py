@@ -258,14 +258,16 @@ def _north(rng: Random, pen: Pen) -> list[Shape]:
     y = rng.choice((rng.uniform(0.08, 0.25), rng.uniform(0.75, 0.92))) * h
     x, y = min(max(x, length), w - length), min(max(y, length), h - length)
     up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
-    center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.6))
+    center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.95))
     pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
     head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 2, 2, 3))
     ahead = rng.random() < 0.5
     tail, tip = center - up * length * (0.5 if ahead else 0.25), center + up * length * (0.3 if ahead else 0.5)
     pen.arrow(tail, tip, width=width, head=head, barb=rng.choice((0.0, 0.3, 0.45)))
-    place = tip + up * size * 0.75 if ahead else tail - up * size * 0.6
-    pen.text(*place, "N", round(size), angle=math.degrees(pen.turn) if rng.random() < 0.35 else 0.0)
+    place = tip + up * size * rng.uniform(0.55, 0.8) if ahead else tail - up * size * rng.uniform(0.42, 0.65)
+    angle = math.degrees(pen.turn) if rng.random() < 0.4 else 0.0
+    for bold in range(rng.choice((1, 2, 2))):
+        pen.text(place[0] + bold, place[1], "N", round(size), angle=angle)
     square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
     return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
 
