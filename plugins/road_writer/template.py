@@ -18,7 +18,7 @@ from sgcad_core.formats.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.layout import LEG_M, road_spec
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.roads import RoadFacts, road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 
 _CRASH_WORDS = re.compile(
@@ -43,12 +43,15 @@ class Template(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
-        if not _CRASH_WORDS.search(context.narrative):
+        return self.network_of(context.narrative, road_facts(context.narrative))
+
+    def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
+        """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
+        if not _CRASH_WORDS.search(narrative):
             raise Refused(
                 "the narrative names neither a vehicle nor a road",
                 ["the road or junction of the crash", "the vehicles and how they traveled"],
             )
-        facts = road_facts(context.narrative)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
         network = compile_network(plain_xml(spec), spec)
