@@ -221,6 +221,8 @@ class Forward:
         self.heads = model.config.text_config.num_attention_heads
         self.kv = model.config.text_config.num_key_value_heads
         self.text_inv = self.text.rotary_emb.original_inv_freq.float().clone()
+        self.eyes_fixed = False
+        """Whether the vision tower is only looked through, not trained."""
         self.middle = max(1, len(self.text.layers) * 2 // 3)
         """Layers after which a sentence's end is asked what it told; the rest carry it to the answers."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
@@ -238,7 +240,8 @@ class Forward:
         """Tokens of all pictures in the order of `patch_index`, (sum of picture tokens, hidden)."""
         if not batch.patches.shape[0]:
             return torch.zeros(0, self.model.lm_head.weight.shape[1], dtype=self.dtype, device=batch.ids.device)
-        found = self.pictures(batch.patches.to(self.dtype), batch.grids, batch.lengths)
+        with torch.set_grad_enabled(torch.is_grad_enabled() and not self.eyes_fixed):
+            found = self.pictures(batch.patches.to(self.dtype), batch.grids, batch.lengths)
         return found.reshape(-1, found.shape[-1])[batch.patch_index]
 
     def run(self, batch: Batch, places: Tensor | None = None) -> Pass:

@@ -72,6 +72,8 @@ class Options:
     these in turn ("auto")."""
     eyes: str = ""
     """Exported weights whose vision tower is taken in place of that of `start`."""
+    fixed_eyes: int = 0
+    """1: the vision tower is not trained."""
     sentences: float = 0.1
     """Weight of what sentences tell, beside the answers."""
     drawings: float = 0.1
@@ -115,6 +117,7 @@ class Trainer:
         self.coder = Coder(self.tokenizer)
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
         self.forward = Forward(self.model)
+        self.forward.eyes_fixed = bool(options.fixed_eyes)
         self.answer_tokens = answer_tokens(self.coder)
         self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
         self.taggers.to(options.device)
@@ -303,7 +306,7 @@ def parse(arguments: list[str] | None = None) -> Options:
     parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
     for name in (
         "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
-        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings",
+        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings", "fixed_eyes",
     ):  # fmt: skip
         usual = getattr(Options, name)
         parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)

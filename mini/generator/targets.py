@@ -16,7 +16,7 @@ GUESS = 0.25
 SURE = 1.0
 RARE = 2.0
 """Of a value that is told and seldom other than the usual one: a curve, a turn lane's use, a speed."""
-CONTACT = 3.0
+CONTACT = 6.0
 
 
 class Targets:
