@@ -16,7 +16,8 @@ from torch import Tensor
 from torch.nn import functional as F
 
 from mini import answers
-from mini.model import Forward, norm, rotate
+from mini.layers import norm, rotate
+from mini.model import Forward
 from mini.rows import Row, collate, positions, road_ids
 from mini.tokens import ROAD, SCENARIO, Coder
 

@@ -8,13 +8,15 @@ CPU), pictures padded to one length, logits only where a loss is wanted.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import torch
 from torch import Tensor, nn
 from torch.nn import functional as F
 from transformers import Qwen2_5_VLConfig, Qwen2_5_VLForConditionalGeneration
+
+from mini.batch import Batch, Lesson, Pass, Taggers
+from mini.layers import attend, causal, norm, rotate
 
 PATCH = 14
 CHANNELS = 5
@@ -79,138 +81,6 @@ def make_model(config: Qwen2_5_VLConfig) -> Qwen2_5_VLForConditionalGeneration:
     return model
 
 
-@dataclass
-class Batch:
-    """Padded rows.
-
-    ids (B, L); positions (3, B, L); patches (N, P, 5 * 14 * 14), grids (N, P, 2) row and column of each patch, lengths
-    (N,) real patches; image_index flat places of picture tokens, patch_index which tokens stand there; picks (M,) flat
-    places before a value, wanted (M,) its token, weights (M,); ends (S,) flat places of sentence ends, told (S, T) what
-    those sentences tell; drawn (sum of picture tokens, D) what each of `patch_index` shows.
-    """
-
-    ids: Tensor
-    positions: Tensor
-    patches: Tensor
-    grids: Tensor
-    lengths: Tensor
-    image_index: Tensor
-    patch_index: Tensor
-    picks: Tensor
-    wanted: Tensor
-    weights: Tensor
-    ends: Tensor
-    told: Tensor
-    drawn: Tensor
-
-    def to(self, device: str) -> Batch:
-        """The batch on another device."""
-        return Batch(**{key: value.to(device) for key, value in vars(self).items()})
-
-
-def rotate(x: Tensor, cos: Tensor, sin: Tensor) -> Tensor:
-    """Rotary embedding of (..., L, D); cos and sin are (..., L, D / 2)."""
-    first, second = x.chunk(2, dim=-1)
-    return torch.cat(
-        (torch.addcmul(first * cos, second, sin, value=-1), torch.addcmul(second * cos, first, sin)), dim=-1
-    )
-
-
-def causal(q: Tensor, k: Tensor, v: Tensor, mask: Tensor, block: int = 128) -> Tensor:
-    """Causal attention: q (N, G, L, D) scaled, k and v (N, L, D), mask (L, L); queries in blocks, each of which looks
-    only at keys that it can see (half the work of a full square at these lengths)."""
-    n, groups, length, d = q.shape
-    out = []
-    for start in range(0, length, block):
-        end = min(start + block, length)
-        some = q[:, :, start:end].reshape(n, -1, d)
-        out.append(attend(some, k[:, :end], v[:, :end], mask[start:end, :end].repeat(groups, 1)).view(n, groups, -1, d))
-    return torch.cat(out, dim=2)
-
-
-def attend(q: Tensor, k: Tensor, v: Tensor, mask: Tensor) -> Tensor:
-    """Attention by two batched products: q (N, G * L, D) scaled, k and v (N, L, D), mask broadcast to (N, G * L, L)."""
-    scores = torch.baddbmm(mask, q, k.transpose(1, 2))
-    return torch.bmm(torch.softmax(scores, dim=-1), v)
-
-
-@dataclass
-class Pass:
-    """States on one way through: last (B, L, hidden) or (M, hidden), middle (B, L, hidden), seen (tokens, hidden)."""
-
-    last: Tensor
-    middle: Tensor
-    seen: Tensor
-
-
-@dataclass
-class Lesson:
-    """Losses of one batch, and the share of sure answers that are right."""
-
-    answers: Tensor
-    right: Tensor
-    sentences: Tensor
-    drawings: Tensor
-
-
-class Taggers(nn.Module):
-    """The heads that ask what a sentence told and what a picture token shows; used in training only."""
-
-    def __init__(self, hidden: int, sentence_tags: int, picture_tags: int, blank: float = 0.2) -> None:
-        super().__init__()
-        self.sentence, self.picture = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, picture_tags)
-        self.blank = blank
-        """Weight of a picture token that shows nothing."""
-        for head in (self.sentence, self.picture):
-            nn.init.zeros_(head.weight)
-            nn.init.constant_(head.bias, -4.0)
-
-    def sentences(self, states: Tensor, told: Tensor) -> Tensor:
-        """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
-        if not len(states):
-            return states.sum()
-        return self._loss(self.sentence, states, told).mean()
-
-    def drawings(self, states: Tensor, drawn: Tensor) -> Tensor:
-        """The same over picture tokens, blank ones with less weight; states (N, hidden), drawn (N, D)."""
-        if not len(states):
-            return states.sum()
-        weight = torch.where(drawn.any(dim=1), 1.0, self.blank)
-        return (self._loss(self.picture, states, drawn) * weight).sum() / weight.sum()
-
-    @staticmethod
-    def _loss(head: nn.Linear, states: Tensor, wanted: Tensor) -> Tensor:
-        logits = head(F.rms_norm(states, states.shape[-1:])).float()
-        return F.binary_cross_entropy_with_logits(logits, wanted, reduction="none").sum(dim=1)
-
-
-class _RmsNorm(torch.autograd.Function):
-    """RMS norm with few passes over the activations; statistics in fp32."""
-
-    @staticmethod
-    def forward(ctx: Any, x: Tensor, weight: Tensor, eps: float) -> Tensor:
-        scale = torch.rsqrt(
-            torch.linalg.vector_norm(x, dim=-1, keepdim=True, dtype=torch.float32).square_().div_(x.shape[-1]).add_(eps)
-        ).to(x.dtype)
-        ctx.save_for_backward(x, weight, scale)
-        return (x * scale).mul_(weight)
-
-    @staticmethod
-    def backward(ctx: Any, *grads: Tensor) -> tuple[Tensor, Tensor, None]:
-        x, weight, scale = ctx.saved_tensors
-        grad, normed = grads[0], x * scale
-        inner = grad * normed
-        weight_grad = inner.reshape(-1, x.shape[-1]).sum(0)
-        mean = (inner @ weight[:, None]).div_(x.shape[-1])
-        out = (grad * weight).addcmul_(normed, mean, value=-1).mul_(scale)
-        return out, weight_grad, None
-
-
-def norm(layer: Any, x: Tensor) -> Tensor:
-    """RMS norm with a module's weight."""
-    return _RmsNorm.apply(x, layer.weight, layer.variance_epsilon)  # type: ignore[no-any-return]
-
-
 class Forward:
     """A fast way through a Qwen2_5_VLForConditionalGeneration, in the dtype of its weights."""
 
@@ -250,17 +120,20 @@ class Forward:
         seen = self.seen(batch)
         if len(seen):
             x = x.view(-1, x.shape[-1]).index_copy(0, batch.image_index, seen).view(x.shape)
-        middle = x
+        middle, queries, keys = x, None, None
         cos, sin = self._rope(batch.positions)
         mask = torch.full((x.shape[1], x.shape[1]), float("-inf"), device=x.device, dtype=x.dtype).triu(1)
         for number, layer in enumerate(self.text.layers, 1):
-            x = x + self._attention(layer.self_attn, norm(layer.input_layernorm, x), cos, sin, mask)
+            q, k, v = self._projected(layer.self_attn, norm(layer.input_layernorm, x), cos, sin)
+            if number == self.middle + 1:
+                queries, keys = q[:, : self.heads // self.kv], k[:, 0]
+            x = x + self._attention(layer.self_attn, q, k, v, mask)
             if places is not None and layer is self.text.layers[-1]:
                 x = x.view(-1, x.shape[-1])[places]
             x = x + self._mlp(layer.mlp, norm(layer.post_attention_layernorm, x))
             if number == self.middle:
                 middle = x
-        return Pass(norm(self.text.norm, x), middle, seen)
+        return Pass(norm(self.text.norm, x), middle, seen, queries, keys)
 
     def _rope(self, positions: Tensor) -> tuple[Tensor, Tensor]:
         """cos and sin, (B, 1, L, D / 2)."""
@@ -269,14 +142,19 @@ class Forward:
         one = torch.cat([part[i % 3] for i, part in enumerate(parts)], dim=-1)[:, None]
         return one.cos().to(self.dtype), one.sin().to(self.dtype)
 
-    def _attention(self, block: Any, x: Tensor, cos: Tensor, sin: Tensor, mask: Tensor) -> Tensor:
-        b, length, dim = x.shape
+    def _projected(self, block: Any, x: Tensor, cos: Tensor, sin: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Queries (B, heads, L, d), scaled, keys and values (B, kv, L, d), turned by their positions."""
+        b, length, _ = x.shape
         projections = (block.q_proj, block.k_proj, block.v_proj)
         weight, bias = torch.cat([p.weight for p in projections]), torch.cat([p.bias for p in projections])
         parts = F.linear(x, weight, bias).view(b, length, self.heads + 2 * self.kv, -1).transpose(1, 2)
         q, k, v = parts.split((self.heads, self.kv, self.kv), dim=1)
         d = q.shape[-1]
-        q, k = rotate(q, cos * d**-0.5, sin * d**-0.5), rotate(k, cos, sin)
+        return rotate(q, cos * d**-0.5, sin * d**-0.5), rotate(k, cos, sin), v
+
+    def _attention(self, block: Any, q: Tensor, k: Tensor, v: Tensor, mask: Tensor) -> Tensor:
+        b, _, length, d = q.shape
+        dim = self.heads * d
         k, v = (part.reshape(b * self.kv, length, d) for part in (k, v))
         out = causal(q.reshape(b * self.kv, self.heads // self.kv, length, d), k, v, mask)
         return block.o_proj(out.view(b, self.heads, length, d).transpose(1, 2).reshape(b, length, dim))
@@ -323,7 +201,28 @@ class Forward:
         way = self.run(batch, batch.picks)
         answers, right = self._answers(batch, way.last, candidates)
         middle = way.middle.view(-1, way.middle.shape[-1])[batch.ends]
-        return Lesson(answers, right, taggers.sentences(middle, batch.told), taggers.drawings(way.seen, batch.drawn))
+        return Lesson(
+            answers,
+            right,
+            taggers.sentences(middle, batch.told),
+            taggers.drawings(way.seen, batch.drawn),
+            self._pointers(batch, way),
+        )
+
+    @staticmethod
+    def _pointers(batch: Batch, way: Pass) -> Tensor:
+        """Mean -log of the attention that values pay to what tells them; the first group of heads behind `middle`."""
+        assert way.queries is not None  # noqa: S101 - lesson() ran all layers
+        assert way.keys is not None  # noqa: S101
+        if not len(batch.pointing):
+            return way.queries.sum() * 0
+        length = batch.ids.shape[1]
+        row, at = batch.pointing // length, batch.pointing % length
+        queries, keys = way.queries[row, :, at], way.keys[row]
+        scores = torch.einsum("qgd,qld->qgl", queries, keys).float()
+        later = torch.arange(length, device=at.device)[None] > at[:, None]
+        shares = scores.masked_fill(later[:, None], float("-inf")).log_softmax(dim=-1)
+        return -shares.masked_fill(~batch.sources[:, None], float("-inf")).logsumexp(dim=-1).mean()
 
     def _answers(self, batch: Batch, picked: Tensor, candidates: Tensor | None) -> tuple[Tensor, Tensor]:
         weight, wanted = self.model.lm_head.weight, batch.wanted

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from mini import answers, picture, tags
+from mini.batch import Batch
 from mini.generator.report import Report
-from mini.model import Batch
 from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
 
 if TYPE_CHECKING:
@@ -43,6 +43,8 @@ class Row:
     pieces: list[tuple[str, str]] = field(default_factory=list)
     text_tags: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of the last token of each sentence and what the sentence tells, as indices into `tags.TEXT`."""
+    pointers: list[tuple[int, list[int]]] = field(default_factory=list)
+    """Place of a value and the places that tell it."""
     picture_tags: NDArray[np.uint8] | None = None
     """What each picture token shows, (tokens, len(tags.PICTURE)) of 0 and 1."""
 
@@ -101,6 +103,15 @@ def training_row(coder: Coder, report: Report, image: Image.Image | None, shapes
     return row
 
 
+def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
+    """Places that tell the value at a path: ends of sentences, and picture tokens."""
+    fact, shown = tags.fact_of(path, report.crash)
+    found = [at for (at, _), (_, facts) in zip(row.text_tags, report.sentences, strict=True) if fact in facts]
+    if row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
+        found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
+    return found
+
+
 def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], report: Report) -> None:
     row.ids.append(coder.special[task])
     for text, pick in pieces:
@@ -108,6 +119,8 @@ def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], repo
         if pick is not None and len(pick.options) >= 1:
             weight = report.weight(pick.path)
             row.picks += [(len(row.ids) + i, weight) for i in range(len(ids))]
+            if weight >= 1 and (sources := _sources(row, report, pick.path)):
+                row.pointers.append((len(row.ids), sources))
         row.ids += ids
 
 
@@ -143,6 +156,10 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         for at, found in row.text_tags:
             told[len(ends), found] = 1
             ends.append(i * longest + at)
+    pointing = [(i, at, found) for i, row in enumerate(rows) for at, found in row.pointers]
+    sources = np.zeros((len(pointing), longest), np.bool_)
+    for n, (_, _, found) in enumerate(pointing):
+        sources[n, found] = True
     return Batch(
         torch.from_numpy(ids),
         torch.from_numpy(place),
@@ -153,6 +170,8 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         torch.tensor(ends, dtype=torch.int64),
         torch.from_numpy(told),
         _drawn(rows),
+        torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
+        torch.from_numpy(sources),
     )
 
 

@@ -9,6 +9,7 @@ knows no tokens and no model.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from mini.answers import AREAS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
@@ -114,6 +115,32 @@ def _of_actor(key: str, actor: Actor) -> list[str]:
         "kind": [f"{actor.id}.kind={actor.kind}"],
         "speed": [f"{actor.id}.speed={speed}"],
     }.get(key, [])
+
+
+# ------------------------------------------------------------------ answers
+_OF_LEG = {"lanes_in": "lanes", "lanes_out": "lanes", "center_turn_lane": "lanes", "speed_limit_mph": "limit"}
+_OF_ACTOR = {"kind": "kind", "road": "heading", "exit_road": "man", "maneuver": "man", "lane": "lane"}
+_OF_ACTOR |= {"speed_mph": "speed"}
+
+
+def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
+    """The fact that the value at a path of an answer states, and the tag in `PICTURE` of what shows it; "" for none."""
+    key = str(path[-1])
+    if path[0] == "legs" and len(path) > 2 and path[1] < len(crash.legs):
+        bearing = crash.legs[path[1]].bearing
+        if path[2] in ("control", "curve"):
+            return path[2], f"leg={bearing}"
+        if isinstance(path[2], int) or path[2] == "turns_in":
+            return f"turns.{bearing % 4}", f"leg={bearing}"
+        name = _OF_LEG.get(path[2], "median" if path[2] == "median" else "")
+        return (f"{name}.{bearing % 4}", f"leg={bearing}") if name else ("", "")
+    if path[0] == "actors" and len(path) > 2 and path[1] < len(crash.actors) and key in _OF_ACTOR:
+        actor = crash.actors[path[1]].id
+        return f"{_OF_ACTOR[key]}.{actor}", f"id={actor}"
+    if path[0] == "contacts" and key in ("striker", "struck", "striker_area", "struck_area"):
+        number = path[1]
+        return f"{'areas' if key.endswith('area') else 'contact'}.{number}", "" if number else key.split("_")[0]
+    return (key, "") if key in ("light", "weather", "surface") else ("", "")
 
 
 # ------------------------------------------------------------------ drawings

@@ -8,7 +8,6 @@ seconds of all calls together, and the learning rate follows the budget.
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import random
@@ -16,7 +15,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,59 +23,19 @@ import torch
 from safetensors.torch import load_file, save_file
 
 from mini import tags
+from mini.batch import Batch, Lesson, Taggers
 from mini.export import export
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
-from mini.model import Batch, Forward, Lesson, Taggers, make_config, make_model
+from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
+from mini.options import Options, parse
 from mini.ranks import Ranks
 from mini.rows import Row, collate
 from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
 
 TOKENIZER_BASE = 40_000_000
 HEADS = "tags.safetensors"
-
-
-@dataclass
-class Options:
-    """What one call is told."""
-
-    out: Path
-    budget: float
-    device: str = "cpu"
-    call: float = 1e9
-    """Seconds after which this call stops, whatever the budget."""
-    seed: int = 0
-    tokens: int = 3000
-    """Tokens of a batch of one rank, padding counted."""
-    workers: int = 1
-    threads: int = 1
-    """Of each rank."""
-    ranks: int = 2
-    rank: int = 0
-    size: str = "mini"
-    save_every: float = 150.0
-    max_steps: int = 10**9
-    total_steps: int = 0
-    """If given, progress is counted in steps rather than seconds: two runs are then equal to the bit."""
-    muon_lr: float = 0.015
-    adam_lr: float = 0.0025
-    texts: int = 6000
-    start: str = ""
-    """Exported weights to begin with (`mini/weights`), with fresh optimizer state."""
-    hold: float = 0.4
-    """Share of the budget with the full learning rate."""
-    stage: str = "auto"
-    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the vision tower alone), "all", or all of
-    these in turn ("auto")."""
-    eyes: str = ""
-    """Exported weights whose vision tower is taken in place of that of `start`."""
-    fixed_eyes: int = 0
-    """1: the vision tower is not trained."""
-    sentences: float = 0.1
-    """Weight of what sentences tell, beside the answers."""
-    drawings: float = 0.1
-    """Weight of what the tokens of drawings show."""
 
 
 def schedule(progress: float, hold: float = 0.4) -> float:
@@ -253,13 +211,14 @@ class Trainer:
             return self.forward.lesson(batch, self._candidates(batch.wanted), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())
-        return Lesson(nothing, nothing, nothing, drawings)
+        return Lesson(nothing, nothing, nothing, drawings, nothing)
 
     def _step(self, rows: list[Row]) -> None:
         batch = collate(rows, self.coder).to(self.options.device)
         started = time.monotonic()
         options, lesson = self.options, self._lesson(batch)
         loss = lesson.answers + options.sentences * lesson.sentences + options.drawings * lesson.drawings
+        loss = loss + options.pointers * lesson.pointers
         loss.backward()
         self.ranks.average(self.optimizer.live.values())
         self.optimizer.step(schedule(self.progress, self.options.hold))
@@ -275,6 +234,7 @@ class Trainer:
                 right=float(lesson.right),
                 sentences=float(lesson.sentences.detach()),
                 drawings=float(lesson.drawings.detach()),
+                pointers=float(lesson.pointers.detach()),
                 step_s=took,
                 batch=len(rows),
                 tokens=batch.ids.shape[1],
@@ -298,33 +258,9 @@ def batches(rows: list[Row], tokens: int, seed: int) -> Iterator[list[Row]]:
     yield from groups
 
 
-def parse(arguments: list[str] | None = None) -> Options:
-    """Options from the command line; DEVICE and BUDGET in the environment are defaults."""
-    parser = argparse.ArgumentParser(prog="python -m mini.train", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("runs/mini-train"))
-    parser.add_argument("--budget", type=float, default=float(os.environ.get("BUDGET", 3600)))
-    parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
-    for name in (
-        "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
-        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings", "fixed_eyes",
-    ):  # fmt: skip
-        usual = getattr(Options, name)
-        parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)
-    return suited(Options(**vars(parser.parse_args(arguments))))
-
-
-def suited(options: Options) -> Options:
-    """On a GPU: one rank, many workers and large batches, unless told otherwise."""
-    if options.device.startswith("cuda"):
-        options.ranks = 1
-        options.workers = max(options.workers, (os.cpu_count() or 2) - 2)
-        options.tokens = options.tokens if options.tokens != Options.tokens else 16_000
-    return options
-
-
 def main() -> None:
     """Entry point: the first rank starts the others."""
-    options = parse()
+    options = parse(description=__doc__)
     others = []
     if options.rank == 0 and options.ranks > 1:
         options.out.mkdir(parents=True, exist_ok=True)

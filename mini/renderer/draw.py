@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from random import Random
-from typing import Any
 
 import numpy as np
-from PIL import Image, ImageFilter
+from PIL import Image
 
 from mini import tags
 from mini.generator.report import Report
 from mini.generator.world import Crash
+from mini.renderer.around import Shape, captions, north_arrow, scan
 from mini.renderer.lines import Ground, Points
 from mini.renderer.pen import BLACK, Color, Pen
 from mini.renderer.poses import Pose, Stage, Track, corners
@@ -29,30 +29,6 @@ COLORS: dict[int, tuple[Color, ...]] = {
     4: ((230, 180, 30), (150, 60, 180)),
     5: ((150, 60, 180),),
 }
-NOTES = (
-    "Speed limit {n} mph",
-    "Speed Limit - {k} kmph ({n} mph)",
-    "posted speed limit {n} mph ({k} kph)",
-    "FRPs not supported by evidence",
-    "No physical evidence",
-    "POI & FRPs not supported by evidence",
-    "V1 - {y} Ford Taurus, 4-door sedan",
-    "V2 - {y} Jeep, 4-door utility",
-    "Not to scale",
-    "paved shoulder",
-    "gravel",
-    "Lawn",
-)
-
-
-@dataclass(frozen=True)
-class Shape:
-    """A part of a drawing: corners in pixels (n, 2), what it shows as indices into `tags.PICTURE`, and the least
-    share of a token that it must cover to be asked for there."""
-
-    corners: Points
-    tags: list[int]
-    least: float
 
 
 @dataclass(frozen=True)
@@ -81,8 +57,8 @@ def draw_labeled(report: Report) -> Drawing:
     arrows = any(fact.startswith("turns.") for fact in report.drawn)
     marks.draw(arrows=arrows, signs="control" in report.drawn)
     _vehicles(rng, pen, tracks)
-    shapes = _shapes(report, pen, ground, tracks, arrows) + _north(rng, pen)
-    _captions(rng, pen)
+    shapes = _shapes(report, pen, ground, tracks, arrows) + north_arrow(rng, pen)
+    captions(rng, pen)
     return Drawing(scan(rng, pen.image), shapes, pen.turn)
 
 
@@ -247,70 +223,4 @@ def _round(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: 
         pen.text(x, y + r + 7, text, 11)
 
 
-# ------------------------------------------------------------------ around
-def _north(rng: Random, pen: Pen) -> list[Shape]:
-    """An arrow with an N; missing now and then where north is up."""
-    if abs(pen.turn) < 0.01 and rng.random() < 0.08:
-        return []
-    w, h = pen.image.size
-    length = rng.uniform(18, 46)
-    x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94))) * w
-    y = rng.choice((rng.uniform(0.08, 0.25), rng.uniform(0.75, 0.92))) * h
-    x, y = min(max(x, length), w - length), min(max(y, length), h - length)
-    up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
-    center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.95))
-    pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
-    head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 2, 2, 3))
-    ahead = rng.random() < 0.5
-    tail, tip = center - up * length * (0.5 if ahead else 0.25), center + up * length * (0.3 if ahead else 0.5)
-    pen.arrow(tail, tip, width=width, head=head, barb=rng.choice((0.0, 0.3, 0.45)))
-    place = tip + up * size * rng.uniform(0.55, 0.8) if ahead else tail - up * size * rng.uniform(0.42, 0.65)
-    angle = math.degrees(pen.turn) if rng.random() < 0.4 else 0.0
-    for bold in range(rng.choice((1, 2, 2))):
-        pen.text(place[0] + bold, place[1], "N", round(size), angle=angle)
-    square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
-    return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
-
-
-def _captions(rng: Random, pen: Pen) -> None:
-    w, h = pen.image.size
-    n = rng.choice((25, 35, 45, 55, 70))
-    for _ in range(rng.choice((0, 1, 1, 2, 3))):
-        text = rng.choice(NOTES).format(n=n, k=round(n * 1.609), y=rng.randint(1990, 2007))
-        pen.text(
-            rng.uniform(0.2, 0.8) * w,
-            rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h,
-            text,
-            rng.choice((9, 10, 12, 14)),
-        )
-    if rng.random() < 0.15:
-        x, y = rng.uniform(0.1, 0.9) * w, rng.uniform(0.1, 0.9) * h
-        pen.draw.line([(x, y), (x + rng.uniform(-60, 60), y + rng.uniform(-40, 40))], fill=BLACK, width=1)
-
-
-def scan(rng: Random, image: Image.Image) -> Image.Image:
-    """What copying does: gray, blur, low resolution, skew, specks; most drawings are clean."""
-    if rng.random() < 0.06:
-        image = image.convert("L").convert("RGB")
-    if rng.random() < 0.15:
-        factor = rng.uniform(0.45, 0.8)
-        small = image.resize((int(image.width * factor), int(image.height * factor)), Image.Resampling.BILINEAR)
-        image = small.resize(image.size, Image.Resampling.BILINEAR)
-    if rng.random() < 0.12:
-        image = image.filter(ImageFilter.GaussianBlur(rng.uniform(0.4, 1.1)))
-    if rng.random() < 0.12:
-        image = image.rotate(rng.uniform(-2.5, 2.5), fillcolor="white", resample=Image.Resampling.BILINEAR)
-    if rng.random() < 0.1:
-        image = _specks(rng, image)
-    return image
-
-
-def _specks(rng: Random, image: Image.Image) -> Any:
-    noise = np.random.default_rng(rng.randrange(2**32))
-    pixels = np.asarray(image, np.int16) + noise.normal(0, rng.uniform(3, 14), (image.height, image.width, 1)).astype(
-        np.int16
-    )
-    return Image.fromarray(np.clip(pixels, 0, 255).astype(np.uint8))
-
-
-__all__ = ["Points", "draw_report", "scan"]
+__all__ = ["Drawing", "Points", "Shape", "draw_labeled", "draw_report", "scan"]

@@ -42,7 +42,7 @@ def test_the_model_sees_what_it_saw_in_training(processor: mini.processor.MiniPr
     with torch.no_grad():
         theirs = model(**inputs).logits[0, -1]
         mine = forward.hidden(collate([row], coder))[0, -1] @ forward.model.lm_head.weight.T
-    assert torch.allclose(theirs, mine, atol=1e-3)
+    assert torch.allclose(theirs, mine, atol=2e-2)
 
 
 def test_texts_of_unlike_length_and_pictures_share_a_batch(processor: mini.processor.MiniProcessor) -> None:

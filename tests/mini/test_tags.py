@@ -9,13 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mini import picture, tags
+from mini.batch import Pass, Taggers
 from mini.feed import labeled, moment
 from mini.generator.grammar import HINT, MARK, Told, unmark
 from mini.generator.report import make_report
-from mini.model import Taggers
+from mini.model import Forward
+from mini.options import parse
 from mini.rows import collate, tag_picture, training_row
 from mini.tokens import Coder, train_tokenizer
-from mini.train import Trainer, parse
+from mini.train import Trainer
 
 seeds = st.integers(0, 10**6)
 NAMES = {index: name for name, index in tags.TEXT.items()}
@@ -170,3 +172,44 @@ def test_a_run_goes_through_the_stages_one_after_the_other() -> None:
     assert moment("auto", 0.3)[1] == pytest.approx(0.0, abs=1e-6)
     assert moment("auto", 1.0)[1] == pytest.approx(1.0)
     assert moment("text", 0.4) == ("text", 0.4)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_pointers_lead_to_what_tells_the_value(seed: int) -> None:
+    report = make_report(seed, length=0.1, modes={"both": 1.0})
+    row = training_row(_any_coder(), report, *labeled(report))
+    places = {at for at, _ in row.pointers}
+    assert places <= {at for at, weight in row.picks if weight >= 1}
+    ends = {at for at, _ in row.text_tags}
+    shown = range(row.image_start, row.image_start + len(row.picture_tags if row.picture_tags is not None else ()))
+    for at, sources in row.pointers:
+        assert all(source in ends or source in shown for source in sources)
+        assert all(source < at for source in sources)
+
+
+def test_every_fact_of_an_answer_has_a_name() -> None:
+    report = make_report(7, length=0.0, modes={"both": 1.0})
+    crash = report.crash
+    bearing = crash.legs[0].bearing
+    assert tags.fact_of(("legs", 0, "lanes_in"), crash) == (f"lanes.{bearing % 4}", f"leg={bearing}")
+    assert tags.fact_of(("legs", 0, 0), crash)[0] == f"turns.{bearing % 4}"
+    assert tags.fact_of(("actors", 0, "maneuver"), crash) == (f"man.{crash.actors[0].id}", f"id={crash.actors[0].id}")
+    assert tags.fact_of(("contacts", 0, "struck_area"), crash) == ("areas.0", "struck")
+    assert tags.fact_of(("light",), crash) == ("light", "")
+    assert tags.fact_of(("refuse",), crash) == ("", "")
+
+
+def test_attention_on_the_right_place_costs_nothing(coder: Coder) -> None:
+    report = make_report(3, length=0.0, modes={"text": 1.0})
+    batch = collate([training_row(coder, report, None)], coder)
+    places, length = len(batch.pointing), batch.ids.shape[1]
+    assert places
+    queries, keys = torch.zeros(1, 2, length, 4), torch.zeros(1, length, 4)
+    way = Pass(torch.zeros(0), torch.zeros(0), torch.zeros(0), queries, keys)
+    even = Forward._pointers(batch, way)
+    reach = batch.pointing.float() + 1
+    assert float(even) == pytest.approx(float((reach.log() - batch.sources.sum(1).float().log()).mean()), rel=1e-4)
+    keys[0, batch.sources.any(dim=0)] = 9.0
+    queries[:] = 9.0
+    assert float(Forward._pointers(batch, way)) < float(even)

@@ -11,9 +11,10 @@ from mini.feed import drawing
 from mini.generator.report import make_report
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
+from mini.options import parse
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
-from mini.train import Trainer, parse, schedule
+from mini.train import Trainer, schedule
 
 torch.set_num_threads(1)
 

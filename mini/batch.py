@@ -1,0 +1,94 @@
+"""What a step trains on and what comes of it: padded rows, states on the way, losses, heads that ask for tags."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional as F
+
+
+@dataclass
+class Batch:
+    """Padded rows.
+
+    ids (B, L); positions (3, B, L); patches (N, P, 5 * 14 * 14), grids (N, P, 2) row and column of each patch, lengths
+    (N,) real patches; image_index flat places of picture tokens, patch_index which tokens stand there; picks (M,) flat
+    places before a value, wanted (M,) its token, weights (M,); ends (S,) flat places of sentence ends, told (S, T) what
+    those sentences tell; drawn (sum of picture tokens, D) what each of `patch_index` shows; pointing (Q,) flat
+    places before a value that some source tells, sources (Q, L) where in its row.
+    """
+
+    ids: Tensor
+    positions: Tensor
+    patches: Tensor
+    grids: Tensor
+    lengths: Tensor
+    image_index: Tensor
+    patch_index: Tensor
+    picks: Tensor
+    wanted: Tensor
+    weights: Tensor
+    ends: Tensor
+    told: Tensor
+    drawn: Tensor
+    pointing: Tensor
+    sources: Tensor
+
+    def to(self, device: str) -> Batch:
+        """The batch on another device."""
+        return Batch(**{key: value.to(device) for key, value in vars(self).items()})
+
+
+@dataclass
+class Pass:
+    """States on one way through: last (B, L, hidden) or (M, hidden), middle (B, L, hidden), seen (tokens, hidden)."""
+
+    last: Tensor
+    middle: Tensor
+    seen: Tensor
+    queries: Tensor | None = None
+    keys: Tensor | None = None
+
+
+@dataclass
+class Lesson:
+    """Losses of one batch, and the share of sure answers that are right."""
+
+    answers: Tensor
+    right: Tensor
+    sentences: Tensor
+    drawings: Tensor
+    pointers: Tensor
+
+
+class Taggers(nn.Module):
+    """The heads that ask what a sentence told and what a picture token shows; used in training only."""
+
+    def __init__(self, hidden: int, sentence_tags: int, picture_tags: int, blank: float = 0.2) -> None:
+        super().__init__()
+        self.sentence, self.picture = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, picture_tags)
+        self.blank = blank
+        """Weight of a picture token that shows nothing."""
+        for head in (self.sentence, self.picture):
+            nn.init.zeros_(head.weight)
+            nn.init.constant_(head.bias, -4.0)
+
+    def sentences(self, states: Tensor, told: Tensor) -> Tensor:
+        """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
+        if not len(states):
+            return states.sum()
+        return self._loss(self.sentence, states, told).mean()
+
+    def drawings(self, states: Tensor, drawn: Tensor) -> Tensor:
+        """The same over picture tokens, blank ones with less weight; states (N, hidden), drawn (N, D)."""
+        if not len(states):
+            return states.sum()
+        weight = torch.where(drawn.any(dim=1), 1.0, self.blank)
+        return (self._loss(self.picture, states, drawn) * weight).sum() / weight.sum()
+
+    @staticmethod
+    def _loss(head: nn.Linear, states: Tensor, wanted: Tensor) -> Tensor:
+        logits = head(F.rms_norm(states, states.shape[-1:])).float()
+        return F.binary_cross_entropy_with_logits(logits, wanted, reduction="none").sum(dim=1)

@@ -1,0 +1,77 @@
+"""What a training is told: options of the command line, and what suits a GPU."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass
+class Options:
+    """What one call is told."""
+
+    out: Path
+    budget: float
+    device: str = "cpu"
+    call: float = 1e9
+    """Seconds after which this call stops, whatever the budget."""
+    seed: int = 0
+    tokens: int = 3000
+    """Tokens of a batch of one rank, padding counted."""
+    workers: int = 1
+    threads: int = 1
+    """Of each rank."""
+    ranks: int = 2
+    rank: int = 0
+    size: str = "mini"
+    save_every: float = 150.0
+    max_steps: int = 10**9
+    total_steps: int = 0
+    """If given, progress is counted in steps rather than seconds: two runs are then equal to the bit."""
+    muon_lr: float = 0.015
+    adam_lr: float = 0.0025
+    texts: int = 6000
+    start: str = ""
+    """Exported weights to begin with (`mini/weights`), with fresh optimizer state."""
+    hold: float = 0.4
+    """Share of the budget with the full learning rate."""
+    stage: str = "auto"
+    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the vision tower alone), "all", or all of
+    these in turn ("auto")."""
+    eyes: str = ""
+    """Exported weights whose vision tower is taken in place of that of `start`."""
+    fixed_eyes: int = 0
+    """1: the vision tower is not trained."""
+    sentences: float = 0.1
+    """Weight of what sentences tell, beside the answers."""
+    pointers: float = 0.1
+    """Weight of where an answer looks for what it is to say, beside the answers."""
+    drawings: float = 0.1
+    """Weight of what the tokens of drawings show."""
+
+
+def parse(arguments: list[str] | None = None, description: str | None = None) -> Options:
+    """Options from the command line; DEVICE and BUDGET in the environment are defaults."""
+    parser = argparse.ArgumentParser(prog="python -m mini.train", description=description)
+    parser.add_argument("--out", type=Path, default=Path("runs/mini-train"))
+    parser.add_argument("--budget", type=float, default=float(os.environ.get("BUDGET", 3600)))
+    parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
+    for name in (
+        "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
+        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings",
+        "fixed_eyes", "pointers",
+    ):  # fmt: skip
+        usual = getattr(Options, name)
+        parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)
+    return suited(Options(**vars(parser.parse_args(arguments))))
+
+
+def suited(options: Options) -> Options:
+    """On a GPU: one rank, many workers and large batches, unless told otherwise."""
+    if options.device.startswith("cuda"):
+        options.ranks = 1
+        options.workers = max(options.workers, (os.cpu_count() or 2) - 2)
+        options.tokens = options.tokens if options.tokens != Options.tokens else 16_000
+    return options
