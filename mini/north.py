@@ -61,7 +61,7 @@ class NorthFinder(nn.Module):
 
     def scores(self, sheets: Tensor) -> Tensor:
         """Evidence for each quarter turn, (B, 4): the highest log-odds of an arrow anywhere."""
-        logits = self(sheets)
+        logits: Tensor = self(sheets)
         return (logits[:, :4] - logits[:, 4:]).flatten(2).amax(dim=2)
 
     @torch.inference_mode()

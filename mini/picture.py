@@ -56,7 +56,8 @@ class Fit:
 
     def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Pixels of the drawing (n, 2) to pixels of the sheet."""
-        return (points - np.array(self.box[:2])) * self.scale + np.array(self.corner)
+        laid: NDArray[np.float64] = (points - np.array(self.box[:2])) * self.scale + np.array(self.corner)
+        return laid
 
 
 def fit(image: Image.Image) -> Fit:
