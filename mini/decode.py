@@ -37,10 +37,7 @@ class Cache:
 
     def _prefill(self, batch: Any) -> None:
         forward, text = self.forward, self.forward.text
-        x = text.embed_tokens(batch.ids)
-        if batch.patches.shape[0]:
-            seen = forward.pictures(batch.patches.to(x.dtype), batch.grids, batch.lengths).reshape(-1, x.shape[-1])
-            x = x.view(-1, x.shape[-1]).index_copy(0, batch.image_index, seen[batch.patch_index]).view(x.shape)
+        x, _ = forward.embedded(batch)
         cos, sin = forward._rope(batch.positions)
         length = x.shape[1]
         mask = torch.full((length, length), float("-inf"), dtype=x.dtype).triu(1)[None, None]

@@ -114,12 +114,16 @@ class Forward:
             found = self.pictures(batch.patches.to(self.dtype), batch.grids, batch.lengths)
         return found.reshape(-1, found.shape[-1])[batch.patch_index]
 
-    def run(self, batch: Batch, places: Tensor | None = None) -> Pass:
-        """The whole way; last states at flat `places` only, (M, hidden), if they are given."""
-        x = self.text.embed_tokens(batch.ids)
-        seen = self.seen(batch)
+    def embedded(self, batch: Batch) -> tuple[Tensor, Tensor]:
+        """What the first layer is given, (B, L, hidden), and the picture tokens in it as `seen` gives them."""
+        x, seen = self.text.embed_tokens(batch.ids), self.seen(batch)
         if len(seen):
             x = x.view(-1, x.shape[-1]).index_copy(0, batch.image_index, seen).view(x.shape)
+        return x, seen
+
+    def run(self, batch: Batch, places: Tensor | None = None) -> Pass:
+        """The whole way; last states at flat `places` only, (M, hidden), if they are given."""
+        x, seen = self.embedded(batch)
         middle, queries, keys = x, None, None
         cos, sin = self._rope(batch.positions)
         mask = torch.full((x.shape[1], x.shape[1]), float("-inf"), device=x.device, dtype=x.dtype).triu(1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 
@@ -58,13 +58,10 @@ def parse(arguments: list[str] | None = None, description: str | None = None) ->
     parser.add_argument("--out", type=Path, default=Path("runs/mini-train"))
     parser.add_argument("--budget", type=float, default=float(os.environ.get("BUDGET", 3600)))
     parser.add_argument("--device", default=os.environ.get("DEVICE", "cpu"))
-    for name in (
-        "call", "seed", "tokens", "workers", "threads", "size", "max_steps", "total_steps", "ranks", "rank",
-        "muon_lr", "adam_lr", "texts", "hold", "start", "save_every", "stage", "eyes", "sentences", "drawings",
-        "fixed_eyes", "pointers",
-    ):  # fmt: skip
-        usual = getattr(Options, name)
-        parser.add_argument(f"--{name.replace('_', '-')}", type=type(usual), default=usual)
+    for field in fields(Options):
+        if field.name not in ("out", "budget", "device"):
+            flag = f"--{field.name.replace('_', '-')}"
+            parser.add_argument(flag, type=type(field.default), default=field.default)
     return suited(Options(**vars(parser.parse_args(arguments))))
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from mini.answers import AREAS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
+from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
 from mini.generator.world import Actor, Crash, Leg
 
@@ -20,7 +20,6 @@ LANES = range(6)
 IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
 POSES = ("before", "contact", "after")
 KINDS_OF_LEG = ("road", "driveway", "ramp")
-CONTROLS = ("none", "signal", "flashing", "stop", "yield")
 CURVES = ("left", "right")
 
 
@@ -118,9 +117,13 @@ def _of_actor(key: str, actor: Actor) -> list[str]:
 
 
 # ------------------------------------------------------------------ answers
-_OF_LEG = {"lanes_in": "lanes", "lanes_out": "lanes", "center_turn_lane": "lanes", "speed_limit_mph": "limit"}
-_OF_ACTOR = {"kind": "kind", "road": "heading", "exit_road": "man", "maneuver": "man", "lane": "lane"}
-_OF_ACTOR |= {"speed_mph": "speed"}
+_OF_LEG = {
+    "lanes_in": "lanes", "lanes_out": "lanes", "center_turn_lane": "lanes", "median": "median",
+    "speed_limit_mph": "limit",
+}  # fmt: skip
+_OF_ACTOR = {
+    "kind": "kind", "road": "heading", "exit_road": "man", "maneuver": "man", "lane": "lane", "speed_mph": "speed",
+}  # fmt: skip
 
 
 def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
@@ -132,7 +135,7 @@ def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
             return path[2], f"leg={bearing}"
         if isinstance(path[2], int) or path[2] == "turns_in":
             return f"turns.{bearing % 4}", f"leg={bearing}"
-        name = _OF_LEG.get(path[2], "median" if path[2] == "median" else "")
+        name = _OF_LEG.get(path[2], "")
         return (f"{name}.{bearing % 4}", f"leg={bearing}") if name else ("", "")
     if path[0] == "actors" and len(path) > 2 and path[1] < len(crash.actors) and key in _OF_ACTOR:
         actor = crash.actors[path[1]].id
