@@ -1,5 +1,5 @@
 # ruff: noqa: E501 - one clause a line
-"""Clauses about motion and contact. {V} {W} {U} mention a vehicle, {Vf} introduces it with year and model.
+"""Clauses about motion before the crash. {V} {W} {U} mention a vehicle, {Vf} introduces it with year and model.
 
 {dir} {xb} heading, {lane} lane, {road} the road with lanes, {appr} what it approaches, {turn} left or right.
 """
@@ -23,6 +23,38 @@ The driver of {Vf} was [traveling|driving|going] {xb} [in the {lane}|on {road}|]
 {Vf} was [proceeding|driving|heading|moving] {dir} [in the {lane}|on {road}]{appr}
 {Vf} [was driven|drove|was operating|traveled] {xb} [on|along] {road}[ in the {lane}|]{appr}
 {Vf} had been traveling {dir} in the {lane}{appr}
+{Vf} was being [driven|operated] {dir} [on|along] {road}[ in the {lane}|]{appr}
+{Vf} was being operated {xb} [in the {lane}|on {road}]{appr}
+{Vf}, operated by [its owner|a lone driver|its only occupant], was [traveling|heading] {dir} [on {road}|in the {lane}]{appr}
+{Vf}, which was [driven by its owner|occupied only by the driver], traveled {dir} in the {lane}[ of {road}|]{appr}
+{Vf}, whose driver was alone, was {xb} [on {road}|in the {lane}]{appr}
+On {road}, {Vf} was [traveling|proceeding|driving] {dir}[ in the {lane}|]{appr}
+In the {lane}[ of {road}|], {Vf} was [traveling|moving|proceeding] {dir}{appr}
+While [traveling|proceeding|driving] {dir}, {Vf} [occupied|was using|was positioned in] the {lane}[ of {road}|]{appr}
+As it [proceeded|traveled|went] {dir} [on|along] {road}, {Vf} was in the {lane}{appr}
+{Vf} [kept to|stayed in|remained in|maintained] the {lane} [as it traveled|while heading] {dir}{appr}
+{Vf} [used|was using] the {lane} of {road} to [travel|go|proceed] {dir}{appr}
+{Vf} was in the {xb} lane[s|] of {road}{appr}
+{Vf} [proceeded|drove|moved|went] {dir} [on|along|down] {road}{appr}
+The driver of {Vf} [proceeded|drove|headed|continued] {dir} [in the {lane}|along {road}]{appr}
+The driver of {Vf} was operating the vehicle {xb} [on {road}|in the {lane}]{appr}
+The operator of {Vf} was [traveling|driving|proceeding] {dir} [on {road}|in the {lane}]{appr}
+{Vf} {xb} [in {lane}|on {road}|on {road}, {lane}]{appr}
+{Vf}, {xb}, was [traveling|driving|proceeding] [in the {lane}|on {road}]{appr}
+{Vf}, [traveling|heading|going] {dir}, [was in|occupied] the {lane}{appr}
+{Vf}, traveling {xb} [on|along] {road}, was in the {lane}{appr}
+[Seconds before the crash|Prior to impact|Before the collision|Shortly before this crash], the driver of {Vf} was [driving|traveling] {dir} [on {road}|in the {lane}]{appr}
+[At the time of the crash|At the time], {Vf} was [moving|proceeding|en route] {dir} [along|on] {road}{appr}
+The {lane} of {road} was occupied by {Vf}, which was traveling {dir}{appr}
+After entering {road}, {Vf} [proceeded|traveled|was heading] {dir}[ in the {lane}|]{appr}
+{Vf} was [on its way|en route] {dir} [in the {lane}|along {road}]{appr}
+{Vf} had been [driving|heading|proceeding] {dir} on {road}[ in the {lane}|]{appr}
+{Vf} [followed|was following] {road}, heading {dir}{appr}
+{Vf} was traveling {dir}; it [was in|occupied] the {lane}[ of {road}|]{appr}
+{Vf} was occupied by [one person|a driver and one passenger|the driver only] and was traveling {dir} [in the {lane}|on {road}]{appr}
+With [only the driver aboard|one passenger aboard|no passengers], {Vf} was {xb} [on {road}|in the {lane}]{appr}
+{Vf} made its way {dir} [along {road}|in the {lane}]{appr}
+{Vf} was [traveling|moving|proceeding] in [a|the] {xb} direction [on {road}|in the {lane}]{appr}
 ~{Vf} was on {road} and [headed|going] {dir}[ in the {lane}|]{appr}
 ~Heading {dir} [on {road}|in the {lane}] was {Vf}{appr}
 ~{Vf} came from the {from} [in the {lane}|on {road}]{appr}
@@ -39,6 +71,26 @@ The driver of {Vf} was stopped {xb} [in the {lane}|]{why}
 {Vf} was stopped in the {lane} of {road}, facing {dir}{why}
 {Vf} had [stopped|come to a stop] [in the {lane}|] [while traveling {dir}|facing {dir}]{why}
 {Vf} was traveling {dir} [in the {lane}|on {road}] and [had stopped|came to a stop|was stopped]{why}
+{Vf} was at a [complete |full |]stop in the {lane} of {road} while {xb}{why}
+The driver of {Vf} had [stopped|brought the vehicle to a stop] [in the {lane}|on {road}], {xb}{why}
+The driver of {Vf}, {xb} [in the {lane}|on {road}], [stopped|had come to a stop|was stopped]{why}
+{Vf} had been brought to a stop in the {lane} [while {xb}|facing {dir}]{why}
+{Vf}, {xb} [in the {lane}|on {road}], [was stopped|had stopped|was at a stop]{why}
+{Vf}, which was {xb} in the {lane}, [stopped|came to a stop|had stopped]{why}
+[Prior to impact|Before the crash|At the time], {Vf} was stopped [in the {lane}|on {road}], facing {dir}{why}
+In the {lane}, {Vf} [was stopped|had stopped] [facing {dir}|while {xb}]{why}
+On {road}, {Vf} was stopped [in the {lane} |]facing {dir}{why}
+{Vf} was [traveling|heading] {dir} [in the {lane} |on {road} |]until it stopped{why}
+{Vf} [traveled|drove|proceeded] {dir} [in the {lane}|on {road}] and then [stopped|came to a stop]{why}
+{Vf} was facing {dir} [in the {lane}|on {road}] and was [stopped|not moving|at a full stop]{why}
+{Vf} occupied the {lane}, {xb}, [and was stopped|where it had stopped]{why}
+{Vf} {xb}, stopped in {lane}{why}
+{Vf} stopped {xb} [in {lane}|on {road}]{why}
+{Vf} had slowed to a stop [in the {lane} |]while [traveling|heading] {dir}{why}
+After traveling {dir} [on {road}|in the {lane}], {Vf} [stopped|had stopped|came to a stop]{why}
+While {xb} [in the {lane}|on {road}], {Vf} [had to stop|stopped|was forced to stop]{why}
+{Vf} remained stopped [in the {xb} lane|on {road} while {xb}]{why}
+The {lane} was occupied by {Vf}, [which was |]stopped facing {dir}{why}
 ~{Vf}, pointed {dir}, stood still [in the {lane}|on {road}]{why}
 ~{Vf} sat [motionless|at rest] in the {lane}, facing {dir}{why}
 """)
@@ -48,27 +100,54 @@ APPROACH_SLOWING = clauses("""
 The driver of {Vf}, {xb}, [applied the brakes|slowed the vehicle]{why}
 {Vf} was traveling {dir} [in the {lane}|on {road}] and was [slowing|decelerating|slowing down|braking]{why}
 {Vf} was {xb} [in the {lane} |]and [began to slow|slowed|was slowing]{why}
+The driver of {Vf} was traveling {dir} [in the {lane}|on {road}] and [began to brake|was braking|began slowing]{why}
+{Vf}, {xb} [in the {lane}|on {road}], [slowed|began to slow|braked|reduced speed]{why}
+While [traveling|heading] {dir} [in the {lane}|on {road}], {Vf} [slowed|braked|decelerated|began to slow down]{why}
+{Vf} was slowing [in the {lane} |]as it [traveled|headed] {dir}{why}
+{Vf} [had begun slowing|was in the process of slowing] while traveling {dir}[ in the {lane}|]{why}
+In the {lane}, {Vf} was [traveling|moving] {dir} and [decreasing its speed|coming to a stop|about to stop]{why}
+{Vf} was [coming to a stop|in the process of stopping] [in the {lane} |]while {xb}{why}
+{Vf} {xb} [in {lane}|on {road}], slowing{why}
+The driver of {Vf} [reduced speed|let the vehicle slow|applied the brakes] while [driving|traveling] {dir}[ in the {lane}|]{why}
+On {road}, {Vf} was {xb} and [slowing|decelerating|braking]{why}
 ~{Vf}, {xb}, was losing speed [in the {lane}|]{why}
 """)
 
 APPROACH_PARKED = clauses("""
 {Vf} was [legally |]parked [on the right side of the road|along the right curb|on the right shoulder][, unoccupied,|] facing {dir}
 {Vf} was parked and unoccupied[ on {road}|], facing {dir}
+{Vf} was facing {dir} and was parked [at the roadside|on the shoulder|in front of a house|beside the road]
+{Vf} was an unoccupied vehicle [legally |]parked facing {dir} on [the right side of the road|the right shoulder|{road}]
+Facing {dir}, {Vf} was [legally parked|parked] [on the right side of {road}|along the right edge of the road|on the street]
+The owner of {Vf} had parked [it|the vehicle] [along the right side of the road|on the right shoulder|in front of a house], facing {dir}
+{Vf}, unoccupied, was parked [{xb}|facing {dir}] [on|along] {road}
+{Vf} [was in|occupied] a parking space on the right side of {road} and faced {dir}
+{Vf} parked unoccupied, facing {dir}[, right curb|]
+There was no one in {Vf}, which was parked facing {dir} [on {road}|along the right curb]
 ~{Vf} had been left at the curb, facing {dir}
 """)
 
 APPROACH_CURVE = clauses("""
 {Vf} was traveling {dir} [in the {lane}|on {road}] and was [negotiating|entering|exiting|rounding] a {curve} curve
 {Vf} was [negotiating|rounding] a curve to the {curve} [while traveling|, heading|, going] {dir} [in the {lane}|on {road}]
+{Vf} was [traveling|heading] {dir} [on {road}|in the {lane}] where the road[way|] [curves|curved] to the {curve}
+While [negotiating|rounding|going around] a {curve} curve, {Vf} was [traveling|heading] {dir}[ in the {lane}|]
+The driver of {Vf} was [negotiating|driving through|going around|steering through] a curve to the {curve}, [traveling {dir}|{xb}][ in the {lane}|]
+{Vf} [entered|was going into|had entered] a {curve} curve while [traveling|heading] {dir}[ on {road}|]
+{Vf}, {xb} in the {lane}, was [following|entering|coming out of] a curve to the {curve}
+A {curve} curve was being negotiated by {Vf}, [which was |]traveling {dir}[ in the {lane}|]
+{Vf} was {xb} and [negotiating|rounding|in the middle of] a [sweeping|sharp|gradual] curve to the {curve}[ on {road}|]
+As the road[way|] curved {curve}, {Vf} was traveling {dir} [in the {lane}|on {road}]
+{Vf} {xb} in {curve} curve[, {lane}|]
 ~{Vf}, {xb}, was in a {curve}-hand bend [of {road}|]
 """)
 
 WHY = {
-    "light": "[for a red light|at a red light|waiting for the light to change|for a red traffic signal|for the traffic signal|~while the signal was red]",
-    "sign": "[at the stop sign|for the stop sign|~before the stop sign]",
-    "traffic": "[for traffic ahead|in traffic|due to stopped traffic|for traffic|because traffic had backed up|for a vehicle ahead|~in a line of cars]",
-    "turn_left": "[waiting to turn left|waiting to make a left turn|preparing to turn left|to make a left turn into a driveway|in order to turn left|~with its left blinker on]",
-    "turn_right": "[waiting to turn right|preparing to turn right|to make a right turn|in order to turn right|~with its right blinker on]",
+    "light": "[for a red light|at a red light|waiting for the light to change|for a red traffic signal|for the traffic signal|due to a red light|for the red signal phase|for the red light ahead|to wait for a green light|for a traffic light|because of a red traffic light|in response to a red signal|for the signal light, which was red|since the traffic light had turned red|as the light changed to red|in obedience to the red signal|for a red traffic control signal|~while the signal was red]",
+    "sign": "[at the stop sign|for the stop sign|at a posted stop sign|as required by the stop sign|in obedience to the stop sign|to obey the stop sign|because of the stop sign|due to a stop sign|in compliance with the stop sign|~before the stop sign]",
+    "traffic": "[for traffic ahead|in traffic|due to stopped traffic|for traffic|because traffic had backed up|for a vehicle ahead|because of congestion ahead|for slower traffic|due to heavy traffic|behind other stopped vehicles|because the traffic in front had stopped|for a stopped vehicle ahead|as traffic came to a halt|in response to traffic ahead|for a non-contact vehicle|due to congestion|because another vehicle had stopped ahead|to avoid a vehicle in front|~in a line of cars]",
+    "turn_left": "[waiting to turn left|waiting to make a left turn|preparing to turn left|to make a left turn into a driveway|in order to turn left|for a left turn|to turn left|so that it could turn left|before turning left|to wait for a gap in order to turn left|as it waited for a gap to turn left|because its driver intended to turn left|in preparation for a left turn|while its driver waited to turn left|to allow oncoming traffic to pass before turning left|~with its left blinker on]",
+    "turn_right": "[waiting to turn right|preparing to turn right|to make a right turn|in order to turn right|for a right turn|to turn right|to turn right into a driveway|before turning right|in preparation for a right turn|because its driver intended to turn right|while its driver waited to turn right|so that it could turn right|~with its right blinker on]",
 }
 
 SAME = clauses("""
@@ -79,6 +158,22 @@ SAME = clauses("""
 {Vf} was {xb} [in the same lane|on the same roadway] [behind|following] {W}
 {Vf} was following {W}[ {dir}| in the {lane}|]
 {Vf} was traveling in the same direction behind {W}
+{Vf} was [traveling|driving|proceeding] {dir}, [following|trailing] {W}
+{Vf} was the [following|trailing|next] vehicle, {xb} behind {W}
+{Vf} traveled {dir} [to the rear of|in back of|directly behind] {W}
+The driver of {Vf} was following {W}[, {xb}| in the {lane}| in the same lane|]
+The driver of {Vf} was [driving|traveling|proceeding] {dir} [directly |]behind {W}
+{Vf}, [also |]{xb}, was [directly |]behind {W}[ in the {lane}|]
+Following {W}, {Vf} was [also |]traveling {dir}[ in the {lane}|]
+{W} was ahead of {Vf}, which was [also |]{xb}[ in the {lane}|]
+{Vf} was [traveling|heading] {dir} in the {lane} with {W} [directly ahead|in front of it|ahead of it]
+{W} preceded {Vf} [in the {lane}|on the same road|in the same lane]
+{Vf}, which was following {W}, was traveling {dir}[ in the {lane}|]
+{Vf} and {W} were both {xb} [in the same lane|on the same road|in the {lane}], with {W} in [front|the lead]
+{Vf} had been following {W} [in the {lane}|for some distance|on the same road]
+{Vf} {xb} [in {lane} |]behind {W}
+{Vf} shared the {lane} with {W} and was [behind|following] it
+{Vf} was traveling {dir} [a short distance|a few car lengths|several meters|closely] behind {W}
 ~{Vf} came up from behind {W}[ in the same lane|]
 ~Behind {W} was {Vf}[, also {xb}|]
 """)
@@ -88,141 +183,25 @@ AHEAD = clauses("""
 Ahead of {W}, {Vf} was traveling {dir}
 {Vf} was [also |]{xb} [in the same lane|on the same roadway] [directly |]ahead of {W}
 {Vf} was traveling {dir} ahead of {W}[ in the {lane}|]
+{Vf} was [traveling|driving|proceeding] {dir} [in front of|directly ahead of] {W}
+{Vf} led {W} [in the {lane}|in the same lane|on the same road]
+{Vf} was being followed by {W} [in the {lane}|as both traveled {dir}]
+{W} was behind {Vf}, which was [also |]traveling {dir}[ in the {lane}|]
+{Vf} was the vehicle [ahead of|in front of] {W}, [also |]{xb}
+{Vf}, [also |]{xb}, was [in front of|directly ahead of|ahead of] {W}[ in the {lane}|]
+The driver of {Vf} was [driving|traveling] {dir} [in the {lane} |]ahead of {W}
+{Vf} was in the {lane} [ahead of|in front of] {W}, traveling {dir}
+{Vf} preceded {W} [in the {lane}|on the same road], {xb}
+{Vf} {xb}[ in {lane}|], ahead of {W}
+{Vf}, which was [in front of|ahead of] {W}, was traveling {dir}[ in the {lane}|]
+{Vf} and {W} were [traveling|heading] {dir}, {W} [following|trailing|to the rear]
+{Vf} had {W} [behind it|to its rear] as it traveled {dir}
 ~In front of {W} was {Vf}[, also {xb}|]
 """)
 
 INTENT = {
-    "straight": "[intending to go straight|intending on going straight|intending to travel straight through|going straight|~meaning to continue straight]",
-    "turn_left": "[intending to turn left|intending on turning left|attempting to make a left turn|about to turn left|~meaning to go left]",
-    "turn_right": "[intending to turn right|intending on turning right|attempting a right turn|about to turn right|~meaning to go right]",
-    "u_turn": "[intending to make a U-turn|~wanting to turn around]",
-}
-
-CRITICAL = {
-    "crossing": clauses("""
-{V} did not stop [for the stop sign|for the signal|] and entered the intersection
-{V} drove straight into the intersection [as {W} was crossing|in front of {W}|]
-The driver of {V} thought the way was clear and [started|continued|proceeded] across
-{V} [started|attempted] to cross the [road|roadway|street|intersection]
-{V} entered the intersection and the driver of {W} did not have time to stop
-[Both vehicles|{V} and {W}] entered the intersection [at the same time|at approximately the same time|]
-{V} entered the intersection [and failed to yield to {W}|against the red light|without stopping|]
-The driver of {V} [failed to stop at the stop sign|proceeded through the intersection|ran the red light|attempted to cross the intersection]
-{V} [proceeded|started] into the intersection [in front of|into the path of] {W}
-As {V} was crossing the intersection, {W} [also entered|entered the intersection]
-~{V} pulled across the [path|lane] of {W}
-~{V} drove through the intersection and {W} could not stop
-"""),
-    "left_opposite": clauses("""
-{V} was making a left turn when {W} [entered the intersection|came from the other direction|approached]
-The driver of {V} thought there was enough time and turned left
-{V} turned left [at the intersection|at the green light|on a green signal] [in front of|across the lane of] {W}, which was [going straight|approaching from the opposite direction]
-{W} was coming from the opposite direction as {V} turned left
-In the middle of the left turn, {V} was in the lane of {W}
-{V} attempted to turn left [at the intersection|in front of {W}|across the path of {W}|]
-The driver of {V} [attempted|began] to [make a left turn|turn left] [at the intersection |]and failed to yield to {W}
-As {W} was going straight, {V} turned left across its path
-{V} [began|started|initiated] a left turn [in front of|across the path of|and entered the path of] {W}
-{V} turned left in front of {W}
-~{V} swung left [into the way|in front] of the oncoming {W0}
-~Making a left, {V} cut off {W}
-"""),
-    "turn_left": clauses("""
-{V} was making a left turn when {W} approached
-{V} pulled [out|away] from the stop and turned left
-The driver of {V} entered the road to go left and did not see {W}
-{V} started out, turning left in front of {W}
-{V} [attempted|began|started] to [turn left|make a left turn] [onto the {axis2} road[way|]|at the intersection|]
-{V} pulled out [of the driveway |]to turn left [in front of|into the path of] {W}
-The driver of {V} attempted to turn left [and|but] failed to yield to {W}
-{V} [entered the roadway|entered the intersection], turning left, [into|across] the path of {W}
-{V} turned left in front of {W}
-~{V} nosed out to go left and got in the way of {W}
-~Making a left, {V} cut off {W}
-"""),
-    "turn_right": clauses("""
-{V} was making a right turn when {W} approached
-{V} pulled [out|away] and turned right
-The driver of {V} turned right without seeing {W}
-{V} [attempted|began|started] to [turn right|make a right turn] [onto the {axis2} road[way|]|at the intersection|]
-{V} pulled out [of the driveway |]to turn right [in front of|into the path of] {W}
-{V} turned right [in front of|into the path of] {W}
-~Making a right, {V} cut off {W}
-~{V} nosed out to go right and got in the way of {W}
-"""),
-    "rear_end": clauses("""
-{V} approached {W} from the rear
-The driver of {V} looked [away|down|to the {anyside}] and did not [see|notice] that {W} had stopped
-Traffic slowed and {V} was following too closely
-{V} was going too fast to stop behind {W}
-The driver of {V} braked but could not avoid {W}
-The driver of {V} [did not see|failed to notice] {W} [stopped|slowing] ahead
-{V} [did not slow|was unable to stop in time|failed to stop|could not stop]
-{W} [slowed|was stopped] and {V} [did not|failed to slow]
-~{V} did not brake soon enough
-"""),
-    "head_on": clauses("""
-{V} [left|departed] its lane to the left and entered the opposing lane
-{V} went left over the center line and was in the lane of {W}
-The driver of {V} fell asleep and [crossed the center line|crossed into opposing traffic]
-{V} slid across the center line [toward|in front of] {W}
-{V} [crossed|crossed over|drifted across|went over] the [centerline|center line|double yellow line][ into the {opp} lane| and entered the {opp} lane|]
-For an unknown reason, {V} [drifted|veered] to the left [and into|into] the {opp} lane
-The driver of {V} lost control [on the {surf0} road |]and [crossed the centerline|entered the {opp} lane|drove left-of-center]
-{V} traveled left of center into the path of {W}
-~{V} strayed over the middle of the road toward {W}
-~{V} wandered into oncoming traffic
-"""),
-    "lane_change": clauses("""
-{V} [merged|shifted|steered] into the {turn} lane
-The driver of {V} was changing lanes [to the {turn}|from one lane to the {turn} lane] and did not check the mirror
-{V} steered {turn} into the lane that {W} occupied
-{V} [attempted to change|changed|began to change] lanes to the {turn}
-{V} moved [to the {turn}|into the {turn} lane|{turn} into the lane of {W}]
-The driver of {V} did not see {W} and [changed lanes|moved over] to the {turn}
-~{V} slid over to the {turn}[, where {W} was|]
-"""),
-    "departure": clauses("""
-{V} drove off the {turn} road edge
-{V} traveled off the {turn} edge of the road[way|]
-The vehicle steered {turn} and [departed|left] the road[way|][ on the {turn} side|]
-{V} failed to [follow|negotiate] the road and went off to the {turn}
-{V} [departed|ran off|went off|drifted off] the {turn} side of the road[way|]
-The driver of {V} lost control and [departed|ran off|left] the road[way|] [to|on] the {turn}[ side|]
-{V} drifted to the {turn} and [departed|left] the road[way|]
-~{V} left the pavement on the {turn}
-"""),
-    "pedestrian": clauses("""
-{W} was crossing the road[way|] [in front of {V}|from the {side0}|]
-{W} entered the road[way|] [from the {side0}|] [into the path|in front] of {V}
-~{W} stepped out ahead of {V}
-"""),
-    "parked": clauses("""
-{V} [drifted to the right|failed to notice the parked vehicle|moved to the right]
-~{V} came too close to the curb
-"""),
-    "u_turn": clauses("""
-{V} was [making|starting] a U-turn when {W} approached
-{V} [attempted|began|started] [to make a|a] U-turn [in front of {W}|]
-The driver of {V} made a U-turn [into|across] the path of {W}
-~{V} tried to turn around in front of {W}
-"""),
-    "backing": clauses("""
-{V} was in reverse [and entered the road|leaving a driveway]
-The driver of {V} backed up and did not see {W}
-{V} [was backing|backed] out of [the|a] driveway [into|in] the path of {W}
-{V} was backing [onto the road[way|]|from a driveway]
-~{V} reversed into the [road|street] ahead of {W}
-"""),
-    "merge": clauses("""
-{V} was entering from the ramp and moved into the lane of {W}
-The driver of {V} was merging and did not see {W}
-{V} [attempted to merge|merged|was merging] [into traffic|onto the highway|into the lane of {W}|from the ramp]
-~{V} tried to squeeze in from the ramp
-"""),
-    "overtaking": clauses("""
-{V} attempted to [pass|overtake] [another vehicle|a slower vehicle|on the left][ and entered the {opp} lane|]
-{V} was passing [on the left|a slower vehicle] in the {opp} lane
-~{V} pulled out to get around a slow vehicle
-"""),
+    "straight": "[intending to go straight|intending on going straight|intending to travel straight through|going straight|planning to go straight|in order to go straight through|with the intention of going straight|proceeding straight ahead|intending to drive straight across|about to go straight through|expecting to pass straight through|to go straight|continuing straight ahead|with no intention of turning|~meaning to continue straight]",
+    "turn_left": "[intending to turn left|intending on turning left|attempting to make a left turn|about to turn left|planning to turn left|in order to make a left turn|with the intention of turning left|preparing for a left turn|to make a left|getting ready to turn left|intending a left turn|where its driver planned to turn left|to turn left|~meaning to go left]",
+    "turn_right": "[intending to turn right|intending on turning right|attempting a right turn|about to turn right|planning to turn right|in order to make a right turn|with the intention of turning right|preparing for a right turn|to make a right|getting ready to turn right|intending a right turn|where its driver planned to turn right|to turn right|~meaning to go right]",
+    "u_turn": "[intending to make a U-turn|planning a U-turn|about to make a U-turn|attempting a U-turn|in order to make a U-turn|~wanting to turn around]",
 }

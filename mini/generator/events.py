@@ -5,13 +5,17 @@ A part of the writer.
 
 from __future__ import annotations
 
+import re
 from random import Random
 from typing import Any
 
 from mini.generator import clauses_contact as told
-from mini.generator import clauses_motion as motion
+from mini.generator.clauses_critical import CRITICAL
 from mini.generator.grammar import Told, choose, clauses, families
 from mini.generator.world import Contact, Crash
+
+_STATE = re.compile(r"\{W\}[^{.]*?\b(stopped|slow)")
+"""A clause that says of the other vehicle that it had stopped or was slowing."""
 
 
 class EventsMixin:
@@ -35,7 +39,10 @@ class EventsMixin:
         first = self.crash.contacts[0]
         if self.crash.config in ("crossing", "rear_end", "pedestrian", "parked"):
             return first.striker, first.struck
-        found = next((i for i, a in enumerate(actors) if a.maneuver not in plain), first.striker)
+        if self.crash.config == "overtaking":
+            found = next((i for i, a in enumerate(actors) if a.maneuver == "overtaking"), first.striker)
+        else:
+            found = next((i for i, a in enumerate(actors) if a.maneuver not in plain), first.striker)
         return found, first.struck if found == first.striker else first.striker
 
     def events(self) -> list[str]:
@@ -50,14 +57,22 @@ class EventsMixin:
                 f"exit.{self.id_of(v)}",
                 *({f"man.{self.id_of(w)}"} if config in ("crossing", "head_on") else ()),
             }
-            out.append(self.say(motion.CRITICAL[key], v, w, turn=self._turn(v)))
+            out.append(self.say(self._true_of(w, CRITICAL[key]), v, w, turn=self._turn(v)))
         if rng.random() < (0.12 if self.ciren else 0.4):
-            out.append(self.say(told.AVOID, v, w))
+            alone = not self.id_of(w).startswith("V")
+            out.append(self.say([c for c in told.AVOID if not alone or "{W}" not in c], v, w))
         for number, contact in enumerate(self.crash.contacts):
             out.append(self._impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
         return out + [self.say(told.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+
+    def _true_of(self, index: int, options: list[str]) -> list[str]:
+        """Clauses that say of the other vehicle only what it does: that it slowed, that it had stopped."""
+        does = {"stopped": "stopped", "slowing": "slow"}.get(self.crash.actors[index].maneuver)
+        chosen = [choose(self.rng, c) for c in options]
+        true = [c for c in chosen if (found := _STATE.search(c)) is None or found[1] == does]
+        return true if any(c.startswith("~") == self.held_out for c in true) else options
 
     def _turn(self, index: int) -> str:
         maneuver = self.crash.actors[index].maneuver
@@ -80,7 +95,19 @@ class EventsMixin:
         sides = ("left", "right", "left", "right") if options is told.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area)
         ta = contact.struck_area if sides else self._area(contact.struck_area)
-        return self.say(options, contact.striker, contact.struck, sa=sa, ta=ta)
+        return self.say(self._framed(options), contact.striker, contact.struck, sa=sa, ta=ta)
+
+    def _framed(self, options: list[str]) -> list[str]:
+        """Now and then with a few words before or behind every clause."""
+        if self.held_out:
+            return options
+        lead = f"{self.rng.choice(told.LEADS)}, " if self.rng.random() < 0.15 else ""
+        tail = self.rng.choice(told.TAILS) if self.rng.random() < 0.12 else ""
+        if not lead:
+            return [clause + tail for clause in options]
+        return [
+            f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith(("~", "["))
+        ]
 
     def _area(self, area: str) -> str:
         return choose(self.rng, self.rng.choice(families(_split_top(told.AREA[area]), self.held_out)))

@@ -16,6 +16,11 @@ SLOTS = re.compile(r"\{(\w+)\}")
 Fill = Callable[[str], str]
 
 
+_NUMBERED = re.compile(r"\bthe (lane (?:one|two|three|four|five|\d)\b)")
+_ARTICLE = re.compile(r"\b([Aa]) (?=(?:[aeioAEIO]|8|11\b|18\b|un(?!i))(?!ne\b|nce|eu))")
+"""`a` before a vowel, which fillings and choices bring together; not before "one" or "unit"."""
+
+
 def clauses(text: str) -> list[str]:
     """One clause a line; blank lines and `#` lines are passed over."""
     return [line.strip() for line in text.strip().splitlines() if line.strip() and not line.startswith("#")]
@@ -42,8 +47,9 @@ def fill(clause: str, slot: Fill) -> str:
     text = SLOTS.sub(lambda m: slot(m[1]), clause)
     text = re.sub(r" +", " ", text)
     text = re.sub(r" ([,.;])", r"\1", text)
-    text = re.sub(r",+(?=[,.;])", "", text)
-    return text.strip()
+    text = re.sub(r",+(?=[,.;:])", "", text)
+    text = _NUMBERED.sub(r"\1", text)
+    return _ARTICLE.sub(r"\1n ", text).strip()
 
 
 MARK = 0xE000
@@ -94,6 +100,6 @@ def unmark(text: str) -> tuple[str, list[tuple[int, int]]]:
 
 def sentence(text: str) -> str:
     """First letter large, one full stop at the end."""
-    text = text.strip()
+    text = text.strip().rstrip(",")
     text = text[:1].upper() + text[1:]
     return text if text.endswith((".", "!", "?")) else text + "."

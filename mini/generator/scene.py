@@ -124,6 +124,7 @@ class SceneMixin:
         """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure."""
         rng = self.rng
         even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
+        plain = not any(side.turns_in for side in legs) and not leg.twltl and leg.lanes_in * leg.lanes_out
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
         other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
         total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
@@ -135,6 +136,8 @@ class SceneMixin:
         if leg.lanes_in * leg.lanes_out == 0:
             return f"a {n}, one-way {word}" if rng.random() < 0.5 else f"a one-way, {n} {word}", True
         divided = MEDIAN_WORDS.get(leg.median, "")
+        if plain and not self.held_out and rng.random() < 0.3:
+            return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
         if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35:
             text = f"a {rng.choice(('two-way ', 'divided ', '') if divided else ('two-way ', 'undivided ', ''))}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction"
             return text + (f" {divided}" if divided else ""), True
@@ -153,6 +156,25 @@ class SceneMixin:
         elif leg.twltl and rng.random() < 0.5:
             text += " with a center turn lane"
         return text, told
+
+    def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
+        """`a road with two northbound lanes and one southbound lane` and the like."""
+        rng, kind = self.rng, self.rng.choice(("two-way ", "", "undivided " if leg.median == "none" else "divided "))
+        if even and rng.random() < 0.6:
+            each = words.NUMBERS[leg.lanes_in] + (" lane" if leg.lanes_in == 1 else " lanes")
+            way = rng.choice(("in each direction", "each way", "for each direction", "per direction"))
+            return rng.choice(
+                (
+                    f"a {kind}{word} with {each} {way}",
+                    f"a {kind}{word} that had {each} {way}",
+                    f"a {kind}{word} consisting of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
+                    f"a {kind}{word} of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
+                )
+            )
+        sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
+        rng.shuffle(sides)
+        lanes = [f"{words.NUMBERS[n]} {xb} lane{'s' * (n > 1)}" for n, xb in sides]
+        return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
@@ -217,6 +239,8 @@ class SceneMixin:
             out.append(self.say(scene.ROAD, main))
         if self.crash.layout in ("four", "t") and rng.random() < 0.4:
             out.append(self.say(scene.ROAD2, main))
+        if not self.held_out and rng.random() < 0.3:
+            out += self._each_way()
         curved = self._leg_of(main).curve != "none"
         if curved and rng.random() < 0.7:
             out.append(self.say(scene.CURVE, main))
@@ -224,6 +248,22 @@ class SceneMixin:
             out.append(self._access())
         rng.shuffle(out)
         return out
+
+    def _each_way(self) -> list[str]:
+        """What lanes either direction of a road has."""
+        rng = self.rng
+        axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
+        legs = self._legs_on(axis)
+        if not self.roads_left or not legs[0].lanes_in * legs[0].lanes_out:
+            return []
+        back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
+        one, other = rng.sample((legs[0], back), 2)
+        ab, bb = (words.bound(rng, leg.bearing + 4) for leg in (one, other))
+        self.told |= {f"lanes.{axis}", f"turns.{axis}"}
+        self.stated.add(f"lanes.{axis}")
+        lists = {"alist": words.lane_phrase(rng, one), "blist": words.lane_phrase(rng, other)}
+        capital = ab[:1].upper() + ab[1:]
+        return [self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)]
 
     def _access(self) -> str:
         access = self.crash.accesses[0]

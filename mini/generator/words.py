@@ -16,6 +16,8 @@ def direction(rng: Random, bearing: int, held_out: bool) -> str:
     """`north`, `in a northerly direction`, ..."""
     word = WORDS[bearing % 8]
     forms = [word] * 6 + [f"in a {word}erly direction", f"{word}bound"]
+    if not held_out:
+        forms += [f"in the {word} direction", f"to the {word}", f"in a {word}ward direction", f"due {word}"]
     return rng.choice([*forms, f"toward the {word}"] if held_out else forms)
 
 
@@ -122,6 +124,10 @@ def junction(rng: Random, crash: Crash) -> str:
                 "four-legged intersection",
                 "4-leg intersection",
                 "four leg intersection",
+                "4 way intersection",
+                "4 leg intersection",
+                "cross intersection",
+                "crossing of two roads",
             )
         )
     return "a " + rng.choice(
@@ -136,6 +142,12 @@ def junction(rng: Random, crash: Crash) -> str:
             "three-way intersection",
             "three-legged intersection",
             "type T intersection",
+            "3-leg intersection",
+            "3-way intersection",
+            "three leg intersection",
+            "T-type intersection",
+            "T-shaped intersection",
+            "T junction",
         )
     )
 
@@ -174,6 +186,26 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
         )
     parts += [f"one {xb} right-turn lane"] * bool(right)
     return ", ".join(parts)
+
+
+def lane_phrase(rng: Random, leg: Leg) -> str:
+    """`two through lanes and a left-turn lane`, `three lanes, one of them for right turns`, `a single lane`."""
+    if not leg.lanes_in:
+        return "no lanes"
+    uses = [use for use in ("left", "right") if use in leg.turns_in]
+    plain = leg.lanes_in - len(uses)
+    number = rng.choice((NUMBERS[leg.lanes_in], NUMBERS[leg.lanes_in], str(leg.lanes_in)))
+    if not uses:
+        return rng.choice((f"{number} lane", "one lane", "a single lane") if plain == 1 else (f"{number} lanes",) * 3)
+    through = f"{NUMBERS[plain]} through lane{'s' * (plain > 1)}"
+    if not plain or rng.random() < 0.2:
+        return f"{number} lane{'s' * (leg.lanes_in > 1)}, one of them for " + " and one for ".join(
+            f"{u} turns" for u in uses
+        )
+    parts = [f"a {use}{rng.choice((' ', '-'))}turn lane" for use in uses]
+    parts.insert(rng.choice((0, len(parts))), through)
+    listed = ", ".join(parts[:-1]) + f" and {parts[-1]}"
+    return f"{number} lanes, {listed}" if rng.random() < 0.25 else listed
 
 
 def person(rng: Random) -> dict[str, str]:

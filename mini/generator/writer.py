@@ -251,7 +251,7 @@ class Writer(SceneMixin, EventsMixin):
             return self.say(options, index, ahead, why=self._why(actor.purpose))
         order = self._behind(index, ahead)
         if order is not None and self.rng.random() < 0.6:
-            self.told |= {f"heading.{actor.id}", f"man.{actor.id}"}
+            self.told |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
             return self.say(motion.SAME if order else motion.AHEAD, index, ahead)
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
             self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
