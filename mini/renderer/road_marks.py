@@ -6,6 +6,7 @@ import math
 from random import Random
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFilter
 
 from mini.generator.world import Crash
@@ -22,9 +23,8 @@ TURN_STEPS = {
 }
 
 
-def outline(area: Image.Image, width: int) -> Image.Image:
-    """The ring of `width` pixels around a mask (shifts of an array: far faster than a rank filter)."""
-    inside = np.asarray(area) > 0
+def grow(inside: NDArray[np.bool_], width: int) -> NDArray[np.bool_]:
+    """A mask with `width` pixels more on every side (shifts of an array: far faster than a rank filter)."""
     grown = inside
     for _ in range(width):
         wider = grown.copy()
@@ -33,7 +33,13 @@ def outline(area: Image.Image, width: int) -> Image.Image:
         wider[:, 1:] |= grown[:, :-1]
         wider[:, :-1] |= grown[:, 1:]
         grown = wider
-    return Image.fromarray((grown & ~inside).astype(np.uint8) * 255)
+    return grown
+
+
+def outline(area: Image.Image, width: int, away: int = 0) -> Image.Image:
+    """The ring of `width` pixels around a mask, `away` pixels from it."""
+    inside = grow(np.asarray(area) > 0, away)
+    return Image.fromarray((grow(inside, width) & ~inside).astype(np.uint8) * 255)
 
 
 class RoadMarks:
@@ -46,8 +52,14 @@ class RoadMarks:
         self.dash = rng.uniform(2.0, 4.0)
         self.gap = rng.uniform(2.0, 5.0)
         self.corner = rng.uniform(1.5, 5.5)
-        self.shoulders = rng.choice((0, 0, 1, 1, 2)) if ground.plain else rng.choice((0, 0, 0, 1))
-        self.center = rng.choice(("double", "double", "dashed", "solid", "solid_dashed"))
+        self.shoulders = rng.choices((0, 1, 2, 3), (25, 35, 30, 10) if ground.plain else (65, 25, 10, 0))[0]
+        self.curb = (
+            0 if ground.plain or self.shoulders or rng.random() > 0.2 else round(rng.uniform(0.5, 2.5) * pen.scale)
+        )
+        """Pixels between the edges of a junction and a second line around it; 0: none."""
+        narrow = all(leg.lanes_in <= 1 for leg in crash.legs)
+        odds = (50, 20, 15, 15) if narrow else (10, 50, 25, 15)
+        self.center = rng.choices(("dashed", "double", "solid", "solid_dashed"), odds)[0]
 
     def draw(self, arrows: bool, signs: bool) -> None:
         """Everything, edges first."""
@@ -74,6 +86,8 @@ class RoadMarks:
         if not self.ground.plain:
             area = area.filter(ImageFilter.BoxBlur(radius)).point(lambda v: 255 if v > 128 else 0)
         pen.image.paste((0, 0, 0), (0, 0), outline(area, self.edge))
+        if self.curb:
+            pen.image.paste((0, 0, 0), (0, 0), outline(area, self.mark, self.edge + self.curb))
         for band in bands:
             if band.length < 500:
                 self._cut(band)
@@ -97,8 +111,9 @@ class RoadMarks:
 
     def _shoulders(self, bands: list[Band]) -> None:
         """Lines beside the travel lanes: paved and gravel shoulders, as most investigators draw them."""
-        places = [self.rng.uniform(0.8, 3.2)]
-        places += [places[0] + self.rng.uniform(0.8, 3.0)] * (self.shoulders - 1)
+        places = [self.rng.uniform(0.5, 3.2)]
+        for _ in range(self.shoulders - 1):
+            places.append(places[-1] + self.rng.uniform(0.5, 3.0))
         for band in bands:
             s = np.arange(self.ground.setback(band.leg.bearing, self.corner + 1.5), band.length, 1.0)
             if len(s) < 3 or band.leg.kind != "road":
