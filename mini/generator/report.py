@@ -14,6 +14,7 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
+from mini.generator.roads import carriageway
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash
 from mini.generator.writer import Writer
@@ -21,6 +22,7 @@ from mini.generator.writer import Writer
 MODES = {"both": 42.0, "image": 25.0, "text": 17.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
 TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
 Json = dict[str, Any]
+Sentences = list[tuple[int, frozenset[str]]]
 
 
 @dataclass
@@ -37,7 +39,7 @@ class Report:
     targets: Targets | None
     told: set[str]
     drawn: set[str] = field(default_factory=set)
-    sentences: list[tuple[int, frozenset[str]]] = field(default_factory=list)
+    sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
 
     def weight(self, path: tuple[Any, ...]) -> float:
@@ -58,6 +60,8 @@ def make_report(
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())
+    if mode in ("both", "image") and rng.random() < 0.4 and (half := carriageway(crash)) is not None:
+        crash, sentences = half, _without_road(half, sentences)
     drawn = drawn_facts(crash, control, arrows, access)
     if mode in ("image", "none"):
         narrative, sentences = "", []
@@ -79,6 +83,12 @@ def make_report(
         drawn,
         sentences,
     )
+
+
+def _without_road(crash: Crash, sentences: Sentences) -> Sentences:
+    """Sentences that tell of both carriageways where a drawing shows the one that matters: the drawing is believed."""
+    untrue = {f"{key}.{leg.bearing % 4}" for key in ("lanes", "median") for leg in crash.legs}
+    return [(end, facts - untrue) for end, facts in sentences]
 
 
 def _prior(crash: Crash, rng: Random) -> Targets:

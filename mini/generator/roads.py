@@ -5,9 +5,10 @@ Makes the legs only; who drives on them is `crash`'s business.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 
-from mini.generator.world import Access, Leg, pick
+from mini.generator.world import Access, Crash, Leg, pick
 
 LIMITS = {
     "rural": (35, 40, 45, 45, 50, 55, 55, 55),
@@ -154,3 +155,19 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
             rng.choice(("driveway", "driveway", "road")),
         )
     ]
+
+
+def carriageway(crash: Crash) -> Crash | None:
+    """The crash on the one carriageway of a divided road that matters; None where both do, or none is divided."""
+    found = next((i for i, leg in enumerate(crash.legs) if leg.bearing == crash.actors[0].leg), None)
+    if crash.layout != "plain" or crash.accesses or len(crash.legs) != 2 or found is None:
+        return None
+    here, there = crash.legs[found], crash.legs[1 - found]
+    stays = all(a.leg == here.bearing and a.maneuver not in ("crossing_centerline", "u_turn") for a in crash.actors)
+    if here.median not in ("grass", "barrier") or not stays or not here.lanes_in:
+        return None
+    legs = [
+        replace(here, lanes_out=0, median="none", twltl=False),
+        replace(there, lanes_in=0, turns_in=[], lanes_out=max(there.lanes_out, 1), median="none", twltl=False),
+    ]
+    return replace(crash, legs=legs if found == 0 else legs[::-1], one_way=True)

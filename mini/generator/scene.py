@@ -128,6 +128,9 @@ class SceneMixin:
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
         other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
         total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
+        extra = sum(use in ("left", "right") for use in leg.turns_in)
+        if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
+            total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
         kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
         word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(

@@ -187,3 +187,20 @@ def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
         assert (f"V{found[1]}", f"V{found[2]}") in pairs
         told += 1
     assert told > 1
+
+
+def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:
+    found = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.1, modes={"both": 1.0})
+        if not report.crash.one_way or "divided" not in report.narrative or len(report.road["legs"]) != 2:
+            continue
+        ways = [(leg["lanes_in"], leg["lanes_out"], leg["median"]) for leg in report.road["legs"]]
+        axes = {f"lanes.{leg.bearing % 4}" for leg in report.crash.legs}
+        if axes & report.told:  # a road that was one-way from the first
+            continue
+        found += 1
+        assert sorted(bool(into) for into, _, _ in ways) == [False, True]
+        assert all(median == "none" for _, _, median in ways)
+        assert axes <= report.drawn
+    assert found > 5
