@@ -14,13 +14,16 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
-from mini.generator.roads import carriageway
+from mini.generator.roads import carriageway, misdrawn
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash
 from mini.generator.writer import Writer
 
 MODES = {"both": 42.0, "image": 25.0, "text": 17.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
 TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
+CARELESS = 0.15
+"""Share of drawings beside a narrative whose lanes are wrong: where both tell lanes, the narrative is to be believed,
+since real drawings differ from made ones and are misread more often than words are."""
 Json = dict[str, Any]
 Sentences = list[tuple[int, frozenset[str]]]
 
@@ -41,6 +44,8 @@ class Report:
     drawn: set[str] = field(default_factory=set)
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
+    shown: Crash | None = None
+    """What the drawing shows, where that is not the crash itself."""
 
     def weight(self, path: tuple[Any, ...]) -> float:
         """Weight of a value in the loss."""
@@ -60,9 +65,13 @@ def make_report(
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())
-    if mode in ("both", "image") and rng.random() < 0.4 and (half := carriageway(crash)) is not None:
+    half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
+    if half is not None:
         crash, sentences = half, _without_road(half, sentences)
-    drawn = drawn_facts(crash, control, arrows, access)
+    drawn, shown = drawn_facts(crash, control, arrows, access), None
+    if mode == "both" and not held_out and half is None and rng.random() < CARELESS:
+        shown = misdrawn(rng, crash)
+        drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
         narrative, sentences = "", []
     told = {fact for _, facts in sentences for fact in facts if not fact.startswith(HINT)}
@@ -82,6 +91,7 @@ def make_report(
         told,
         drawn,
         sentences,
+        shown,
     )
 
 

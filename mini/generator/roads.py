@@ -171,3 +171,14 @@ def carriageway(crash: Crash) -> Crash | None:
         replace(there, lanes_in=0, turns_in=[], lanes_out=max(there.lanes_out, 1), median="none", twltl=False),
     ]
     return replace(crash, legs=legs if found == 0 else legs[::-1], one_way=True)
+
+
+def misdrawn(rng: Random, crash: Crash) -> Crash:
+    """The crash as a careless hand draws it: other numbers of lanes, no turn lanes, no medians."""
+    lanes = {bearing % 4: (rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for bearing in range(4)}
+    legs = []
+    for leg in crash.legs:
+        one, other = lanes[leg.bearing % 4][:: 1 if leg.bearing < 4 else -1]
+        into, away = one if leg.lanes_in else 0, other if leg.lanes_out else 0
+        legs.append(replace(leg, lanes_in=into, lanes_out=away, turns_in=[], twltl=False, median="none"))
+    return replace(crash, legs=legs)

@@ -49,7 +49,7 @@ def draw_report(report: Report) -> Image.Image:
 def draw_labeled(report: Report) -> Drawing:
     """The drawing of a report with its labels."""
     rng = Random(report.seed * 7 + 3)
-    crash = report.crash
+    crash = report.shown or report.crash
     pen, ground = _sheet(rng, crash)
     tracks = Stage(rng, crash, ground, rng.uniform(1.0, 1.45)).tracks()
     _aim(rng, pen, tracks)

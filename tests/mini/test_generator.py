@@ -204,3 +204,17 @@ def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:
         assert all(median == "none" for _, _, median in ways)
         assert axes <= report.drawn
     assert found > 5
+
+
+def test_words_are_believed_where_a_drawing_is_careless() -> None:
+    careless = [r for r in (make_report(s, length=0.1, modes={"both": 1.0}) for s in range(300)) if r.shown]
+    assert 20 < len(careless) < 80
+    for report in careless:
+        assert report.shown is not None
+        assert [leg.bearing for leg in report.shown.legs] == [leg.bearing for leg in report.crash.legs]
+        assert not any(fact.startswith(("lanes.", "turns.", "median.")) for fact in report.drawn)
+        for leg, drawn, told in zip(report.crash.legs, report.shown.legs, report.road["legs"], strict=True):
+            assert bool(leg.lanes_in) == bool(drawn.lanes_in)
+            assert bool(leg.lanes_out) == bool(drawn.lanes_out)
+            assert (told["lanes_in"], told["lanes_out"]) == (leg.lanes_in, leg.lanes_out)
+    assert not any(make_report(s, held_out=True, modes={"both": 1.0}).shown for s in range(100))
