@@ -118,7 +118,9 @@ class SceneMixin:
         self.stated.add(key)
         text, told = self._lanes_text(leg, legs)
         self.told |= {key, f"median.{axis % 4}"} if told else set()
-        return text if bare or text.startswith("a ") else "a " + text
+        if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
+            return text if bare or text.startswith("a ") else "a " + text
+        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {text.removeprefix('a ')}"
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
         """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure."""
