@@ -13,16 +13,17 @@ from torch.nn import functional as F
 class Batch:
     """Padded rows.
 
-    ids (B, L); positions (3, B, L); patches (N, P, 5 * 14 * 14), grids (N, P, 2) row and column of each patch, lengths
-    (N,) real patches; image_index flat places of picture tokens, patch_index which tokens stand there; picks (M,) flat
-    places before a value, wanted (M,) its token, weights (M,); ends (S,) flat places of sentence ends, told (S, T) what
-    those sentences tell; drawn (sum of picture tokens, D) what each of `patch_index` shows; pointing (Q,) flat
-    places before a value that some source tells, sources (Q, L) where in its row.
+    ids (B, L); positions (3, B, L); sheets (n, 3, H, W) of bytes for every shape of drawing, N drawings in all; grids
+    (N, P, 2) row and column of each patch, lengths (N,) real patches; image_index flat places of picture tokens,
+    patch_index which tokens stand there; picks (M,) flat places before a value, wanted (M,) its token, weights (M,);
+    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; drawn (sum of picture tokens, D) what
+    each of `patch_index` shows; pointing (Q,) flat places before a value that some source tells, sources (Q, L) where
+    in its row.
     """
 
     ids: Tensor
     positions: Tensor
-    patches: Tensor
+    sheets: list[Tensor]
     grids: Tensor
     lengths: Tensor
     image_index: Tensor
@@ -38,7 +39,8 @@ class Batch:
 
     def to(self, device: str) -> Batch:
         """The batch on another device."""
-        return Batch(**{key: value.to(device) for key, value in vars(self).items()})
+        moved = {key: value.to(device) for key, value in vars(self).items() if key != "sheets"}
+        return Batch(**moved, sheets=[sheets.to(device) for sheets in self.sheets])
 
 
 @dataclass

@@ -18,12 +18,12 @@ from typing import Any
 import torch
 from transformers import Qwen2_5_VLForConditionalGeneration
 
-from mini import north
+from mini import eye
 from mini.decode import Answerer
+from mini.eye import Sight
 from mini.feed import HELD_OUT_BASE, drawing
 from mini.generator.report import Report, make_report
 from mini.model import Forward
-from mini.north import NorthFinder
 from mini.rows import evidence
 from mini.tokens import Coder, load_tokenizer
 
@@ -32,18 +32,19 @@ REFUSED = ("thin", "no_crash", "conflict")
 Answer = tuple[Any, Any]
 
 
-def load(folder: Path) -> tuple[Forward, Coder, NorthFinder | None]:
-    """A saved model, in fp32 (a CPU without bf16 is slow in it), and what turns drawings upright for it."""
+def load(folder: Path) -> tuple[Forward, Coder, Sight]:
+    """A saved model, in fp32 (a CPU without bf16 is slow in it), and what it sees drawings with."""
     model = Qwen2_5_VLForConditionalGeneration.from_pretrained(
         folder, dtype=torch.float32, local_files_only=True
     ).eval()
-    return Forward(model), Coder(load_tokenizer(folder)), north.load(folder)
+    sight = eye.load(folder)
+    return Forward(model, sight.eye), Coder(load_tokenizer(folder)), sight
 
 
 def answers_of(
     forward: Forward,
     coder: Coder,
-    finder: NorthFinder | None,
+    sight: Sight,
     reports: Sequence[Report],
     blind: bool = False,
     batch: int = 24,
@@ -55,7 +56,7 @@ def answers_of(
     for start in range(0, len(order), batch):
         some = order[start : start + batch]
         drawings = [None if blind else drawing(reports[i]) for i in some]
-        upright = [finder.upright(image) if finder and image else image for image in drawings]
+        upright = [sight.upright(image) if image else None for image in drawings]
         rows = [evidence(coder, reports[i].narrative, image) for i, image in zip(some, upright, strict=True)]
         found |= dict(zip(some, answerer.answer(rows), strict=True))
     return [found[i] for i in range(len(reports))]
@@ -153,18 +154,18 @@ def refusals(reports: Sequence[Report], answers: Sequence[Answer]) -> dict[str, 
 def measure(
     forward: Forward,
     coder: Coder,
-    finder: NorthFinder | None,
+    sight: Sight,
     count: int,
     held_out: bool = True,
     base: int = HELD_OUT_BASE,
 ) -> dict[str, Any]:
     """All figures on `count` reports."""
     reports = [make_report(base + i, held_out, 0.6, MODES) for i in range(count)]
-    found = answers_of(forward, coder, finder, reports)
+    found = answers_of(forward, coder, sight, reports)
     figures: dict[str, Any] = tally(reports, found)
     seeing = [i for i, r in enumerate(reports) if r.mode == "both"]
     some = [reports[i] for i in seeing]
-    blind = tally(some, answers_of(forward, coder, finder, some, blind=True), "blind_")
+    blind = tally(some, answers_of(forward, coder, sight, some, blind=True), "blind_")
     figures["blind"] = blind.get("blind_diagram", {})
     figures["sighted"] = tally(some, [found[i] for i in seeing]).get("diagram", {})
     figures["refusals"] = refusals(reports, found)

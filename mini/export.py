@@ -9,16 +9,17 @@ from typing import Any
 
 import torch
 
+from mini import eye, picture
+
 PREPROCESSOR = {
     "image_processor_type": "MiniImageProcessor",
     "processor_class": "MiniProcessor",
-    "patch_size": 14,
+    "patch_size": picture.PATCH,
     "merge_size": 2,
-    "channels": 5,
 }
 
 
-def export(model: Any, tokenizer: Any, folder: Path) -> None:
+def export(model: Any, seen_by: eye.Eye, tokenizer: Any, folder: Path) -> None:
     """Write the folder; files are replaced one by one, weights first."""
     folder.mkdir(parents=True, exist_ok=True)
     half = copy.deepcopy(model).to("cpu", torch.bfloat16)
@@ -27,5 +28,6 @@ def export(model: Any, tokenizer: Any, folder: Path) -> None:
     half.generation_config.pad_token_id = tokenizer.pad_token_id
     half.generation_config.bos_token_id = None
     half.save_pretrained(folder)
+    eye.save(seen_by, folder)
     tokenizer.save_pretrained(folder)
     (folder / "preprocessor_config.json").write_text(json.dumps(PREPROCESSOR, indent=1) + "\n", encoding="utf-8")

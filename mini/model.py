@@ -16,10 +16,9 @@ from torch.nn import functional as F
 from transformers import Qwen2_5_VLConfig, Qwen2_5_VLForConditionalGeneration
 
 from mini.batch import Batch, Lesson, Pass, Taggers
+from mini.eye import CHANNELS, SIDE, Eye
 from mini.layers import attend, causal, norm, rotate
 
-PATCH = 14
-CHANNELS = 5
 MERGE = 2
 
 
@@ -55,7 +54,7 @@ def make_config(vocabulary: int, special: dict[str, int], size: str = "mini") ->
             "intermediate_size": vision * 5 // 2,
             "num_heads": 4,
             "in_channels": CHANNELS,
-            "patch_size": PATCH,
+            "patch_size": SIDE,
             "spatial_merge_size": MERGE,
             "temporal_patch_size": 1,
             "window_size": 1792,
@@ -82,17 +81,17 @@ def make_model(config: Qwen2_5_VLConfig) -> Qwen2_5_VLForConditionalGeneration:
 
 
 class Forward:
-    """A fast way through a Qwen2_5_VLForConditionalGeneration, in the dtype of its weights."""
+    """A fast way through a Qwen2_5_VLForConditionalGeneration and the eye before it, in the dtype of its weights."""
 
-    def __init__(self, model: Qwen2_5_VLForConditionalGeneration) -> None:
-        self.model = model
+    def __init__(self, model: Qwen2_5_VLForConditionalGeneration, eye: Eye) -> None:
+        self.model, self.eye = model, eye
         self.text = model.model.language_model
         self.vision = model.model.visual
         self.heads = model.config.text_config.num_attention_heads
         self.kv = model.config.text_config.num_key_value_heads
         self.text_inv = self.text.rotary_emb.original_inv_freq.float().clone()
         self.eyes_fixed = False
-        """Whether the vision tower is only looked through, not trained."""
+        """Whether eye and vision tower are only looked through, not trained."""
         self.middle = max(1, len(self.text.layers) * 2 // 3)
         """Layers after which a sentence's end is asked what it told; the rest carry it to the answers."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
@@ -108,11 +107,17 @@ class Forward:
 
     def seen(self, batch: Batch) -> Tensor:
         """Tokens of all pictures in the order of `patch_index`, (sum of picture tokens, hidden)."""
-        if not batch.patches.shape[0]:
+        if not batch.sheets:
             return torch.zeros(0, self.model.lm_head.weight.shape[1], dtype=self.dtype, device=batch.ids.device)
         with torch.set_grad_enabled(torch.is_grad_enabled() and not self.eyes_fixed):
-            found = self.pictures(batch.patches.to(self.dtype), batch.grids, batch.lengths)
+            found = self.pictures(self.patches(batch), batch.grids, batch.lengths)
         return found.reshape(-1, found.shape[-1])[batch.patch_index]
+
+    def patches(self, batch: Batch) -> Tensor:
+        """Patches of all pictures, padded, (N, P, CHANNELS * SIDE * SIDE)."""
+        room = batch.grids.shape[1]
+        seen = [self.eye.patches(sheets) for sheets in batch.sheets]
+        return torch.cat([F.pad(patches, (0, 0, 0, room - patches.shape[1])) for patches in seen])
 
     def embedded(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """What the first layer is given, (B, L, hidden), and the picture tokens in it as `seen` gives them."""

@@ -1,11 +1,13 @@
 """Muon for the matrices and AdamW for the rest, in one optimizer with one state and fp32 masters.
 
-Muon (Jordan et al., 2024): momentum whose matrix is made orthogonal by five Newton-Schulz steps.
+Muon (Jordan et al., 2024): momentum whose matrix is made orthogonal by five Newton-Schulz steps. Convolutions are
+matrices too, of (out, in * height * width).
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from typing import Any
 
 import torch
@@ -35,18 +37,19 @@ class Optimizer:
         muon_lr: float,
         adam_lr: float,
         decay: float = 0.01,
-        heads: nn.Module | None = None,
+        others: Mapping[str, nn.Module] | None = None,
     ) -> None:
-        """`heads` are further weights, stepped by AdamW under names that begin with "heads."."""
+        """`others` are further weights under names that begin with theirs; matrices of "heads" are stepped by AdamW."""
         self.muon_lr, self.adam_lr, self.decay = muon_lr, adam_lr, decay
         self.live = dict(model.named_parameters())
-        self.live |= {f"heads.{k}": p for k, p in heads.named_parameters()} if heads is not None else {}
+        for name, other in (others or {}).items():
+            self.live |= {f"{name}.{k}": p for k, p in other.named_parameters()}
         named = {k: p.detach().to(torch.float32).clone().requires_grad_() for k, p in self.live.items()}
         self.master = named
         self.matrices = {
             k: p
             for k, p in named.items()
-            if p.ndim == 2 and "embed_tokens" not in k and "lm_head" not in k and not k.startswith("heads.")
+            if p.ndim >= 2 and "embed_tokens" not in k and "lm_head" not in k and not k.startswith("heads.")
         }
         rest = [p for k, p in named.items() if k not in self.matrices]
         self.momentum = {k: torch.zeros_like(p) for k, p in self.matrices.items()}
@@ -83,14 +86,14 @@ class Optimizer:
             grad, momentum = self.matrices[key].grad, self.momentum[key]
             assert grad is not None  # noqa: S101 - step() chose these
             momentum.lerp_(grad, 0.05)
-            grads.append(grad.lerp(momentum, 0.95))
+            grads.append(grad.lerp(momentum, 0.95).flatten(1))
         rows, columns = grads[0].shape
         updates = orthogonal(torch.stack(grads))
         rate = self.muon_lr * scale
         for key, update in zip(keys, updates, strict=True):
             p = self.matrices[key]
             p.mul_(1 - rate * self.decay)
-            p.add_(update, alpha=-rate * max(1.0, rows / columns) ** 0.5)
+            p.add_(update.view_as(p), alpha=-rate * max(1.0, rows / columns) ** 0.5)
 
     def state_dict(self) -> dict[str, Any]:
         """Everything that a resumed run needs."""

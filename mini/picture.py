@@ -1,7 +1,7 @@
 """A crash diagram as the model sees it: cropped, fitted to a grid of patches, thin lines kept dark.
 
 Ink is averaged and then raised to a power below one, since a one-pixel line would fade away when a drawing of
-1300 pixels shrinks to 224. Two further channels hold the place, x and y. Needs Pillow and numpy only.
+1300 pixels shrinks to 384. Needs Pillow and numpy only.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-PATCH = 14
+PATCH = 24
+"""Pixels of the sheet along a patch."""
 GRIDS = ((16, 16), (12, 20), (20, 12), (10, 24), (24, 10), (8, 32), (32, 8))
 """Rows and columns of patches; at most 256 patches, 64 tokens."""
 GAMMA = 0.55
@@ -68,17 +69,19 @@ def fit(image: Image.Image) -> Fit:
     return Fit(box, grid, min(grid[1] * PATCH / width, grid[0] * PATCH / height))
 
 
-def look(image: Image.Image) -> tuple[Floats, tuple[int, int]]:
-    """Channels (5, H, W) and the grid of patches (rows, columns)."""
+def look(image: Image.Image) -> tuple[NDArray[np.uint8], tuple[int, int]]:
+    """Ink of each color, (3, H, W) from 0 (white) to 255, and the grid of patches (rows, columns)."""
     rgb = image.convert("RGB")
     laid = fit(rgb)
     small = rgb.crop(laid.box).resize(laid.size, Image.Resampling.BOX if laid.scale < 1 else Image.Resampling.BILINEAR)
-    height, width = laid.grid[0] * PATCH, laid.grid[1] * PATCH
     (at_x, at_y), size = laid.corner, laid.size
-    sheet = np.zeros((3, height, width), np.float32)
-    ink = 1 - np.asarray(small, np.float32).transpose(2, 0, 1) / 255
-    sheet[:, at_y : at_y + size[1], at_x : at_x + size[0]] = ink**GAMMA
-    return np.concatenate((sheet * 2 - 0.3, place(height, width))), laid.grid
+    sheet = np.zeros((3, laid.grid[0] * PATCH, laid.grid[1] * PATCH), np.uint8)
+    sheet[:, at_y : at_y + size[1], at_x : at_x + size[0]] = _INKED[np.asarray(small).transpose(2, 0, 1)]
+    return sheet, laid.grid
+
+
+_INKED = np.round(255 * (1 - np.arange(256) / 255) ** GAMMA).astype(np.uint8)
+"""Ink of each brightness."""
 
 
 # ------------------------------------------------------------------ turning
@@ -110,13 +113,6 @@ def place(height: int, width: int) -> Floats:
     y = (np.arange(height, dtype=np.float32) - height / 2) / longest
     x = (np.arange(width, dtype=np.float32) - width / 2) / longest
     return np.stack((np.broadcast_to(x, (height, width)), np.broadcast_to(y[:, None], (height, width))))
-
-
-def patches(channels: Floats, grid: tuple[int, int]) -> Floats:
-    """Rows (rows * columns, 5 * 14 * 14) in the order that the vision tower merges them: blocks of 2 x 2."""
-    rows, columns = grid
-    cut = channels.reshape(-1, rows // 2, 2, PATCH, columns // 2, 2, PATCH)
-    return np.ascontiguousarray(cut.transpose(1, 4, 2, 5, 0, 3, 6)).reshape(rows * columns, -1)
 
 
 def places(grid: tuple[int, int]) -> NDArray[np.int64]:

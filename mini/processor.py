@@ -11,7 +11,7 @@
 The model was trained on the values of its answers only, so `generate` must be held to the grammar of the answers
 (`prefix_allowed_tokens_fn`, or backbone `hf_vision`, which does it); free text from it is no JSON. The stock
 processor of the architecture wants a video processor, three channels and torchvision; this one turns a drawing
-upright and lays it out as the model was trained to see it. The product itself does not use this module.
+upright and looks at it with the eye that the model was trained with. The product itself does not use this module.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ import torch
 from PIL import Image
 from transformers import AutoProcessor, BatchFeature, PreTrainedTokenizerFast, Qwen2_5_VLConfig
 
-from mini import north, picture
+from mini import eye
 from mini.tokens import IMAGE, load_tokenizer
 
 
 class MiniProcessor:
     """Narratives and drawings to what `generate` takes."""
 
-    def __init__(self, tokenizer: PreTrainedTokenizerFast, finder: north.NorthFinder | None = None) -> None:
-        self.tokenizer, self.finder = tokenizer, finder
+    def __init__(self, tokenizer: PreTrainedTokenizerFast, sight: eye.Sight) -> None:
+        self.tokenizer, self.sight = tokenizer, sight
         self.image_token = IMAGE
 
     @classmethod
     def from_pretrained(cls, folder: str | Path, **_: Any) -> MiniProcessor:
         """The processor of a folder of weights; options that only other processors know are passed over."""
-        return cls(load_tokenizer(Path(folder)), north.load(Path(folder)))
+        return cls(load_tokenizer(Path(folder)), eye.load(Path(folder)))
 
     def __call__(
         self, text: str | Sequence[str], images: Image.Image | Sequence[Image.Image] | None = None, **_: Any
@@ -51,13 +51,13 @@ class MiniProcessor:
         drawings = [] if images is None else [images] if isinstance(images, Image.Image) else list(images)
         if (named := sum(t.count(IMAGE) for t in texts)) != len(drawings):
             raise ValueError(f"the texts name {named} pictures ({IMAGE}), {len(drawings)} are given; give one for each")
-        seen = [picture.look(self.finder.upright(image) if self.finder else image) for image in drawings]
+        seen = [self.sight.patches(image) for image in drawings]
         counts = iter([grid[0] * grid[1] // 4 for _, grid in seen])
         whole = ["".join(p + IMAGE * next(counts) for p in t.split(IMAGE)[:-1]) + t.split(IMAGE)[-1] for t in texts]
         found = dict(self.tokenizer(whole, padding=True, return_tensors="pt", return_token_type_ids=False))
         found["mm_token_type_ids"] = (found["input_ids"] == self.tokenizer.convert_tokens_to_ids(IMAGE)).int()
         if seen:
-            found["pixel_values"] = torch.cat([torch.from_numpy(picture.patches(c, grid)) for c, grid in seen])
+            found["pixel_values"] = torch.cat([patches for patches, _ in seen])
             found["image_grid_thw"] = torch.tensor([[1, *grid] for _, grid in seen])
         return BatchFeature(found)
 

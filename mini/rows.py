@@ -37,7 +37,7 @@ class Row:
 
     ids: list[int]
     picks: list[tuple[int, float]]
-    patches: NDArray[np.float16] | None = None
+    sheet: NDArray[np.uint8] | None = None
     grid: tuple[int, int] = (0, 0)
     image_start: int = 0
     pieces: list[tuple[str, str]] = field(default_factory=list)
@@ -53,8 +53,7 @@ def evidence(coder: Coder, narrative: str, image: Image.Image | None) -> Row:
     """The prompt without its task."""
     row = Row(coder.text(narrative.strip()), [])
     if image is not None:
-        channels, row.grid = picture.look(image)
-        row.patches = picture.patches(channels, row.grid).astype(np.float16)
+        row.sheet, row.grid = picture.look(image)
         row.image_start = len(row.ids) + 1
         count = row.grid[0] * row.grid[1] // 4
         row.ids += [coder.special[VISION_START], *[coder.special[IMAGE]] * count, coder.special[VISION_END]]
@@ -104,10 +103,10 @@ def training_row(coder: Coder, report: Report, image: Image.Image | None, shapes
 
 
 def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
-    """Places that tell the value at a path: ends of sentences, and picture tokens."""
+    """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
     fact, shown = tags.fact_of(path, report.crash)
     found = [at for (at, _), (_, facts) in zip(row.text_tags, report.sentences, strict=True) if fact in facts]
-    if row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
+    if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found
 
@@ -128,7 +127,7 @@ def positions(row: Row) -> Ints:
     """M-RoPE positions (3, L): text counts on, a picture spans its grid and moves on by its longer side."""
     length = len(row.ids)
     out = np.broadcast_to(np.arange(length), (3, length)).copy()
-    if row.patches is None:
+    if row.sheet is None:
         return out
     rows, columns = row.grid[0] // 2, row.grid[1] // 2
     start, count = row.image_start, rows * columns
@@ -161,42 +160,53 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
     for n, (_, _, found) in enumerate(pointing):
         sources[n, found] = True
     return Batch(
-        torch.from_numpy(ids),
-        torch.from_numpy(place),
-        *_pictures(rows, longest),
-        torch.tensor(picks),
-        torch.tensor(wanted),
-        torch.tensor(weights),
-        torch.tensor(ends, dtype=torch.int64),
-        torch.from_numpy(told),
-        _drawn(rows),
-        torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
-        torch.from_numpy(sources),
+        ids=torch.from_numpy(ids),
+        positions=torch.from_numpy(place),
+        picks=torch.tensor(picks),
+        wanted=torch.tensor(wanted),
+        weights=torch.tensor(weights),
+        ends=torch.tensor(ends, dtype=torch.int64),
+        told=torch.from_numpy(told),
+        drawn=_drawn(rows),
+        pointing=torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
+        sources=torch.from_numpy(sources),
+        **_pictures(rows, longest),
     )
+
+
+def _pictured(rows: Sequence[Row]) -> list[tuple[int, Row]]:
+    """Rows with a picture, those of one shape together, and their numbers."""
+    return sorted(((i, row) for i, row in enumerate(rows) if row.sheet is not None), key=lambda found: found[1].grid)
 
 
 def _drawn(rows: Sequence[Row]) -> torch.Tensor:
     """Tags of all picture tokens, in the order of `Batch.patch_index`."""
-    found = [row.picture_tags for row in rows if row.picture_tags is not None]
+    found = [row.picture_tags for _, row in _pictured(rows) if row.picture_tags is not None]
     empty = np.zeros((0, len(tags.PICTURE)), np.uint8)
     return torch.from_numpy(np.concatenate((empty, *found))).float()
 
 
-def _pictures(rows: Sequence[Row], longest: int) -> tuple[torch.Tensor, ...]:
-    """patches, grids, lengths, image_index, patch_index."""
-    seen = [(i, row) for i, row in enumerate(rows) if row.patches is not None]
-    most = max((len(row.patches) for _, row in seen), default=4)  # type: ignore[arg-type]
-    patches = np.zeros((len(seen), most, picture.PATCH**2 * 5), np.float32)
+def _pictures(rows: Sequence[Row], longest: int) -> dict[str, Any]:
+    """sheets, grids, lengths, image_index, patch_index."""
+    seen = _pictured(rows)
+    sheets: dict[tuple[int, int], list[NDArray[np.uint8]]] = {}
+    for _, row in seen:
+        sheets.setdefault(row.grid, []).append(row.sheet)  # type: ignore[arg-type]
+    lengths = [row.grid[0] * row.grid[1] for _, row in seen]
+    most = max(lengths, default=4)
     grids = np.zeros((len(seen), most, 2), np.int64)
-    places, tokens = [], []
-    for n, (i, row) in enumerate(seen):
-        count = len(row.patches)  # type: ignore[arg-type]
-        patches[n, :count], grids[n, :count] = row.patches, picture.places(row.grid)
+    places, tokens = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for n, ((i, row), count) in enumerate(zip(seen, lengths, strict=True)):
+        grids[n, :count] = picture.places(row.grid)
         places.append(i * longest + row.image_start + np.arange(count // 4))
         tokens.append(n * (most // 4) + np.arange(count // 4))
-    lengths = np.array([len(row.patches) for _, row in seen], np.int64)  # type: ignore[arg-type]
-    flat = [np.concatenate(x) if x else np.zeros(0, np.int64) for x in (places, tokens)]
-    return tuple(torch.from_numpy(a) for a in (patches, grids, lengths, *flat))
+    return {
+        "sheets": [torch.from_numpy(np.stack(group)) for group in sheets.values()],
+        "grids": torch.from_numpy(grids),
+        "lengths": torch.tensor(lengths, dtype=torch.int64),
+        "image_index": torch.from_numpy(np.concatenate(places)),
+        "patch_index": torch.from_numpy(np.concatenate(tokens)),
+    }
 
 
 def compact(answer: answers.Any) -> str:

@@ -22,9 +22,10 @@ import numpy as np
 import torch
 from safetensors.torch import load_file, save_file
 
-from mini import tags
+from mini import eye, tags
 from mini.batch import Batch, Lesson, Taggers
 from mini.export import export
+from mini.eye import Eye
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
 from mini.model import Forward, make_config, make_model
@@ -74,14 +75,16 @@ class Trainer:
         self.tokenizer = self.make_tokenizer(options)
         self.coder = Coder(self.tokenizer)
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
-        self.forward = Forward(self.model)
+        self.eye = Eye().to(options.device)
+        self.forward = Forward(self.model, self.eye)
         self.forward.eyes_fixed = bool(options.fixed_eyes)
         self.answer_tokens = answer_tokens(self.coder)
         self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
         self.taggers.to(options.device)
-        self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, heads=self.taggers)
-        self.model.to(torch.bfloat16)
-        self.taggers.to(torch.bfloat16)
+        others = {"heads": self.taggers, "eye": self.eye}
+        self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)
+        for part in (self.model, *others.values()):
+            part.to(torch.bfloat16)
         self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
         self.pool_progress: float | None = None
         self._resume()
@@ -116,22 +119,25 @@ class Trainer:
         found = self._exported(self.options.start)
         if self.options.eyes:
             eyes = self._exported(self.options.eyes)
-            found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture."))}
+            found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture.", "eye."))}
         masters = self.optimizer.master
+        fits = {k: v for k, v in found.items() if v.shape == masters[k].shape}
         with torch.no_grad():
-            for key, value in found.items():
-                if value.shape == masters[key].shape or not key.startswith("heads."):
-                    masters[key].copy_(value)
+            for key, value in fits.items():
+                masters[key].copy_(value)
         self.optimizer.publish()
         self.pool += 100_000
-        self.log.write(event="begun with", folder=self.options.start, tensors=len(found))
+        fresh = sorted(masters.keys() - fits.keys())
+        self.log.write(event="begun with", folder=self.options.start, tensors=len(fits), fresh=fresh)
 
     def _exported(self, folder: str) -> dict[str, torch.Tensor]:
         """Weights of an export, and of the heads beside them where there are some."""
         exported = type(self.model).from_pretrained(folder, dtype=torch.float32, local_files_only=True)
         found = dict(exported.named_parameters())
-        heads = Path(folder) / HEADS
-        return found | ({f"heads.{k}": v for k, v in load_file(heads).items()} if heads.is_file() else {})
+        for name, file in (("heads", HEADS), ("eye", eye.FILE)):
+            if (Path(folder) / file).is_file():
+                found |= {f"{name}.{k}": v.float() for k, v in load_file(Path(folder) / file).items()}
+        return found
 
     def save(self) -> None:
         """State and export, each replaced whole; the first rank's business."""
@@ -149,7 +155,7 @@ class Trainer:
         }
         torch.save(state, path.with_suffix(".new"))
         os.replace(path.with_suffix(".new"), path)
-        export(self.model, self.tokenizer, self.options.out / "export")
+        export(self.model, self.eye, self.tokenizer, self.options.out / "export")
         heads = {k: v.contiguous() for k, v in self.taggers.state_dict().items()}
         save_file(heads, self.options.out / "export" / HEADS)
 

@@ -141,18 +141,17 @@ def _own_kind(place: str) -> str:
 
 
 def _mini(folder: Path) -> Prepare:
-    """The embedded model's own pictures: turned until north is up, five channels, place among them."""
-    from mini.north import load
-    from mini.picture import look, patches
+    """The embedded model's own pictures: turned until north is up, seen through its eye."""
+    from mini.eye import load
 
-    finder = load(folder)
+    try:
+        sight = load(folder)
+    except FileNotFoundError as fault:
+        raise ConfigError(f"backbone.model {fault}") from fault
 
     def prepare(picture: Image.Image) -> Mapping[str, Any]:
-        channels, grid = look(finder.upright(picture) if finder else picture)
-        return {
-            "pixel_values": torch.from_numpy(patches(channels, grid)).float(),
-            "image_grid_thw": torch.tensor([[1, *grid]]),
-        }
+        patches, grid = sight.patches(picture)
+        return {"pixel_values": patches, "image_grid_thw": torch.tensor([[1, *grid]])}
 
     return prepare
 

@@ -34,8 +34,8 @@ def test_the_model_sees_what_it_saw_in_training(processor: mini.processor.MiniPr
         {"type": "text", "text": "<|road|>"},
     ]
     inputs = processor.apply_chat_template([{"role": "user", "content": talk}])
-    forward, coder, finder = load(WEIGHTS)
-    row = evidence(coder, report.narrative, finder.upright(drawing) if finder else drawing)
+    forward, coder, sight = load(WEIGHTS)
+    row = evidence(coder, report.narrative, sight.upright(drawing))
     row.ids.append(coder.special[ROAD])
     assert inputs["input_ids"][0].tolist() == row.ids
     model = AutoModelForImageTextToText.from_pretrained(WEIGHTS, dtype=torch.float32)

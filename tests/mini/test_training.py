@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from mini.decode import Answerer
+from mini.eye import Eye
 from mini.feed import drawing
 from mini.generator.report import make_report
 from mini.model import Forward, make_config, make_model
@@ -30,7 +31,7 @@ def forward(coder: Coder) -> Forward:
     model = make_model(make_config(len(coder.tokenizer), coder.special, "tiny")).eval()
     for weight in model.parameters():
         torch.nn.init.normal_(weight, std=0.1) if weight.ndim > 1 else weight.data.add_(0.1 * torch.randn_like(weight))
-    return Forward(model)
+    return Forward(model, Eye().eval())
 
 
 def test_the_fast_forward_is_transformers_own(coder: Coder, forward: Forward) -> None:
@@ -41,9 +42,10 @@ def test_the_fast_forward_is_transformers_own(coder: Coder, forward: Forward) ->
         for found, row in zip(mine, rows, strict=True):
             ids = torch.tensor([row.ids])
             extra = {}
-            if row.patches is not None:
+            if row.sheet is not None:
+                patches = forward.eye.patches(torch.from_numpy(row.sheet)[None])[0]
                 extra = {
-                    "pixel_values": torch.tensor(row.patches).float(), "image_grid_thw": torch.tensor([[1, *row.grid]]),
+                    "pixel_values": patches, "image_grid_thw": torch.tensor([[1, *row.grid]]),
                     "mm_token_type_ids": (ids == forward.model.config.image_token_id).int(),
                 }  # fmt: skip
             forward.model.model.rope_deltas = None
