@@ -41,9 +41,9 @@ class Options:
     """What is shown: "text" (narratives), "pictures" (drawings, no answers: the vision tower alone), "all", or all of
     these in turn ("auto")."""
     eyes: str = ""
-    """Exported weights whose vision tower is taken in place of that of `start`."""
+    """Exported weights whose eye and vision tower are taken in place of those of `start`."""
     fixed_eyes: int = 0
-    """1: the vision tower is not trained."""
+    """1: eye and vision tower are not trained."""
     sentences: float = 0.1
     """Weight of what sentences tell, beside the answers."""
     pointers: float = 0.1

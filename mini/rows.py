@@ -159,6 +159,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
     sources = np.zeros((len(pointing), longest), np.bool_)
     for n, (_, _, found) in enumerate(pointing):
         sources[n, found] = True
+    seen = _pictured(rows)
     return Batch(
         ids=torch.from_numpy(ids),
         positions=torch.from_numpy(place),
@@ -167,10 +168,10 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         weights=torch.tensor(weights),
         ends=torch.tensor(ends, dtype=torch.int64),
         told=torch.from_numpy(told),
-        drawn=_drawn(rows),
+        drawn=_drawn(seen),
         pointing=torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
         sources=torch.from_numpy(sources),
-        **_pictures(rows, longest),
+        **_pictures(seen, longest),
     )
 
 
@@ -179,16 +180,15 @@ def _pictured(rows: Sequence[Row]) -> list[tuple[int, Row]]:
     return sorted(((i, row) for i, row in enumerate(rows) if row.sheet is not None), key=lambda found: found[1].grid)
 
 
-def _drawn(rows: Sequence[Row]) -> torch.Tensor:
+def _drawn(seen: Sequence[tuple[int, Row]]) -> torch.Tensor:
     """Tags of all picture tokens, in the order of `Batch.patch_index`."""
-    found = [row.picture_tags for _, row in _pictured(rows) if row.picture_tags is not None]
+    found = [row.picture_tags for _, row in seen if row.picture_tags is not None]
     empty = np.zeros((0, len(tags.PICTURE)), np.uint8)
     return torch.from_numpy(np.concatenate((empty, *found))).float()
 
 
-def _pictures(rows: Sequence[Row], longest: int) -> dict[str, Any]:
+def _pictures(seen: Sequence[tuple[int, Row]], longest: int) -> dict[str, Any]:
     """sheets, grids, lengths, image_index, patch_index."""
-    seen = _pictured(rows)
     sheets: dict[tuple[int, int], list[NDArray[np.uint8]]] = {}
     for _, row in seen:
         sheets.setdefault(row.grid, []).append(row.sheet)  # type: ignore[arg-type]

@@ -121,7 +121,7 @@ class Trainer:
             eyes = self._exported(self.options.eyes)
             found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture.", "eye."))}
         masters = self.optimizer.master
-        fits = {k: v for k, v in found.items() if v.shape == masters[k].shape}
+        fits = {k: v for k, v in found.items() if v.shape == masters[k].shape or not k.startswith("heads.")}
         with torch.no_grad():
             for key, value in fits.items():
                 masters[key].copy_(value)

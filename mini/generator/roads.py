@@ -175,7 +175,7 @@ def carriageway(crash: Crash) -> Crash | None:
 
 def misdrawn(rng: Random, crash: Crash) -> Crash:
     """The crash as a careless hand draws it: other numbers of lanes, no turn lanes, no medians."""
-    lanes = {bearing % 4: (rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for bearing in range(4)}
+    lanes = [(rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for _ in range(4)]
     legs = []
     for leg in crash.legs:
         one, other = lanes[leg.bearing % 4][:: 1 if leg.bearing < 4 else -1]
