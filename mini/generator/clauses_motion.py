@@ -95,6 +95,50 @@ The {lane} was occupied by {Vf}, [which was |]stopped facing {dir}{why}
 ~{Vf} sat [motionless|at rest] in the {lane}, facing {dir}{why}
 """)
 
+APPROACH_WAITING = clauses("""
+{Vf} was stopped {xb} [in the {lane} |]{why}
+{Vf} was stopped [facing {dir}|in the {xb} lane] {why}
+{Vf} had stopped [in the {lane} |]facing {dir}{why}
+{Vf} was {xb} and came to a stop [in the {lane} |]{why}
+{Vf} was traveling {dir} [in the {lane} |on {road} |]and stopped{why}
+The driver of {Vf} was traveling {dir} [on {road} |in the {lane} |]and stopped{why} before proceeding
+{Vf}, {xb} [in the {lane}|on {road}], stopped[ briefly|]{why}
+{Vf} [was waiting|had been waiting] in the {lane}, facing {dir}{why}
+~{Vf} faced {dir} and stood{why} until its driver moved on
+""")
+
+PRESENTED = {
+    "moving": clauses("""
+{Vi} traveling {dir} [in the {lane}|on {road}|in the {lane} of {road}]{appr}
+{Vi} [that was |which was |]traveling {xb} [in the {lane}|on {road}]{appr}
+{Vi} {xb} [in the {lane}|on {road}]{appr}
+{Vi}[ and was|, which was|, and it was] [traveling|driving|heading|going] {dir} [in the {lane}|on {road}]{appr}
+{Vi}. [It|This vehicle] was [traveling|going|heading] {dir} [in the {lane}|on {road}|in the {lane} of {road}]{appr}
+{Vi} [moving|driving|proceeding|going] {dir} [in the {lane}|on {road}]{appr}
+~{Vi} on its way {dir} [in the {lane}|on {road}]{appr}
+"""),
+    "stopped": clauses("""
+{Vi} [that was |which was |]stopped {xb} [in the {lane}|on {road}]{why}
+{Vi} stopped [facing {dir} |]in the {xb} lane{why}
+{Vi}. [It|This vehicle] was stopped [facing {dir} in the {lane}|{xb} in the {lane}|{xb} on {road}]{why}
+{Vi} [and was|, which was] stopped [in the {lane}, facing {dir}|while {xb}]{why}
+~{Vi} at a standstill in the {lane}, facing {dir}{why}
+"""),
+    "slowing": clauses("""
+{Vi} traveling {dir} [in the {lane} |on {road} |]and [slowing|slowing down|decelerating]{why}
+{Vi}. [It|This vehicle] was {xb} and [slowing|was slowing|decelerating]{why}
+{Vi} [that was|which was] slowing [in the {lane} |]while {xb}{why}
+~{Vi} {xb} and losing speed{why}
+"""),
+    "waiting": clauses("""
+{Vi} [that was |]stopped {xb} [in the {lane} |]{why}
+{Vi}. [It|This vehicle] was stopped [facing {dir}|{xb}|in the {lane}, facing {dir}]{why}
+{Vi} traveling {dir} [in the {lane} |on {road} |]and [had stopped|stopped]{why}
+~{Vi} facing {dir} and at rest{why}
+"""),
+}
+"""After `V1 was a 2003 sedan`."""
+
 APPROACH_SLOWING = clauses("""
 {Vf} was traveling {dir} and [slowed down|reduced its speed|had slowed]{why}
 The driver of {Vf}, {xb}, [applied the brakes|slowed the vehicle]{why}

@@ -173,18 +173,13 @@ Rested and [alert|in good spirits], {he} [was not distracted|had left on time|wa
 """)
 
 CODES = clauses("""
-The pre-event movement of {V} was [coded as |][going straight|turning left|negotiating a curve|stopped in traffic lane|changing lanes]
 Precrash [event|stability|location] for {V}: [tracking|stayed in the original travel lane|departed roadway]
 The critical reason was [not assigned to {V}|assigned to {V}], [a driver error|inadequate surveillance|misjudgment of gap or other's speed]
 The [first|only] harmful event was a collision with [a motor vehicle|another vehicle] in transport
-The Critical [Precrash|Pre-crash] Event for {V} was [coded |][as |: ][this vehicle traveling, turning left at intersection|other motor vehicle in lane, other vehicle stopped|other vehicle encroachment from crossing street, across path|this vehicle traveling over the lane line on left side of travel lane|other motor vehicle in lane traveling in same direction with higher speed]
 The critical reason for the critical event was [coded as |]a driver[-| ]related [recognition|decision|performance] [factor|error][: inadequate surveillance|: too fast for conditions|: false assumption of other's actions|: internal distraction|]
 The Critical Reason [for the Critical Event |]was not coded to [this vehicle|this driver|{V}]
 [An|One] associated factor[s|] coded to this driver [was|included] [the use of prescription medications|inattention|a sight line restriction|unfamiliarity with the roadway|conversing with a passenger]
 No associated factors were coded to [this driver|the driver of {V}][ and {he} was not thought to have contributed to the crash|]
-[This vehicle|{V}] was coded with the critical event: [this vehicle traveling, over the lane line|other vehicle in lane, stopped|crossing over, passing through intersection]
-The Critical Pre[-|]crash Event coded [for|to] {V} was [other vehicle encroachment from opposite direction, over left lane line|turning left at intersection|off the edge of the road]
-For {V}, the critical event was [coded as |][other vehicle stopped|loss of control due to speed|other vehicle turning across path|end departure]
 Coded as the critical reason was [inattention|excessive speed|an illegal maneuver|misjudgment of gap][, a driver error|]
 The critical reason [for the event |]was [attributed|assigned] to the driver of {V}: [inadequate surveillance|overcompensation|following too closely|aggressive driving]
 The critical reason was a [decision|performance|recognition] error by the driver of {V}[, who looked but did not see|]
@@ -197,8 +192,6 @@ This driver was coded with [inattention|internal non-driving distraction|no asso
 The researcher [coded|assigned] [no factors|a decision error|a recognition error] to [{V}|this driver]
 The researchers [felt|believed|determined] that the driver of {V} [was inattentive|had misjudged the gap|could not have avoided the crash]
 Vehicle factors were [coded as none|not coded] for {V}
-[Pre-event|Pre-impact] movement of {V}: [going straight|negotiating a curve|turning right|decelerating in traffic lane|passing another vehicle]
-The crash type of {V} was [coded as |][same trafficway, opposite direction|intersecting paths|single driver, right roadside departure|changing trafficway]
 The avoidance maneuver of {V} was coded as [none|braking|steering {anyside}|unknown]
 It was determined that {V} [had the right of way|was going too fast for conditions|had no part in causing the crash]
 Primary cause: [driver inattention|failure to yield|following too closely|unsafe speed]

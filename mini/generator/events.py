@@ -27,6 +27,7 @@ class EventsMixin:
     ciren: bool
     told: Told
     who: tuple[int, int]
+    waited: bool
 
     say: Any
     id_of: Any
@@ -51,7 +52,7 @@ class EventsMixin:
         config = self.crash.config
         key = {"left_lateral": "turn_left", "right_into": "turn_right"}.get(config, config)
         out = []
-        if rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4):
+        if self.waited or (rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4)):
             self.told |= {
                 f"man.{self.id_of(v)}",
                 f"exit.{self.id_of(v)}",

@@ -73,8 +73,18 @@ class Mentions:
             case = " - case vehicle" if number == 1 or self.rng.random() < 0.1 else ""
             return f"Vehicle {NUMBER_WORDS[number]} (V{number}{case}), {text},".replace(",,", ","), True
         plain = self.style.format(n=number, w=NUMBER_WORDS[number])
-        forms = (f"{plain}, {text},", f"{plain}, {text},", f"{plain} ({text})", f"{plain}, {text}", f"{text} ({plain})")
-        return self.rng.choice(forms), True
+        forms = [f"{plain}, {text},", f"{plain}, {text},", f"{plain} ({text})", f"{plain}, {text}", f"{text} ({plain})"]
+        person = f"{self.rng.randint(16, 88)}-year{self.rng.choice('- ')}old {self.rng.choice(('male', 'female'))}"
+        forms += [f"{plain}, {text}, driven by a {person},", f"{plain}, {text} driven by a {person},"]
+        return self.rng.choices(forms, [4, 4, 4, 4, 4, 1, 1])[0], True
+
+    def presented(self, index: int) -> tuple[str, bool]:
+        """`V1 was a 2003 Kia Rio sedan`, which motion follows without another verb."""
+        actor = self.crash.actors[index]
+        self.introduced.add(index)
+        number = int(actor.id[1:])
+        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
+        return f"{plain} was {self._year_model(index, actor, 0.7)}", True
 
     def _year_model(self, index: int, actor: Actor, body_odds: float) -> str:
         color = f"{self.rng.choice(COLORS)} " if not self.ciren and self.rng.random() < 0.15 else ""

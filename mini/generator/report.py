@@ -61,7 +61,7 @@ def make_report(
     mode = rng.choices(list(weights), list(weights.values()))[0]
     crash = sample_crash(rng)
     writer = Writer(rng, crash, held_out, length)
-    control, arrows, access = rng.random() < 0.6, rng.random() < 0.85, bool(crash.accesses)
+    control, arrows, access = rng.random() < 0.6, rng.random() < 0.6, bool(crash.accesses)
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())

@@ -56,6 +56,8 @@ def curve(rng: Random, legs: list[Leg]) -> None:
 def add_turn_lanes(rng: Random, legs: list[Leg], bearings: set[int], odds: float) -> None:
     """Widen approaches by turn lanes and say what each lane is for."""
     chosen = {leg.bearing % 4 for leg in legs if rng.random() < odds}
+    if len(chosen) == 1 and rng.random() < 0.4:
+        chosen = {leg.bearing % 4 for leg in legs}
     for leg in legs:
         if leg.bearing % 4 not in chosen or leg.kind != "road" or not leg.lanes_in or leg.twltl:
             continue

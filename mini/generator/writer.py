@@ -10,13 +10,13 @@ from random import Random
 
 from mini.generator import clauses_motion as motion
 from mini.generator import words
-from mini.generator.clauses_noise import GROUPS, SPEED
+from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
 from mini.generator.grammar import HINT, MARK, SLOTS, Told, choose, families, fill, sentence, unmark
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.scene import SceneMixin
-from mini.generator.world import WORDS, Crash
+from mini.generator.world import WORDS, Actor, Crash
 
 CIREN_ORDER = (
     "approach",
@@ -32,7 +32,7 @@ CIREN_ORDER = (
 )
 
 
-class Writer(SceneMixin, EventsMixin):
+class Writer(SceneMixin, EventsMixin, BlocksMixin):
     """State of one report while it is written."""
 
     def __init__(self, rng: Random, crash: Crash, held_out: bool, length: float) -> None:
@@ -44,6 +44,10 @@ class Writer(SceneMixin, EventsMixin):
         """Facts of every sentence that was written, by the number of its mark."""
         self.stated: set[str] = set()
         self.who = self.culprit()
+        self.people: dict[int, dict[str, str]] = {}
+        """Age, sex and pronouns of the drivers, by actor."""
+        self.waited = False
+        """Whether the one who errs stood before it crossed or turned."""
         self.roads_left = rng.random() < 0.85
         """Whether the report tells lanes at all."""
 
@@ -83,22 +87,6 @@ class Writer(SceneMixin, EventsMixin):
         if rng.random() < 0.1:
             head = head[1:] if not opening else head
         return head, breaks
-
-    def _about(self, index: int) -> list[str]:
-        """The block on one vehicle: driver, interview, health, codes."""
-        speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
-        out = (
-            ([self.say(SPEED, index, **words.person(self.rng))] if speed else [])
-            + self._noise("occupant", 1.2, index)
-            + self._noise("interview", 1.6, index)
-            + self._noise("tow", 0.6, index)
-        )
-        return (
-            out
-            + self._noise("health", 1.0, index)
-            + self._noise("codes", 2.6, index)
-            + self._noise("police", 0.5, index)
-        )
 
     def finish(self, text: str) -> tuple[str, list[tuple[int, frozenset[str]]]]:
         """The plain text, and the facts of each of its sentences with the place where it ends."""
@@ -144,8 +132,8 @@ class Writer(SceneMixin, EventsMixin):
     def _slot(self, slot: str, v: int, w: int, extra: dict[str, str]) -> str:
         if slot in extra:
             return extra[slot]
-        if slot == "Vf":
-            text, kind = self.mentions.full(v)
+        if slot in ("Vf", "Vi"):
+            text, kind = self.mentions.full(v) if slot == "Vf" else self.mentions.presented(v)
             self.told |= {f"kind.{self.id_of(v)}"} if kind else set()
             return text
         if slot in ("V", "W", "S", "T", "U"):
@@ -208,21 +196,6 @@ class Writer(SceneMixin, EventsMixin):
     def id_of(self, index: int) -> str:
         return self.crash.actors[index].id
 
-    # -------------------------------------------------------------- noise
-    def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
-        """About mean * length sentences of a noise group."""
-        wanted = mean * self.length
-        count = int(wanted) + (self.rng.random() < wanted % 1)
-        vehicles = [i for i, a in enumerate(self.crash.actors) if a.id.startswith("V")]
-        out = []
-        for _ in range(count):
-            v = index if index in vehicles else self.rng.choice(vehicles)
-            others = [i for i in vehicles if i != v]
-            options = [c for c in GROUPS[group] if others or ("{W}" not in c and "Both" not in c)]
-            w = self.rng.choice(others) if others else v
-            out.append(self.say(options, v, w, **words.person(self.rng)))  # type: ignore[arg-type]
-        return out
-
     # -------------------------------------------------------------- approach
     def _approaches(self) -> list[str]:
         actors = self.crash.actors
@@ -246,9 +219,15 @@ class Writer(SceneMixin, EventsMixin):
             "parked": motion.APPROACH_PARKED,
             "slowing": motion.APPROACH_SLOWING,
         }.get(actor.maneuver)
+        presented = not self.ciren and index not in self.mentions.introduced and self.rng.random() < 0.22
         if options:
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            if presented and actor.maneuver in motion.PRESENTED:
+                options = motion.PRESENTED[actor.maneuver]
             return self.say(options, index, ahead, why=self._why(actor.purpose))
+        if self._waits(index):
+            return self.say(motion.PRESENTED["waiting"] if presented else motion.APPROACH_WAITING, index, ahead,
+                            why=self._why_waiting(actor))  # fmt: skip
         order = self._behind(index, ahead)
         if order is not None and self.rng.random() < 0.6:
             self.told |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
@@ -256,7 +235,25 @@ class Writer(SceneMixin, EventsMixin):
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
             self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
             return self.say(motion.APPROACH_CURVE, index, ahead)
-        return self.say(motion.APPROACH, index, ahead, appr=self._approaching(index, bool(before)))
+        options = motion.PRESENTED["moving"] if presented else motion.APPROACH
+        return self.say(options, index, ahead, appr=self._approaching(index, bool(before)))
+
+    def _waits(self, index: int) -> bool:
+        """Whether one who is about to cross or turn is said to have stood first; then the error must be told."""
+        if index != self.who[0] or self.crash.config not in ("crossing", "left_opposite", "left_lateral", "right_into"):
+            return False
+        self.waited = self.rng.random() < 0.15
+        return self.waited
+
+    def _why_waiting(self, actor: Actor) -> str:
+        """What for: a sign, a light, a gap in traffic, a turn."""
+        keys = ["sign" if self.crash.leg(actor.leg).control == "stop" else "traffic"]  # type: ignore[union-attr]
+        keys += ["turn_left", "turn_left"] if actor.maneuver == "turn_left" else []
+        keys += ["turn_right", "turn_right"] if actor.maneuver == "turn_right" else []
+        key = self.rng.choice(keys)
+        if key.startswith("turn"):
+            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+        return " " + self._option(motion.WHY[key]) if key != "traffic" else ""
 
     def _behind(self, index: int, other: int | None) -> bool | None:
         """Whether one drives behind the other in a rear-end crash: the striker does."""

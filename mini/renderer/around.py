@@ -45,23 +45,35 @@ def north_arrow(rng: Random, pen: Pen) -> list[Shape]:
     if abs(pen.turn) < 0.01 and rng.random() < 0.08:
         return []
     w, h = pen.image.size
-    length = rng.uniform(18, 46)
-    x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94))) * w
-    y = rng.choice((rng.uniform(0.08, 0.25), rng.uniform(0.75, 0.92))) * h
+    length = rng.uniform(14, 46)
+    x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94), rng.uniform(0.3, 0.7))) * w
+    y = rng.choice((rng.uniform(0.02, 0.25), rng.uniform(0.75, 0.94))) * h
     x, y = min(max(x, length), w - length), min(max(y, length), h - length)
     up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
     center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.95))
     pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
-    head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 2, 2, 3))
-    ahead = rng.random() < 0.5
-    tail, tip = center - up * length * (0.5 if ahead else 0.25), center + up * length * (0.3 if ahead else 0.5)
+    head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 1, 2, 2, 3))
+    tail, tip, place = _arrow_and_letter(rng, center, up, length, size)
     pen.arrow(tail, tip, width=width, head=head, barb=rng.choice((0.0, 0.3, 0.45)))
-    place = tip + up * size * rng.uniform(0.55, 0.8) if ahead else tail - up * size * rng.uniform(0.42, 0.65)
     angle = math.degrees(pen.turn) if rng.random() < 0.4 else 0.0
     for bold in range(rng.choice((1, 2, 2))):
         pen.text(place[0] + bold, place[1], "N", round(size), angle=angle)
     square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
     return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
+
+
+def _arrow_and_letter(rng: Random, center: Points, up: Points, length: float, size: float) -> tuple[Points, ...]:
+    """Tail, tip and the middle of the N (pixels): before the tip, behind the tail, or at one side of the arrow."""
+    manner = rng.random()
+    if manner < 0.35:
+        tail, tip = center - up * length * 0.5, center + up * length * 0.3
+        return tail, tip, tip + up * (size * rng.uniform(0.5, 0.8) + rng.choice((0.0, 0.0, 2.0, 5.0)))
+    if manner < 0.7:
+        tail, tip = center - up * length * 0.25, center + up * length * 0.5
+        return tail, tip, tail - up * size * rng.uniform(0.42, 0.65)
+    aside = np.array([-up[1], up[0]]) * rng.choice((1, -1))
+    along = up * length * rng.choice((0.0, 0.0, 0.2, -0.2))
+    return center - up * length * 0.5, center + up * length * 0.5, center + along + aside * size * rng.uniform(0.5, 1.1)
 
 
 def captions(rng: Random, pen: Pen) -> None:

@@ -86,7 +86,11 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
     half = rng.uniform(21, 36) if not plain else rng.uniform(22, 48)
     wide = max(leg.lanes_in + leg.lanes_out for leg in crash.legs)
     half += 2.0 * wide
+    used = {bearing for actor in crash.actors for bearing in (actor.leg, actor.out)}
     lengths = {leg.bearing: half * rng.uniform(0.85, 1.5) for leg in crash.legs}
+    for leg in crash.legs:
+        if leg.bearing not in used and not crash.is_main(leg.bearing):
+            lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
     curved = any(leg.curve != "none" for leg in crash.legs)
     ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0)
     long = int(rng.uniform(400, 540))

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFilter
 
 from mini.generator.world import Crash
-from mini.renderer.lines import STEP, Band, Ground
-from mini.renderer.pen import Pen
+from mini.renderer.lines import STEP, Band, Ground, Points
+from mini.renderer.pen import Color, Pen
 
 TURN_STEPS = {
     "left": ("left",),
@@ -51,7 +51,7 @@ class RoadMarks:
         self.mark = rng.choice((1, 2, 2))
         self.dash = rng.uniform(2.0, 4.0)
         self.gap = rng.uniform(2.0, 5.0)
-        self.corner = rng.uniform(1.5, 5.5)
+        self.corner = rng.uniform(1.5, 5.5) if rng.random() < 0.65 else rng.uniform(5.0, 9.0)
         self.shoulders = rng.choices((0, 1, 2, 3), (25, 35, 30, 10) if ground.plain else (65, 25, 10, 0))[0]
         self.curb = (
             0 if ground.plain or self.shoulders or rng.random() > 0.2 else round(rng.uniform(0.5, 2.5) * pen.scale)
@@ -60,6 +60,12 @@ class RoadMarks:
         narrow = all(leg.lanes_in <= 1 for leg in crash.legs)
         odds = (50, 20, 15, 15) if narrow else (10, 50, 25, 15)
         self.center = rng.choices(("dashed", "double", "solid", "solid_dashed"), odds)[0]
+        self.arrow_fill = rng.choices((None, (250, 235, 205), (255, 255, 255), (170, 170, 170)), (55, 20, 15, 10))[0]
+        """Color of broad turn arrows with an outline; None: thin black ones."""
+        self.every_lane = rng.random() < 0.6
+        """Whether lanes that only go straight have arrows too."""
+        self.storage = rng.random() < 0.7
+        """Whether the line beside a turn lane is solid."""
 
     def draw(self, arrows: bool, signs: bool) -> None:
         """Everything, edges first."""
@@ -190,7 +196,7 @@ class RoadMarks:
             return
         for k in range(1, leg.lanes_in):
             uses = (leg.turns_in[k - 1], leg.turns_in[k]) if leg.turns_in else ("", "")
-            solid = uses[0] == "right" or uses[1] == "left"
+            solid = self.storage and (uses[0] == "right" or uses[1] == "left")
             pen.line(
                 band.at(s, band.right - k * band.lane), width=self.mark, dash=0.0 if solid else self.dash, gap=self.gap
             )
@@ -202,18 +208,39 @@ class RoadMarks:
     # -------------------------------------------------------------- arrows, signs
     def _arrows(self, band: Band, start: float) -> None:
         for k, use in enumerate(band.leg.turns_in, 1):
+            if use == "through" and not self.every_lane:
+                continue
             place = min(start + self.rng.uniform(4, 9), band.length - 6)
             for turn in TURN_STEPS.get(use, ()):
-                self._turn_arrow(band, place, band.lane_in(k), turn)
+                bend = self._turn_arrow(band, place, band.lane_in(k), turn)
+                if self.arrow_fill is None:
+                    self._thin_arrow(bend)
+                else:
+                    self._broad_arrow(bend, self.arrow_fill)
 
-    def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> None:
-        pen = self.pen
+    def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> Points:
+        """Tail, knee and tip in pixels."""
         tail, knee = band.at(place + 4.2, lateral)[0], band.at(place + 1.2, lateral)[0]
         side = {"left": -1.3, "right": 1.3, "through": 0.0}[turn]
         tip = band.at(place - (1.5 if turn == "through" else 0.2), lateral + side)[0]
-        points = pen.px(np.array([tail, knee, tip]))
+        return self.pen.px(np.array([tail, knee, tip]))
+
+    def _thin_arrow(self, points: Points) -> None:
+        pen = self.pen
         pen.draw.line([tuple(p) for p in points], fill=(0, 0, 0), width=self.mark, joint="curve")
         pen.head(points[2], math.atan2(*(points[2] - points[1])[::-1]), max(6.0, 1.5 * pen.scale))
+
+    def _broad_arrow(self, points: Points, fill: Color) -> None:
+        """As painted on the road: a broad shaft and a head, outlined."""
+        pen, size = self.pen, max(6.0, 1.6 * self.pen.scale)
+        angle = math.atan2(*(points[2] - points[1])[::-1])
+        neck = points[2] - 0.7 * size * np.array([math.cos(angle), math.sin(angle)])
+        shaft = [tuple(p) for p in (points[0], points[1], neck)]
+        wide = max(2, round(0.45 * pen.scale))
+        pen.draw.line(shaft, fill=(90, 80, 70), width=wide + 2, joint="curve")
+        pen.head(points[2], angle, size + 2, (90, 80, 70))
+        pen.draw.line(shaft, fill=fill, width=wide, joint="curve")
+        pen.head(points[2] - np.array([math.cos(angle), math.sin(angle)]), angle, size - 1.5, fill)
 
     def _signs(self) -> None:
         """Stop signs as red ovals or the word, signals as three lamps in the middle of the junction."""

@@ -1,0 +1,180 @@
+"""The blocks on single vehicles: noise, and what is coded and stated of the crash, which is true.
+
+A part of the writer. In NMVCCS reports every vehicle has a critical event, and who turned or crossed the line is
+often told there, or by a driver, more plainly than among the events.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+from mini.generator import clauses_codes as said
+from mini.generator import words
+from mini.generator.clauses_noise import GROUPS, SPEED
+from mini.generator.grammar import Told, families, fill
+from mini.generator.world import Actor, Contact, Crash
+
+BY_MANEUVER = {
+    "turn_left": "turn_left",
+    "turn_right": "turn_right",
+    "lane_change_left": "over_left",
+    "lane_change_right": "over_right",
+    "crossing_centerline": "over_left",
+    "overtaking": "over_left",
+    "merge": "over_left",
+    "departing_road_left": "off_left",
+    "departing_road_right": "off_right",
+    "u_turn": "turn_around",
+    "backing": "backing",
+}
+"""Critical event of the one who errs."""
+TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
+         "departing_road_right")  # fmt: skip
+"""Maneuvers that their critical event tells; a crossed lane line may be several things."""
+
+
+def event_of(crash: Crash, index: int, who: tuple[int, int]) -> str | None:
+    """Key of the critical event of an actor, as `clauses_codes.EVENT` has it; None where nothing is coded."""
+    if index == who[0]:
+        return _own_event(crash, crash.actors[index], crash.actors[who[1]])
+    if index == who[1] and crash.actors[index].id.startswith("V"):
+        return _encroachment(crash, crash.actors[who[0]], crash.actors[index])
+    return None
+
+
+def _own_event(crash: Crash, actor: Actor, other: Actor) -> str | None:
+    if crash.config == "rear_end":
+        return {"stopped": "into_stopped", "slowing": "into_slowing"}.get(other.maneuver, "into_slower")
+    if crash.config in ("crossing", "pedestrian"):
+        return crash.config
+    return BY_MANEUVER.get(actor.maneuver)
+
+
+def _encroachment(crash: Crash, culprit: Actor, actor: Actor) -> str | None:
+    if crash.config in ("left_lateral", "right_into"):
+        leg = crash.leg(culprit.leg)
+        if leg is not None and leg.kind == "driveway":
+            return "from_driveway"
+        return "from_side_left" if crash.config == "left_lateral" else "from_side_right"
+    if crash.config == "overtaking":
+        return "from_opposite" if culprit.leg != actor.leg else None
+    return {
+        "crossing": "from_crossing",
+        "left_opposite": "from_opposite",
+        "head_on": "from_opposite",
+        "rear_end": "from_behind",
+        "merge": "from_right_lane",
+        "backing": "from_driveway",
+        "lane_change": "from_left_lane" if culprit.maneuver.endswith("right") else "from_right_lane",
+    }.get(crash.config)
+
+
+class BlocksMixin:
+    """The sentences on one vehicle, noise and truths; needs the writer's fields."""
+
+    rng: Random
+    crash: Crash
+    held_out: bool
+    length: float
+    told: Told
+    who: tuple[int, int]
+    people: dict[int, dict[str, str]]
+
+    say: Any
+    id_of: Any
+    _slot: Any
+    _impact: Any
+
+    def _about(self, index: int) -> list[str]:
+        """The block on one vehicle: driver, interview, health, codes."""
+        speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
+        out = (
+            ([self.say(SPEED, index, **self._person(index))] if speed else [])
+            + self._noise("occupant", 1.2, index)
+            + self._noise("interview", 1.1, index)
+        )
+        out += self._statements(index) + self._noise("tow", 0.6, index)
+        codes = self._coded(index) + self._noise("codes", 1.7, index)
+        return out + self._noise("health", 1.0, index) + codes + self._noise("police", 0.5, index)
+
+    def _person(self, index: int) -> dict[str, str]:
+        """The driver of an actor, the same throughout a report; slips of investigators apart."""
+        if index not in self.people or self.rng.random() < 0.03:
+            self.people[index] = words.person(self.rng)
+        return self.people[index]
+
+    def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
+        """About mean * length sentences of a noise group."""
+        wanted = mean * self.length
+        count = int(wanted) + (self.rng.random() < wanted % 1)
+        vehicles = [i for i, a in enumerate(self.crash.actors) if a.id.startswith("V")]
+        out = []
+        for _ in range(count):
+            v = index if index in vehicles else self.rng.choice(vehicles)
+            others = [i for i in vehicles if i != v]
+            options = [c for c in GROUPS[group] if others or ("{W}" not in c and "Both" not in c)]
+            w = self.rng.choice(others) if others else v
+            out.append(self.say(options, v, w, **self._person(v)))  # type: ignore[arg-type]
+        return out
+
+    def _coded(self, index: int) -> list[str]:
+        """Critical event, movement before it, crash type: as often as reports have them."""
+        rng, out = self.rng, []
+        share = min(1.0, self.length)
+        key = event_of(self.crash, index, self.who)
+        if key and rng.random() < 0.9 * share:
+            out.append(self._event(index, key))
+        maneuver = self.crash.actors[index].maneuver
+        if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
+            if not maneuver.startswith("lane_change"):
+                self.told |= {f"man.{self.id_of(index)}"}
+            out.append(self.say(said.MOVEMENT_FRAMES, index, move=self._phrase(said.MOVEMENT[maneuver])))
+        if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
+            out.append(self.say(said.TYPE_FRAMES, index, kind=self._phrase(said.CRASH_TYPE[self.crash.config])))
+        return out
+
+    def _event(self, index: int, key: str) -> str:
+        other = self.who[1] if index == self.who[0] else self.who[0]
+        erring = self.crash.actors[self.who[0]]
+        if key in ("into_stopped", "into_slowing"):
+            self.told |= {f"man.{self.id_of(other)}"}
+        elif key == "crossing" or (index == self.who[0] and erring.maneuver in TELLS):
+            self.told |= {f"man.{erring.id}"}
+        return self.say(said.EVENT_FRAMES, index, other, code=self._phrase(said.EVENT[key], index, other))
+
+    def _statements(self, index: int) -> list[str]:
+        """What a driver says of the own maneuver and of the other's, and the impact told once more."""
+        rng, out, share = self.rng, [], min(1.0, self.length)
+        actor, other = self.crash.actors[index], self._opponent(index)
+        person = self._person(index)
+        if actor.maneuver in said.DOING and rng.random() < 0.3 * share:
+            self.told |= {f"man.{actor.id}"}
+            doing = self._phrase(said.DOING[actor.maneuver], index, other, person)
+            out.append(self.say(said.SELF_FRAMES, index, other, doing=doing, **person))
+        key = None if other is None else self._seen(other)
+        if key and rng.random() < 0.25 * share:
+            self.told |= {f"man.{self.id_of(other)}"}
+            did = self._phrase(said.DID[key], index, other, person)
+            out.append(self.say(said.OTHER_FRAMES, index, other, did=did, **person))
+        if rng.random() < 0.1 * share:
+            contact: Contact = self.crash.contacts[0]
+            if index in (contact.striker, contact.struck):
+                out.append(self._impact(0, contact))
+        return out
+
+    def _opponent(self, index: int) -> int | None:
+        found = [i for i in self.who if i != index and self.id_of(i).startswith("V")]
+        return found[0] if index in self.who and found else None
+
+    def _seen(self, index: int) -> str | None:
+        """What another driver says that an actor did."""
+        if self.crash.config == "crossing":
+            return "crossing"
+        maneuver = self.crash.actors[index].maneuver
+        return maneuver if maneuver in said.DID else None
+
+    def _phrase(self, options: str, v: int = 0, w: int | None = None, person: dict[str, str] | None = None) -> str:
+        """One of `a|b|~c`, of its side of the split, with its slots filled."""
+        chosen = self.rng.choice(families(options.split("|"), self.held_out))
+        return fill(chosen, lambda slot: self._slot(slot, v, v if w is None else w, person or {}))

@@ -1,0 +1,81 @@
+"""What is coded and stated of single vehicles agrees with the crash."""
+
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mini.generator import clauses_codes as said
+from mini.generator.blocks import BY_MANEUVER, event_of
+from mini.generator.crash import sample_crash
+from mini.generator.grammar import SLOTS
+from mini.generator.report import make_report
+from mini.generator.writer import Writer
+
+seeds = st.integers(0, 10**6)
+SLOTS_KNOWN = "V W He he his code move kind doing did anyside spd dir lane xb"
+
+
+@settings(max_examples=300, deadline=None)
+@given(seed=seeds)
+def test_critical_events_are_those_of_the_crash(seed: int) -> None:
+    writer = Writer(Random(seed), sample_crash(Random(seed)), False, 1.0)
+    crash, (v, w) = writer.crash, writer.who
+    erring, other = crash.actors[v], crash.actors[w]
+    own, met = event_of(crash, v, writer.who), event_of(crash, w, writer.who)
+    for key in (own, met):
+        assert key is None or key in said.EVENT
+    if own in ("turn_left", "turn_right", "turn_around", "backing", "off_left", "off_right"):
+        assert BY_MANEUVER[erring.maneuver] == own
+    if own == "into_stopped":
+        assert other.maneuver == "stopped"
+    if met == "from_opposite":
+        assert (erring.leg - other.leg) % 8 == 4
+    if met in ("from_crossing", "from_side_left", "from_side_right"):
+        assert (erring.leg - other.leg) % 4 == 2
+    if met in ("from_behind", "from_left_lane"):
+        assert erring.leg == other.leg
+    for third in set(range(len(crash.actors))) - {v, w}:
+        assert event_of(crash, third, writer.who) is None
+
+
+def test_every_vehicle_of_a_common_crash_has_a_critical_event() -> None:
+    found = 0
+    for seed in range(400):
+        writer = Writer(Random(seed), sample_crash(Random(seed)), False, 1.0)
+        if writer.crash.config in ("crossing", "left_opposite", "left_lateral", "right_into", "rear_end", "head_on"):
+            found += 1
+            assert all(event_of(writer.crash, index, writer.who) for index in writer.who)
+    assert found > 200
+
+
+@pytest.mark.parametrize(
+    "options", [said.EVENT_FRAMES, said.MOVEMENT_FRAMES, said.TYPE_FRAMES, said.SELF_FRAMES, said.OTHER_FRAMES]
+)
+def test_frames_stand_on_both_sides_of_the_split_and_use_known_slots(options: list[str]) -> None:
+    assert {clause.startswith("~") for clause in options} == {True, False}
+    assert {slot for clause in options for slot in SLOTS.findall(clause)} <= set(SLOTS_KNOWN.split())
+
+
+def test_left_turns_are_coded_of_those_who_turn_left() -> None:
+    told = 0
+    for seed in range(600):
+        report = make_report(seed, modes={"text": 1.0})
+        turning = {actor.id for actor in report.crash.actors if actor.maneuver == "turn_left"}
+        start = 0
+        for end, facts in report.sentences:
+            sentence, start = report.narrative[start:end].lower(), end
+            if "critical" in sentence and "this vehicle turning left" in sentence:
+                told += 1
+                assert facts & {f"man.{name}" for name in turning}, sentence
+    assert told > 5
+
+
+def test_a_driver_stays_the_same_person() -> None:
+    swaps = 0
+    for seed in range(50):
+        writer = Writer(Random(seed), sample_crash(Random(seed)), False, 1.0)
+        ages = {writer._person(0)["age"] for _ in range(10)}
+        swaps += len(ages) - 1
+    assert swaps < 50
