@@ -78,20 +78,22 @@ class SceneMixin:
         return self.crash.leg(self.crash.actors[v].leg)  # type: ignore[return-value]
 
     def scene_junction(self) -> str:
-        """The junction's name; the plain word does not tell its legs."""
-        if self.crash.layout in ("four", "t") and self.rng.random() < 0.75:
+        """The junction's name; the plain word is what a crossing of two roads is called, seldom a T."""
+        layout, control = self.crash.layout, self._control_kind()
+        if layout not in ("four", "t"):
+            return "a driveway"
+        self.told |= {"layout"} if layout == "four" else set()
+        if self.rng.random() < (0.6 if layout == "four" else 0.93):
             self.told |= {"layout"}
             text = words.junction(self.rng, self.crash)
-            control = self._control_kind()
             if control == "none" and self.ciren and self.rng.random() < 0.2:
                 self.told.add("control")
                 text = text.replace("a ", "an uncontrolled ", 1)
             return text
-        return (
-            self.rng.choice(("an intersection", "the intersection"))
-            if self.crash.layout in ("four", "t")
-            else "a driveway"
-        )
+        if control == "signal" and self.rng.random() < 0.25:
+            self.told.add("control")
+            return "a signalized intersection"
+        return self.rng.choice(("an intersection", "the intersection"))
 
     # -------------------------------------------------------------- roads
     def _legs_on(self, axis: int) -> list[Leg]:
@@ -231,11 +233,14 @@ class SceneMixin:
             "driveway": scene.OPENING_DRIVEWAY,
             "merge": scene.OPENING_MERGE,
         }
-        if self.crash.layout in ("driveway", "merge"):
+        if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
         first = next(i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg) or True)
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), first)
-        return [self.say(kinds.get(self.crash.layout, scene.OPENING_PLAIN), main)]
+        options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
+        if self.crash.layout == "t" and self.rng.random() < 0.85:
+            options = [clause for clause in options if "{jn}" in clause.lower()]
+        return [self.say(options, main)]
 
     def _road_sentences(self) -> list[str]:
         rng, out = self.rng, []

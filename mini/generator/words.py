@@ -137,6 +137,8 @@ def junction(rng: Random, crash: Crash) -> str:
             "T-intersection",
             "T intersection",
             '"T" intersection',
+            "'T' intersection",
+            "\u201cT\u201d intersection",
             "t-intersection",
             "three-leg intersection",
             "three-way intersection",

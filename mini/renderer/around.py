@@ -27,6 +27,12 @@ NOTES = (
     "paved shoulder",
     "gravel",
     "Lawn",
+    "telephone pole",
+    "standing outside of vehicle",
+    "Stop",
+    "RP = SE corner, RL = S curb line",
+    "V1 - {y} Cadillac, 4-dr sedan\nV2 - {y} GMC Vandura 2500, van",
+    "N/S road {n} mph, E/W road {n} mph",
 )
 
 
@@ -45,19 +51,20 @@ def north_arrow(rng: Random, pen: Pen) -> list[Shape]:
     if abs(pen.turn) < 0.01 and rng.random() < 0.08:
         return []
     w, h = pen.image.size
-    length = rng.uniform(14, 46)
+    length = rng.uniform(9, 18) if rng.random() < 0.35 else rng.uniform(14, 46)
     x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94), rng.uniform(0.3, 0.7))) * w
     y = rng.choice((rng.uniform(0.02, 0.25), rng.uniform(0.75, 0.94))) * h
     x, y = min(max(x, length), w - length), min(max(y, length), h - length)
     up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
-    center, size = np.array([x, y]), max(8.0, length * rng.uniform(0.36, 0.95))
+    center, size = np.array([x, y]), max(7.0, length * rng.uniform(0.36, 0.95))
     pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
-    head, width = max(5.0, length * rng.uniform(0.2, 0.36)), 1 if length < 24 else rng.choice((1, 1, 2, 2, 3))
+    head, width = max(4.0, length * rng.uniform(0.2, 0.4)), 1 if length < 24 else rng.choice((1, 1, 2, 2, 3))
     tail, tip, place = _arrow_and_letter(rng, center, up, length, size)
     pen.arrow(tail, tip, width=width, head=head, barb=rng.choice((0.0, 0.3, 0.45)))
     angle = math.degrees(pen.turn) if rng.random() < 0.4 else 0.0
+    name, size = ("North", 0.5 * size) if rng.random() < 0.06 else ("N", size)
     for bold in range(rng.choice((1, 2, 2))):
-        pen.text(place[0] + bold, place[1], "N", round(size), angle=angle)
+        pen.text(place[0] + bold, place[1], name, round(max(7.0, size)), angle=angle)
     square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
     return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
 

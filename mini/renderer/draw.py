@@ -105,7 +105,7 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
             else (long, long)
         )
     else:
-        size = (long, int(long * rng.uniform(0.65, 1.0)))
+        size = (long, int(long * rng.uniform(0.45 if crash.layout in ("t", "driveway") else 0.65, 1.0)))
         size = size if rng.random() < 0.75 else size[::-1]
     scale = max(size) / (2 * half) if plain else min(size) / (2 * half) * rng.uniform(1.0, 1.15)
     return Pen(rng, *size, scale, turn, (0.0, 0.0)), ground
