@@ -46,6 +46,17 @@ def _text_tags() -> dict[str, int]:
     return {name: i for i, name in enumerate(names)}
 
 
+_OF_DRAWN = (
+    *(f"{key}={b}" for key in ("heading", "faces") for b in BEARINGS),
+    *(f"maneuver={m}" for m in MANEUVERS),
+    "striker",
+    "struck",
+    *(f"area={a}" for a in AREAS),
+)
+"""What is asked of a drawn vehicle by its name: two that touch mostly share a token, and without names it stays open
+whose side or heading is meant."""
+
+
 def _picture_tags() -> dict[str, int]:
     names = [f"leg={b}" for b in BEARINGS] + [f"{way}={n}" for way in ("in", "out") for n in LANES]
     names += [f"median={m}" for m in MEDIANS] + ["center"] + [f"use={t}" for t in TURNS]
@@ -54,6 +65,7 @@ def _picture_tags() -> dict[str, int]:
     names += [f"id={i}" for i in IDS] + [f"heading={b}" for b in BEARINGS] + [f"faces={b}" for b in BEARINGS]
     names += [f"pose={p}" for p in POSES] + [f"maneuver={m}" for m in MANEUVERS] + [f"lane={n}" for n in range(1, 6)]
     names += [f"type={k}" for k in KINDS] + ["striker", "struck"] + [f"area={a}" for a in AREAS]
+    names += [f"{i}.{name}" for i in IDS for name in _OF_DRAWN]
     return {name: i for i, name in enumerate(names)}
 
 
@@ -164,4 +176,5 @@ def drawn_actor(crash: Crash, actor: Actor, pose: str, faces: int) -> list[int]:
         for who in ("striker", "struck"):
             if crash.actors[getattr(contact, who)] is actor:
                 names += [who, f"area={getattr(contact, who + '_area')}"]
+    names += [f"{actor.id}.{name}" for name in names]
     return [PICTURE[name] for name in names if name in PICTURE]

@@ -212,3 +212,22 @@ def test_attention_on_the_right_place_costs_nothing(coder: Coder) -> None:
     keys[0, batch.sources.any(dim=0)] = 9.0
     queries[:] = 9.0
     assert float(Forward._pointers(batch, way)) < float(even)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_vehicles_that_share_a_token_are_told_apart_by_name(seed: int) -> None:
+    crash = make_report(seed, modes={"image": 1.0}).crash
+    names = {index: name for name, index in tags.PICTURE.items()}
+    contact = crash.contacts[0]
+    shown = set()
+    for index in (contact.striker, contact.struck):
+        actor = crash.actors[index]
+        found = {names[i] for i in tags.drawn_actor(crash, actor, "contact", actor.heading)}
+        own = {name for name in found if name.startswith(f"{actor.id}.")}
+        role = "striker" if index == contact.striker else "struck"
+        assert f"{actor.id}.area={getattr(contact, role + '_area')}" in own
+        assert f"{actor.id}.{role}" in own
+        assert own == {f"{actor.id}.{name}" for name in found if f"{actor.id}.{name}" in tags.PICTURE}
+        shown |= own
+    assert sum(".area=" in name for name in shown) == 2

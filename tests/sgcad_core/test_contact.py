@@ -53,9 +53,7 @@ def test_an_overlap_from_the_start_counts_where_one_of_them_moves():
     assert not moves(trajectory("V1", 0 * K, 0))
 
 
-BOXES = st.builds(
-    Box, st.floats(-20, 20), st.floats(-20, 20), st.floats(-4, 4), st.floats(0.3, 12), st.floats(0.3, 3)
-)
+BOXES = st.builds(Box, st.floats(-20, 20), st.floats(-20, 20), st.floats(-4, 4), st.floats(0.3, 12), st.floats(0.3, 3))
 
 
 @settings(max_examples=60, deadline=None)

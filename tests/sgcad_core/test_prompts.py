@@ -142,5 +142,3 @@ def test_a_repair_shows_the_answer_and_numbers_the_faults():
     assert "{}" in text
     assert "1. [s] no hub" in text
     assert "2. [s] no lane" in text
-
-

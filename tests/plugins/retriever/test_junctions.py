@@ -138,9 +138,7 @@ def test_a_layout_finds_the_junction_like_it(town, tmp_path):
     assert index.retrieve(describe_layout(tee), "road")[0].id == "junction/town/5"
 
 
-LEGS = st.lists(
-    st.builds(JunctionLeg, st.floats(-7, 7), st.integers(0, 5), st.integers(0, 5)), min_size=3, max_size=8
-)
+LEGS = st.lists(st.builds(JunctionLeg, st.floats(-7, 7), st.integers(0, 5), st.integers(0, 5)), min_size=3, max_size=8)
 
 
 @given(LEGS, st.floats(-7, 7), st.randoms())

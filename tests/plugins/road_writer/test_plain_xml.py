@@ -97,7 +97,9 @@ def test_netconverts_words_come_back():
 
 
 def test_a_document_cannot_send_its_reader_to_a_schema_elsewhere():
-    located = '<nodes xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://a.b/c">'
+    located = (
+        '<nodes xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://a.b/c">'
+    )
     network = write(road_answer(nodes=NODES.replace("<nodes>", located)))
     assert network.returncode == 0
     assert "a.b" not in network.plain.nodes

@@ -117,5 +117,3 @@ def test_layouts_that_contradict_themselves_are_findings(change, message):
     change(answer)
     with pytest.raises(InvalidOutput, match=message):
         write(answer, form="layout")
-
-

@@ -135,7 +135,7 @@ def test_every_fault_is_found(change, message):
     assert any(message in f.what for f in found)
 
 
-@pytest.mark.parametrize("text", ["", "rubbish", "<OpenDRIVE/>", "<net/>", '<!DOCTYPE a []><OpenDRIVE/>'])
+@pytest.mark.parametrize("text", ["", "rubbish", "<OpenDRIVE/>", "<net/>", "<!DOCTYPE a []><OpenDRIVE/>"])
 def test_rubbish_is_a_finding_for_the_checker_and_invalid_output_for_the_mender(text):
     assert xodr_findings(text)
     with pytest.raises(InvalidOutput, match=r"well-formed|no OpenDRIVE|entities"):

@@ -46,8 +46,9 @@ def test_one_who_is_hit_from_behind_shares_road_and_lane_with_the_other() -> Non
     assert first.lane == 2
 
 
-@pytest.mark.parametrize(("words", "lane"), [("the right lane", 1), ("the left lane", 2), ("lane one", 1), (
-    "lane five", 2)])
+@pytest.mark.parametrize(
+    ("words", "lane"), [("the right lane", 1), ("the left lane", 2), ("lane one", 1), ("lane five", 2)]
+)
 def test_lanes_count_from_the_right_curb_and_stay_on_the_road(words: str, lane: int) -> None:
     assert _actor(_behavior(f"V1 was northbound in {words} and struck a pole."), "V1").lane == lane
 
@@ -84,8 +85,9 @@ def test_an_oblique_unnamed_network_serves_as_well() -> None:
                Road(id="second", from_node="c", to_node="b", lanes_forward=1, lanes_backward=1),
                Road(id="third", from_node="b", to_node="d", lanes_forward=1, lanes_backward=1)),
     )  # fmt: skip
-    found = _behavior("V1 was northeastbound. V2 was southeastbound and failed to stop. V1 struck V2 in the right "
-                      "side.", spec)
+    found = _behavior(
+        "V1 was northeastbound. V2 was southeastbound and failed to stop. V1 struck V2 in the right side.", spec
+    )
     assert (_actor(found, "V1").road, _actor(found, "V1").direction) == ("first", "forward")
     assert (_actor(found, "V2").road, _actor(found, "V2").direction) == ("third", "backward")
 

@@ -542,8 +542,9 @@ def test_exchanging_the_numbers_exchanges_the_facts(text: str) -> None:
     assert _sides(facts) == {{"V1": "V2", "V2": "V1"}[k]: v for k, v in _sides(mirror).items()}
 
 
-@pytest.mark.parametrize("spelling", ["Vehicle #{}", "Vehicle # {}", "V{}", "V {}", "Vehicle {}", "Unit {}",
-"VEHICLE #{}", "Veh. {}"])
+@pytest.mark.parametrize(
+    "spelling", ["Vehicle #{}", "Vehicle # {}", "V{}", "V {}", "Vehicle {}", "Unit {}", "VEHICLE #{}", "Veh. {}"]
+)
 @pytest.mark.parametrize("text", [t for t, _, _ in REPORTS if re.search(r"\bV1\b", t) and "(V1" not in t][:12])
 def test_every_spelling_of_a_mention_gives_the_same_facts(text: str, spelling: str) -> None:
     rewritten = re.sub(r"\bV(\d)\b", lambda m: spelling.format(m.group(1)), text)
@@ -578,8 +579,9 @@ def test_a_text_without_vehicles_gives_no_facts() -> None:
 
 
 def test_conditions_are_read_and_negations_are_not() -> None:
-    facts = crash_facts("V1 was eastbound. It was dark but the road was lighted, there was no rain and the road was "
-                        "dry.")
+    facts = crash_facts(
+        "V1 was eastbound. It was dark but the road was lighted, there was no rain and the road was dry."
+    )
     assert (facts.light, facts.weather, facts.surface) == ("dark_lit", None, "dry")
 
 
@@ -631,8 +633,9 @@ def test_speed_lane_and_driveways_are_kept() -> None:
 
 
 def test_what_a_single_vehicle_hits_becomes_an_object() -> None:
-    facts = crash_facts("V1 was northbound, departed the right side of the road and struck a utility pole with its "
-                        "front.")
+    facts = crash_facts(
+        "V1 was northbound, departed the right side of the road and struck a utility pole with its front."
+    )
     assert [(o.id, o.kind, o.word) for o in facts.others] == [("O1", "object", "pole")]
     assert facts.contacts[0].struck == "O1"
 

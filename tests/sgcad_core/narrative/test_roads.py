@@ -78,8 +78,10 @@ def test_a_right_turn_lane_at_a_t_stands_on_its_approach_only() -> None:
 
 
 def test_a_speed_limit_belongs_to_the_road_it_is_told_of() -> None:
-    text = ("The posted speed limit was 72 kmph (45 mph) for the eastbound lane and 40 kmph (25 mph) for the "
-            "northbound lane. V1 was traveling east and V2 was traveling north when they met in the intersection.")
+    text = (
+        "The posted speed limit was 72 kmph (45 mph) for the eastbound lane and 40 kmph (25 mph) for the "
+        "northbound lane. V1 was traveling east and V2 was traveling north when they met in the intersection."
+    )
     assert {leg.bearing: leg.speed_limit_mph for leg in layout(text).legs} == {"W": 45, "E": 45, "S": 25, "N": 25}
 
 
