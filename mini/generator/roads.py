@@ -38,7 +38,7 @@ def pair(rng: Random, bearing: int, area: str, least: int = 1, one_way: bool = F
     to, fro, median, twltl = main_road(rng, area, least)
     limit = rng.choice(LIMITS[area])
     if one_way:
-        to, fro, median, twltl = max(to, rng.choice((1, 2, 2, 3))), 0, "none", False
+        to, fro, median, twltl = max(to, rng.choice((1, 1, 2, 2, 3))), 0, "none", False
     first = Leg(bearing % 8, to, fro, median=median, twltl=twltl, limit=limit)
     second = Leg((bearing + 4) % 8, fro, to, median=median, twltl=twltl, limit=limit)
     if one_way and rng.random() < 0.5:
@@ -108,7 +108,7 @@ def control(rng: Random, legs: list[Leg], main: int) -> None:
 
 def junction(rng: Random, layout: str, main: int, area: str) -> list[Leg]:
     """Legs of a three-leg, four-leg or driveway junction, ordered clockwise from north."""
-    one_way = layout == "four" and rng.random() < 0.12
+    one_way = layout == "four" and rng.random() < 0.2
     legs = pair(rng, main, area, one_way=one_way and rng.random() < 0.6)
     if layout == "four":
         calm = "urban" if area == "urban" or rng.random() < 0.3 else "rural"

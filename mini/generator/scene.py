@@ -9,18 +9,14 @@ from typing import Any
 from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import Told, choose, families
+from mini.generator.road_phrases import RoadsMixin
 from mini.generator.world import WORDS, Crash, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
 TIMES = ("morning", "early morning", "afternoon", "late afternoon", "evening", "early evening", "mid-morning", "night")
-ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
-MEDIAN_WORDS = {
-    "grass": "divided by a grass median", "barrier": "divided by a concrete barrier", "raised": "divided by a raised median",
-    "painted": "divided by a painted median",
-}  # fmt: skip
 
 
-class SceneMixin:
+class SceneMixin(RoadsMixin):
     """Slots and sentences about the place; needs the writer's fields."""
 
     rng: Random
@@ -89,112 +85,23 @@ class SceneMixin:
             if control == "none" and self.ciren and self.rng.random() < 0.2:
                 self.told.add("control")
                 text = text.replace("a ", "an uncontrolled ", 1)
+            elif not self.ciren and not self.held_out and self.rng.random() < 0.06:
+                text = self._wide(text)
             return text
         if control == "signal" and self.rng.random() < 0.25:
             self.told.add("control")
             return "a signalized intersection"
         return self.rng.choice(("an intersection", "the intersection"))
 
-    # -------------------------------------------------------------- roads
-    def _legs_on(self, axis: int) -> list[Leg]:
-        return [leg for leg in self.crash.legs if leg.bearing % 4 == axis % 4]
-
-    def _road(self, axis: int, bare: bool = False) -> str:
-        """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
-        rng, legs = self.rng, self._legs_on(axis)
-        leg = legs[0] if legs else self.crash.legs[0]
-        if leg.kind != "road" and len(legs) == 1:
-            self.told |= {"layout"}
-            return {
-                "driveway": rng.choice(("a private driveway", "a driveway", "a parking lot driveway")),
-                "ramp": "an entrance ramp",
-            }[leg.kind]
-        key = f"lanes.{axis % 4}"
-        if not bare and (key in self.stated or not self.roads_left):
-            same = axis % 4 == self.crash.main % 4
-            return rng.choice(
-                ("the same road", "the same roadway", "the roadway")
-                if same
-                else ("the intersecting road", "the intersecting roadway", "the side street")
-            )
-        self.stated.add(key)
-        text, told = self._lanes_text(leg, legs)
-        self.told |= {key, f"median.{axis % 4}"} if told else set()
-        if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
-            return text if bare or text.startswith("a ") else "a " + text
-        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {text.removeprefix('a ')}"
-
-    def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
-        """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure."""
-        rng = self.rng
-        even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
-        plain = not any(side.turns_in for side in legs) and not leg.twltl and leg.lanes_in * leg.lanes_out
-        bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
-        other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
-        total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
-        extra = sum(use in ("left", "right") for use in leg.turns_in)
-        if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
-            total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
-        kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
-        word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
-        n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
-            ("-lane", "-lane", " lane")
-        )
-        if leg.lanes_in * leg.lanes_out == 0:
-            return f"a {n}, one-way {word}" if rng.random() < 0.5 else f"a one-way, {n} {word}", True
-        divided = MEDIAN_WORDS.get(leg.median, "")
-        if plain and not self.held_out and rng.random() < 0.3:
-            return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
-        if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35:
-            text = f"a {rng.choice(('two-way ', 'divided ', '') if divided else ('two-way ', 'undivided ', ''))}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction"
-            return text + (f" {divided}" if divided else ""), True
-        ways = (
-            ("divided", "two-way, divided", "physically divided")
-            if divided
-            else ("two-way", "two-way", "undivided", "two-way, undivided", "not physically divided")
-        )
-        text = f"a {n}, {rng.choice(ways)} {word}" if rng.random() < 0.7 else f"a {n} {rng.choice(ways)} {word}"
-        told = even or (leg.twltl and total in (3, 5))
-        if bracket:
-            text, told = f"{text} {self._bracket(leg, legs)}", True
-            self.told.add(f"turns.{leg.bearing % 4}")
-        elif divided and rng.random() < 0.5:
-            text += f" {divided}"
-        elif leg.twltl and rng.random() < 0.5:
-            text += " with a center turn lane"
-        return text, told
-
-    def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
-        """`a road with two northbound lanes and one southbound lane` and the like."""
-        rng, kind = self.rng, self.rng.choice(("two-way ", "", "undivided " if leg.median == "none" else "divided "))
-        if even and rng.random() < 0.6:
-            each = words.NUMBERS[leg.lanes_in] + (" lane" if leg.lanes_in == 1 else " lanes")
-            way = rng.choice(("in each direction", "each way", "for each direction", "per direction"))
-            return rng.choice(
-                (
-                    f"a {kind}{word} with {each} {way}",
-                    f"a {kind}{word} that had {each} {way}",
-                    f"a {kind}{word} consisting of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
-                    f"a {kind}{word} of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
-                )
-            )
-        sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
-        rng.shuffle(sides)
-        lanes = [f"{words.NUMBERS[n]} {xb} lane{'s' * (n > 1)}" for n, xb in sides]
-        return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
-
-    def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
-        back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
-        rng = self.rng
-        return words.split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing))
-
-    def _limit(self, slot: str) -> str:
-        axis = (self.crash.main + 2 * (slot == "lim2")) % 4
-        legs = [leg for leg in self._legs_on(axis) if leg.limit]
-        if not legs:
-            return words.limit(self.rng, 25)
-        self.told.add(f"limit.{axis}")
-        return words.limit(self.rng, legs[0].limit or 25)
+    def _wide(self, junction: str) -> str:
+        """`a five-lane T-intersection`, which counts the lanes of the main road."""
+        axis = self.crash.main % 4
+        leg = self._legs_on(axis)[0]
+        if leg.turns_in or leg.lanes_in != leg.lanes_out:
+            return junction
+        self.told |= {f"lanes.{axis}"}
+        self.stated.add(f"lanes.{axis}")
+        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.removeprefix('a ')}"
 
     # -------------------------------------------------------------- control
     def _control_kind(self) -> str:

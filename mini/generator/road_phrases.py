@@ -1,0 +1,154 @@
+# ruff: noqa: E501 - lists of words
+"""How a report names a road: how many lanes, which way, divided by what; a part of the writer."""
+
+from __future__ import annotations
+
+from random import Random
+
+from mini.generator import words
+from mini.generator.grammar import Told
+from mini.generator.world import Crash, Leg
+
+ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
+MEDIAN_WORDS = {
+    "grass": "divided by a grass median", "barrier": "divided by a concrete barrier", "raised": "divided by a raised median",
+    "painted": "divided by a painted median",
+}  # fmt: skip
+LOOKS = ("level", "straight", "straight and level", "dry", "level, straight", "dry, level", "busy", "straight, dry")
+"""Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
+
+
+class RoadsMixin:
+    """Noun phrases for roads; needs the writer's fields."""
+
+    rng: Random
+    crash: Crash
+    held_out: bool
+    ciren: bool
+    told: Told
+    stated: set[str]
+    roads_left: bool
+
+    def _legs_on(self, axis: int) -> list[Leg]:
+        return [leg for leg in self.crash.legs if leg.bearing % 4 == axis % 4]
+
+    def _road(self, axis: int, bare: bool = False) -> str:
+        """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
+        rng, legs = self.rng, self._legs_on(axis)
+        leg = legs[0] if legs else self.crash.legs[0]
+        if leg.kind != "road" and len(legs) == 1:
+            self.told |= {"layout"}
+            return {
+                "driveway": rng.choice(("a private driveway", "a driveway", "a parking lot driveway")),
+                "ramp": "an entrance ramp",
+            }[leg.kind]
+        key = f"lanes.{axis % 4}"
+        if not bare and (key in self.stated or not self.roads_left):
+            same = axis % 4 == self.crash.main % 4
+            return rng.choice(
+                ("the same road", "the same roadway", "the roadway")
+                if same
+                else ("the intersecting road", "the intersecting roadway", "the side street")
+            )
+        self.stated.add(key)
+        text, told = self._lanes_text(leg, legs)
+        self.told |= {key, f"median.{axis % 4}"} if told else set()
+        if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
+            return text if bare or text.startswith("a ") else "a " + text
+        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {text.removeprefix('a ')}"
+
+    def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
+        """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure."""
+        rng = self.rng
+        even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
+        plain = not any(side.turns_in for side in legs) and not leg.twltl and leg.lanes_in * leg.lanes_out
+        bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
+        other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
+        total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
+        extra = sum(use in ("left", "right") for use in leg.turns_in)
+        if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
+            total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
+        kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
+        word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
+        n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
+            ("-lane", "-lane", " lane")
+        )
+        if leg.lanes_in * leg.lanes_out == 0:
+            return self._one_way(leg, n, word), True
+        divided = MEDIAN_WORDS.get(leg.median, "")
+        if plain and not self.held_out and rng.random() < 0.3:
+            return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
+        if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35:
+            text = f"a {rng.choice(('two-way ', 'divided ', '') if divided else ('two-way ', 'undivided ', ''))}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction"
+            return text + (f" {divided}" if divided else ""), True
+        ways = (
+            ("divided", "two-way, divided", "physically divided")
+            if divided
+            else ("two-way", "two-way", "undivided", "two-way, undivided", "not physically divided")
+        )
+        text = self._counted(n, rng.choice(ways), word)
+        told = even or (leg.twltl and total in (3, 5))
+        if bracket:
+            text, told = f"{text} {self._bracket(leg, legs)}", True
+            self.told.add(f"turns.{leg.bearing % 4}")
+        elif divided and rng.random() < 0.5:
+            text += f" {divided}"
+        elif leg.twltl and rng.random() < 0.5:
+            text += " with a center turn lane"
+        return text, told
+
+    def _counted(self, n: str, ways: str, word: str) -> str:
+        """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
+        rng = self.rng
+        looks = f"{rng.choice(LOOKS)} " if not self.ciren and not self.held_out and rng.random() < 0.2 else ""
+        comma = rng.choice((",", ",", ""))
+        if not self.held_out and rng.random() < 0.15:
+            return f"a {looks}{ways}{comma} {n} {word}"
+        return f"a {looks}{n}{comma} {ways} {word}"
+
+    def _one_way(self, leg: Leg, n: str, word: str) -> str:
+        """`a one-lane, one-way street`, `a northbound one-way roadway with two lanes of travel`."""
+        rng, lanes = self.rng, max(leg.lanes_in, leg.lanes_out)
+        xb = words.bound(rng, leg.bearing + (4 if leg.lanes_in else 0))
+        forms = [f"a {n}, one-way {word}", f"a one-way, {n} {word}", f"a {n} one-way {word}"]
+        if not self.held_out:
+            count = f"{words.NUMBERS[lanes]} lane{'s' * (lanes > 1)}"
+            forms += [
+                f"a one-way {word} with {count}{rng.choice((' of travel', ' for travel', ''))}",
+                f"a {xb} one-way {word} with {count}",
+                f"a {n}, one-way, {xb} {word}",
+                f"a one-way {xb} {word} that had {count}",
+            ]
+        return rng.choice(forms)
+
+    def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
+        """`a road with two northbound lanes and one southbound lane` and the like."""
+        rng, kind = self.rng, self.rng.choice(("two-way ", "", "undivided " if leg.median == "none" else "divided "))
+        if even and rng.random() < 0.6:
+            each = words.NUMBERS[leg.lanes_in] + (" lane" if leg.lanes_in == 1 else " lanes")
+            way = rng.choice(("in each direction", "each way", "for each direction", "per direction"))
+            return rng.choice(
+                (
+                    f"a {kind}{word} with {each} {way}",
+                    f"a {kind}{word} that had {each} {way}",
+                    f"a {kind}{word} consisting of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
+                    f"a {kind}{word} of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
+                )
+            )
+        sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
+        rng.shuffle(sides)
+        lanes = [f"{words.NUMBERS[n]} {xb} lane{'s' * (n > 1)}" for n, xb in sides]
+        return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
+
+    def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
+        back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
+        rng = self.rng
+        return words.split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing))
+
+    def _limit(self, slot: str) -> str:
+        axis = (self.crash.main + 2 * (slot == "lim2")) % 4
+        legs = [leg for leg in self._legs_on(axis) if leg.limit]
+        if not legs:
+            return words.limit(self.rng, 25)
+        self.told.add(f"limit.{axis}")
+        return words.limit(self.rng, legs[0].limit or 25)
