@@ -161,6 +161,7 @@ class _Run:
             on_attempt=self.on_attempt,
             case=self.case.id,
             show_findings=self.config.show_findings,
+            hold_findings=self.config.hold_findings,
         )
 
     @contextmanager

@@ -67,7 +67,7 @@ def _stage(config: Config, writer: Any, stage: str) -> str:
     asked = [p for p in (config.backbone, config.decoder) if p is not None] if writer.asks_model else []
     about = _about([*plugins, *asked], writer.asks_model)
     if writer.asks_model:
-        about |= {"seed": config.seed, "show_findings": config.show_findings}
+        about |= {key: getattr(config, key) for key in ("seed", "show_findings", "hold_findings")}
     return _digest(about | {"stage": stage})
 
 
@@ -86,7 +86,7 @@ def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
 @cache
 def _records_digest() -> str:
     """What is kept is pickled: other records are another cache."""
-    files = (settings.ROOT / "sgcad_core" / f"{name}.py" for name in ("records", "specs", "refine"))
+    files = (settings.ROOT / "sgcad_core" / f"{name}.py" for name in ("records", "specs", "refine", "holds"))
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 

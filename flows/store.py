@@ -153,6 +153,8 @@ def write_attempts(folder: Path, attempts: Iterable[Attempt]) -> None:
 
 def _about(attempt: Attempt) -> dict[str, Any]:
     about: dict[str, Any] = {"stage": attempt.stage, "number": attempt.number, "seconds": round(attempt.seconds, 4)}
+    if attempt.held:
+        about["held"] = [hold.line() for hold in attempt.held]
     if generation := attempt.generation:
         about["generation"] = {
             "finish": generation.finish,

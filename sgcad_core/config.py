@@ -29,7 +29,7 @@ from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
-SCALARS = ("seed", "max_attempts", "show_findings")
+SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings")
 OPTIONAL = {"backbone", "decoder"}
 
 
@@ -43,6 +43,8 @@ class Config(Record):
     max_attempts: int = Field(10, ge=1, le=10)
     show_findings: bool = True
     """Findings stand in the next attempt's prompt; false for models too small to read them."""
+    hold_findings: bool = False
+    """What findings tell exactly (a maneuver, a number of lanes), further attempts' grammar does not let differ."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None

@@ -185,6 +185,32 @@ class Execution(Record):
 
 
 # ------------------------------------------------------------------ judgement
+class Hold(Record):
+    """What the items of a list in the next answer may say: a finding exact enough to narrow the answer's schema.
+
+    Of the list `items`, those with one of `values` at `key` (all, if `key` is empty; only that in place `at`, from 0,
+    if one is given) take one of the alternatives in `either`: field -> allowed values.
+    """
+
+    items: str
+    key: str = ""
+    values: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+    """What `key` may say in items that are not meant; needed where the schema does not list its values."""
+    either: tuple[Mapping[str, tuple[str | int, ...]], ...] = ()
+    at: int | None = Field(None, ge=0)
+    at_least: int = 0
+
+    def line(self) -> str:
+        """One line for prompts and logs."""
+        meant = self.items if self.at is None else f"{self.items}[{self.at}]"
+        parts = [f"at least {self.at_least} {self.items}"] if self.at_least else []
+        told = [", ".join(f"{k} {'/'.join(map(str, v))}" for k, v in choice.items()) for choice in self.either]
+        where = f" with {self.key} {'/'.join(self.values)}" if self.key else ""
+        parts += [f"{meant}{where}: {' or '.join(told)}"] if told else []
+        return "; ".join(parts)
+
+
 class Finding(Record):
     """What is wrong, written so that a model (or a person) can act on it.
 
@@ -197,6 +223,8 @@ class Finding(Record):
     where: str = ""
     value: str = ""
     remedy: str = ""
+    holds: tuple[Hold, ...] = ()
+    """The remedy as the next answer's schema can be held to it, where it is that exact."""
 
     def line(self) -> str:
         """One line for prompts and logs."""
@@ -223,6 +251,8 @@ class Attempt(Record):
     number: int
     prompt: str = ""
     answer: str = ""
+    held: tuple[Hold, ...] = ()
+    """What its answer was held to by the findings before it."""
     findings: tuple[Finding, ...] = ()
     generation: Generation | None = None
     seconds: float = 0.0

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.holds import narrowed
 from sgcad_core.interfaces import Ask, Validator
 from sgcad_core.prompts import repair_text
 from sgcad_core.records import (
@@ -20,6 +21,7 @@ from sgcad_core.records import (
     Evidence,
     Finding,
     Generation,
+    Hold,
     Query,
     RoadNetwork,
     Scenario,
@@ -76,11 +78,15 @@ class _Recorder:
 
     ask: Ask
     label: dict[str, object]
+    holds: tuple[Hold, ...] = ()
+    """What the answers are held to, where a query asks for an answer of a schema."""
     queries: list[Query] = field(default_factory=list)
     calls: list[Call] = field(default_factory=list)
 
     def __call__(self, context: Context, query: Query) -> Generation:
         labeled = query.model_copy(update=self.label)
+        if self.holds and query.answer_schema is not None:
+            labeled = labeled.model_copy(update={"answer_schema": narrowed(query.answer_schema, self.holds)})
         self.queries.append(labeled)
         generation = self.ask(context, labeled)
         self.calls.append(Call(labeled, generation))
@@ -115,6 +121,8 @@ class Refinement:
     case: str = ""
     show_findings: bool = True
     """False: a model too small to read them is asked the same again, and draws anew."""
+    hold_findings: bool = False
+    """What findings tell exactly, the schema of every later answer of the stage is narrowed to."""
 
     def run(self) -> tuple[StageOutcome, tuple[Call, ...]]:
         """Refine until written, refused or exhausted; also every model call, in order.
@@ -146,12 +154,13 @@ class Refinement:
         last = turns[-1].attempt if turns else None
         findings = tuple(f for f in last.findings if f.severity == "repair") if last else ()
         repair = repair_text(last.answer, findings) if last and findings and self.show_findings else ""
-        return self.on_attempt(f"{self.stage}[{number}]", lambda: self._turn(findings, number, repair))
+        holds = _holds(turns) if self.hold_findings else ()
+        return self.on_attempt(f"{self.stage}[{number}]", lambda: self._turn(findings, number, repair, holds))
 
-    def _turn(self, findings: tuple[Finding, ...], number: int, repair: str) -> Turn:
+    def _turn(self, findings: tuple[Finding, ...], number: int, repair: str, holds: tuple[Hold, ...]) -> Turn:
         started = time.perf_counter()
         label = {"case": self.case, "stage": self.stage, "attempt": number, "repair": repair}
-        recorder = _Recorder(self.ask or no_model, dict(label))
+        recorder = _Recorder(self.ask or no_model, dict(label), holds)
         artifact: Artifact | None = None
         refused: Refused | None = None
         try:
@@ -182,6 +191,7 @@ class Refinement:
             number=number,
             prompt="\n\n".join(prompt_text(query) for query in recorder.queries),
             answer="\n\n".join(call.generation.text for call in recorder.calls),
+            held=recorder.holds,
             findings=findings,
             generation=recorder.calls[-1].generation if recorder.calls else None,
             seconds=seconds,
@@ -211,6 +221,15 @@ def prompt_text(query: Query) -> str:
     parts += ["[the crash report and its diagrams stand here]"]
     parts += [query.repair] if query.repair else []
     return "\n\n".join(parts)
+
+
+def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:
+    """What all findings so far tell exactly, each once."""
+    found: list[Hold] = []
+    for turn in turns:
+        told = (hold for f in turn.attempt.findings if f.severity == "repair" for hold in f.holds)
+        found += [hold for hold in told if hold not in found]
+    return tuple(found)
 
 
 def _refusal(findings: Sequence[Finding]) -> Refused | None:

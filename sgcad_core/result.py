@@ -146,4 +146,5 @@ def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
 def _stage_notes(record: CaseRecord) -> list[str]:
     last = [outcome.attempts[-1] for outcome in record.outcomes.values() if outcome.attempts]
     notes = [f.line() for attempt in last for f in attempt.findings if f.severity == "note"]
+    notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in last for hold in attempt.held]
     return notes + list(record.scenario.notes if record.scenario else ())

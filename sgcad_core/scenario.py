@@ -6,7 +6,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.formats.xosc_writer import write_xosc
 from sgcad_core.planner import plan
-from sgcad_core.records import ActorInfo, Finding, RoadNetwork, Scenario
+from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
 
 
@@ -52,12 +52,18 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     for i, contact in enumerate(behavior.contacts):
         for role in ("striker", "struck"):
             if (name := getattr(contact, role)) not in ids:
-                findings.append(_finding(f"contacts[{i}].{role}", "no such actor", name, known))
+                findings.append(_finding(f"contacts[{i}].{role}", "no such actor", name, known, _in_place(name, ids)))
         if contact.striker == contact.struck:
             findings.append(_finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known))
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
 
 
-def _finding(where: str, what: str, value: str, remedy: str) -> Finding:
-    return Finding(source="scenario", what=what, where=where, value=value, remedy=remedy)
+def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
+    """A vehicle that a contact names and no actor is: it belongs among the actors where its number says."""
+    place = int(name[1:]) - 1 if name.startswith("V") else len(ids) + 1
+    return (Hold(items="actors", at=place, either=({"id": (name,)},)),) if 0 <= place <= len(ids) else ()
+
+
+def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
+    return Finding(source="scenario", what=what, where=where, value=value, remedy=remedy, holds=holds)

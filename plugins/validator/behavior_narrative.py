@@ -12,14 +12,20 @@ from typing import ClassVar, Literal
 
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
-from sgcad_core.narrative.facts import ContactFacts, CrashFacts, crash_facts
-from sgcad_core.narrative.ways import Way, apart, degree, ways_of
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
 _NEAR_RAD = math.radians(50)
+_TURN_RAD = math.radians(30)
+"""A change of heading that is a turn."""
+_NUMBERS = range(1, 10)
+_UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
+"""Road users and objects that reports do not number as vehicles."""
+_IDS = (*(f"V{n}" for n in _NUMBERS), *_UNNUMBERED)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 
@@ -46,14 +52,21 @@ class BehaviorNarrative(Validator):
         spec = evidence.network.spec if evidence.network else None
         if spec is not None:
             found += _headings(behavior, facts, spec)
-        found += _maneuvers(behavior, facts, self.maneuvers)
+        found += _maneuvers(behavior, facts, spec, self.maneuvers)
         return [*found, *_contact(behavior, facts, self.areas)]
 
 
 def _finding(
-    what: str, where: str, value: str, remedy: str, severity: Literal["repair", "refuse", "note"] = "repair"
+    what: str,
+    where: str,
+    value: str,
+    remedy: str,
+    severity: Literal["repair", "refuse", "note"] = "repair",
+    holds: tuple[Hold, ...] = (),
 ) -> Finding:
-    return Finding(source="behavior_narrative", severity=severity, what=what, where=where, value=value, remedy=remedy)
+    return Finding(
+        source="behavior_narrative", severity=severity, what=what, where=where, value=value, remedy=remedy, holds=holds
+    )
 
 
 # ------------------------------------------------------------------ vehicles
@@ -65,11 +78,14 @@ def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
         if v.id not in acting:
             named = " ".join(str(w) for w in (v.year, v.make, v.model) if w)
             yield _finding(f"the report's vehicle {v.id} is missing", "actors", ", ".join(acting) or "none",
-                           f"add {v.id}{f', the {named}' if named else ''}")  # fmt: skip
+                           f"add {v.id}{f', the {named}' if named else ''}",
+                           holds=tuple(Hold(items="actors", at=i, either=({"id": (name,)},))
+                                       for i, name in enumerate(told)))  # fmt: skip
     for name in acting:
         if name not in told:
             yield _finding("the report numbers no such vehicle", "actors", name,
-                           f"keep to {', '.join(told)}; other road users are P, B or O")  # fmt: skip
+                           f"keep to {', '.join(told)}; other road users are P, B or O",
+                           holds=(Hold(items="actors", either=({"id": (*told, *_UNNUMBERED)},)),))  # fmt: skip
 
 
 # ------------------------------------------------------------------ headings
@@ -85,6 +101,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
                 f"{actor.id} first travels {compass_of_angle(way.heading_rad)}, but the report says {fact.heading}",
                 f"{actor.id}.road", f"{actor.road}, {actor.direction}",
                 _better_ways(wanted, tuple(ways.values()), spec),
+                holds=courses(fact, spec),
             )  # fmt: skip
 
 
@@ -97,13 +114,39 @@ def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
 
 
 # ------------------------------------------------------------------ maneuvers
-def _maneuvers(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
+def _maneuvers(
+    behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec | None, severity: Literal["repair", "note"]
+) -> Iterator[Finding]:
     for actor in behavior.actors:
         fact = facts.vehicle(actor.id)
         if fact is None or not fact.maneuver_stated or not _contradicts(actor.maneuver, fact.maneuver):
             continue
         yield _finding(f"the report tells another maneuver of {actor.id}", f"{actor.id}.maneuver", actor.maneuver,
-                       f"use {fact.maneuver}", severity)  # fmt: skip
+                       f"use {fact.maneuver}", severity, courses(fact, spec))  # fmt: skip
+
+
+def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
+    """The starts, exits and maneuvers that the report leaves a vehicle, as far as it states heading and maneuver."""
+    does: dict[str, tuple[str, ...]] = {"maneuver": (fact.maneuver,)} if fact.maneuver_stated else {}
+    ways = ways_of(spec) if spec is not None else ()
+    if fact.heading is not None and fact.heading_stated:
+        ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < _NEAR_RAD)
+    choices = [_course(way, spec, fact.maneuver) | does for way in ways] if spec is not None else []
+    choices = [choice for choice in choices if choice.get("exit_road") != ()] or ([does] if does else [])
+    if not choices:
+        return ()
+    others = tuple(name for name in _IDS if name != fact.id)
+    return (Hold(items="actors", key="id", values=(fact.id,), others=others, either=tuple(choices)),)
+
+
+def _course(way: Way, spec: RoadSpec | None, maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
+    """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
+    start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
+    side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
+    if side is None or spec is None:
+        return start
+    onward = exits(way, ways_of(spec))
+    return start | {"exit_road": tuple(w.road.id for w in onward if side * turn_of(way, w) > _TURN_RAD)}
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:
@@ -122,14 +165,21 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
         return
     said = behavior.contacts[0] if behavior.contacts else None
     if said is None:
-        yield _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told))
+        yield _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told),
+                       holds=_first(told))  # fmt: skip
     elif {said.striker, said.struck} != {told.striker, told.struck}:
         yield _finding(f"the report's first contact is between {told.striker} and {told.struck}", "contacts[0]",
-                       f"{said.striker} and {said.struck}", _declare(told))  # fmt: skip
+                       f"{said.striker} and {said.struck}", _declare(told), holds=_first(told))  # fmt: skip
     elif _sides(said) != _sides(told):
         sure = severity if told.areas_stated and _both_differ(said, told) else "note"
         yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
-                       _declare(told), sure)  # fmt: skip
+                       _declare(told), sure, _first(told))  # fmt: skip
+
+
+def _first(told: ContactFacts) -> tuple[Hold, ...]:
+    sides = {"striker_area": (told.striker_area,), "struck_area": (told.struck_area,)} if told.areas_stated else {}
+    pair = {"striker": (told.striker,), "struck": (told.struck,)}
+    return (Hold(items="contacts", at=0, either=(pair | sides,)),)
 
 
 def _acted(told: ContactFacts, behavior: BehaviorSpec) -> bool:

@@ -16,10 +16,10 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.lane_graph import LaneGraph, road_of
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of
+from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Compass
 
 MPS_PER_MPH = 0.44704
@@ -28,6 +28,8 @@ WORDS = {
     "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
     "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
 }  # fmt: skip
+_SOME = tuple(range(1, 9))
+"""Lanes one way that a leg may have, if it has any."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class RoadNarrative(Validator):
         if want and junction.stated and widest < want:
             said = "a T-intersection" if want == 3 else "a four-leg intersection"
             what = f"the report says {said}, but no junction of the network has {want} legs"
-            yield _finding(what, "junction", f"at most {widest} roads meet", f"let {want} roads meet at one node")
+            remedy, holds = f"let {want} roads meet at one node", (Hold(items="legs", at_least=want),)
+            yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
@@ -121,7 +124,9 @@ class RoadNarrative(Validator):
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
                 name = AXIS_WORDS[road.axis or "N"]
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
-                yield _finding(what, _ids(here), "lanes in both directions", remedy)
+                either = ({"lanes_in": _SOME, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": _SOME})
+                holds = (Hold(items="legs", key="bearing", values=_ends(road), either=either),)
+                yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=holds)
 
     def _on_axis(self, road: RoadFact, drawn: list[_Drawn]) -> list[_Drawn]:
         axis = road.axis
@@ -138,7 +143,8 @@ class RoadNarrative(Validator):
             said = str(low) if low == high else f"{low} to {high}"
             what = f"the {AXIS_WORDS[road.axis or 'N']} road has {said} lanes in both directions together in the report"
             seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
-            yield _finding(what, _ids(here), seen, "correct lanes_forward and lanes_backward, turn lanes counted")
+            remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
+            yield _finding(what, _ids(here), seen, remedy, holds=(_totals(road, allowed),))
 
     # -------------------------------------------------------------- limits
     def _limits(self, facts: RoadFacts, drawn: list[_Drawn]) -> Iterator[Finding]:
@@ -170,6 +176,19 @@ def allowed_totals(road: RoadFact) -> set[int]:
         return set()
     extra = sum(len(turns) for turns in lanes.turns.values()) + 1
     return set(range(max(1, named - (lanes.center_turn_lane or named % 2)), named + extra + 1))
+
+
+def _totals(road: RoadFact, allowed: set[int]) -> Hold:
+    """Lanes of a leg, both ways, that add up to what the text allows."""
+    pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in _SOME)) for n in _SOME]
+    either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
+    return Hold(items="legs", key="bearing", values=_ends(road), either=either)
+
+
+def _ends(road: RoadFact) -> tuple[str, ...]:
+    """Bearings of the legs that a road may have."""
+    axis = road.axis or "N"
+    return axis, compass_of_angle(angle_of(axis) + math.pi)
 
 
 def _near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool) -> bool:
@@ -212,8 +231,10 @@ def _ids(roads: list[_Drawn]) -> str:
     return "roads " + ", ".join(d.id for d in roads[:6])
 
 
-def _finding(what: str, where: str, value: str, remedy: str, severity: str = "repair") -> Finding:
+def _finding(
+    what: str, where: str, value: str, remedy: str, severity: str = "repair", holds: tuple[Hold, ...] = ()
+) -> Finding:
     return Finding(
         source="road_narrative", severity="note" if severity == "note" else "repair",
-        what=what, where=where, value=value, remedy=remedy,
+        what=what, where=where, value=value, remedy=remedy, holds=holds,
     )  # fmt: skip

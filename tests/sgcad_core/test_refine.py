@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Context, CrashReport, Evidence, Finding, Generation, Query, RoadNetwork
+from sgcad_core.records import Context, CrashReport, Evidence, Finding, Generation, Hold, Query, RoadNetwork
 from sgcad_core.refine import MAX_ATTEMPTS, Refinement, Turn, refine
 
 CONTEXT = Context(narrative="V1 struck V2.")
@@ -196,3 +196,45 @@ def test_the_loop_always_ends_in_one_of_three_ways(words, limit):
     expected = "refused" if "refuse" in last else "exhausted" if "repair" in last else "written"
     assert outcome.status == expected
     assert all({"repair"} <= {f.severity for f in a.findings} for a in outcome.attempts[:-1])
+
+
+class Exact(Validator):
+    """Knows which road the answer has to name."""
+
+    stage = "road"
+
+    def findings(self, artifact, evidence):
+        hold = Hold(items="legs", key="bearing", values=("N",), either=({"lanes_in": (2,)},))
+        return [Finding(source="exact", what="lanes", holds=(hold,))] if artifact.log != "2" else []
+
+
+def held_run(hold_findings):
+    """A model that says 1 until its schema leaves 2 only."""
+    leg = {"bearing": {"enum": ["N", "S"]}, "lanes_in": {"type": "integer", "minimum": 0, "maximum": 8}}
+    items = {"type": "object", "properties": leg}
+    schema = {"type": "object", "properties": {"legs": {"type": "array", "items": items, "maxItems": 8}}}
+
+    def say(context, query):
+        first = query.answer_schema["properties"]["legs"]["items"]
+        lanes = first.get("anyOf", [first])[0]["properties"]["lanes_in"]
+        return Generation(text=str(lanes.get("enum", [1])[0]))
+
+    def write(findings, ask, attempt):
+        return RoadNetwork(log=ask(CONTEXT, Query(task="draw", answer_schema=schema)).text)
+
+    return Refinement(
+        "road", write, [Exact()], evidence, say, max_attempts=3, show_findings=False, hold_findings=hold_findings
+    ).run()[0]
+
+
+def test_exact_findings_narrow_the_next_answer():
+    outcome = held_run(hold_findings=True)
+    assert (outcome.status, len(outcome.attempts)) == ("written", 2)
+    assert [len(attempt.held) for attempt in outcome.attempts] == [0, 1]
+    assert outcome.attempts[1].held[0].line() == "legs with bearing N: lanes_in 2"
+
+
+def test_findings_are_not_held_unless_asked():
+    outcome = held_run(hold_findings=False)
+    assert (outcome.status, len(outcome.attempts)) == ("exhausted", 3)
+    assert not any(attempt.held for attempt in outcome.attempts)

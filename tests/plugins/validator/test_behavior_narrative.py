@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import pytest
@@ -11,7 +13,7 @@ from sgcad_core.layout import road_spec
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import crash_facts
 from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
-from sgcad_core.specs import BehaviorSpec, Leg, RoadLayout
+from sgcad_core.specs import Actor, BehaviorSpec, Leg, RoadLayout
 
 SPEC = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "E", "S", "W"))))
 TEXT = (
@@ -100,3 +102,46 @@ def test_other_artifacts_are_passed_over() -> None:
     assert _found(None) == []
     evidence = Evidence(report=CrashReport(case="x", narrative=TEXT))
     assert BehaviorNarrative().findings(RoadNetwork(), evidence) == []
+
+
+def _held(actor: Actor, choice: Mapping[str, Sequence[Any]]) -> Iterator[Actor]:
+    """The actor under every combination of what a choice allows."""
+    for values in product(*choice.values()):
+        yield actor.model_copy(update=dict(zip(choice, values, strict=True)))
+
+
+@pytest.mark.parametrize(
+    ("index", "wrong"),
+    [
+        (0, {"road": "E"}),
+        (0, {"direction": "backward"}),
+        (1, {"maneuver": "straight"}),
+        (1, {"road": "S"}),
+    ],
+)
+def test_whatever_a_finding_holds_an_answer_to_passes(index: int, wrong: dict[str, str]) -> None:
+    behavior = _changed(index, **wrong)
+    found = [f for f in _found(behavior) if f.severity == "repair"]
+    holds = [hold for f in found for hold in f.holds]
+    assert found
+    assert holds
+    for hold in holds:
+        assert (hold.items, hold.key, hold.values) == ("actors", "id", (behavior.actors[index].id,))
+        for choice in hold.either:
+            for actor in _held(behavior.actors[index], choice):
+                actors = tuple(actor if i == index else a for i, a in enumerate(behavior.actors))
+                assert _found(behavior.model_copy(update={"actors": actors})) == []
+
+
+def test_a_held_turn_leaves_by_a_road_on_that_side() -> None:
+    (finding,) = _found(_changed(1, maneuver="straight"))
+    starts = {(*choice["road"], *choice["direction"]): choice["exit_road"] for choice in finding.holds[0].either}
+    assert starts == {("N", "forward"): ("E",)}
+
+
+def test_a_missing_vehicle_is_held_to_its_place_and_a_contact_to_the_first() -> None:
+    missing, invented = _found(_changed(1, id="V3"))[:2]
+    assert [(hold.at, hold.either[0]["id"]) for hold in missing.holds] == [(0, ("V1",)), (1, ("V2",))]
+    assert "V3" not in invented.holds[0].either[0]["id"]
+    (sides,) = _found(_contact(struck_area="left"))
+    assert sides.holds[0].line() == "contacts[0]: striker V1, struck V2, striker_area front, struck_area right"

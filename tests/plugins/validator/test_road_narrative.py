@@ -102,3 +102,30 @@ def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: 
 @pytest.mark.parametrize("said", ["a divided four-lane highway", "a two-lane, one-way street", "a road"])
 def test_a_road_whose_drawn_total_is_open_allows_anything(said: str) -> None:
     assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0]) == set()
+
+
+def held(found: list[Finding], *legs: Leg) -> list[Leg]:
+    """Legs with the first choice of every hold that means them."""
+    for hold in (hold for finding in found for hold in finding.holds):
+        choice = {name: values[0] for name, values in hold.either[0].items()} if hold.either else {}
+        legs = tuple(leg.model_copy(update=choice if leg.bearing in hold.values else {}) for leg in legs)
+    return list(legs)
+
+
+def test_lanes_that_a_finding_holds_are_those_of_the_text() -> None:
+    legs = (leg("N", 1, 1, 45), leg("S", 1, 1, 45), leg("E", 1, 1), leg("W", 1, 1))
+    found = [f for f in findings(CROSSING, network(*legs)) if f.severity == "repair"]
+    (hold,) = [hold for finding in found for hold in finding.holds]
+    assert set(hold.values) == {"N", "S"}
+    allowed = {n + out for choice in hold.either for n in choice["lanes_in"] for out in choice["lanes_out"]}
+    assert allowed == allowed_totals(road_facts(CROSSING).streets[0])
+    assert repairs(CROSSING, *held(found, *legs)) == []
+
+
+def test_a_missing_junction_and_a_one_way_road_are_held() -> None:
+    (finding,) = [f for f in findings(CROSSING, network(leg("N", 2, 2), leg("S", 2, 2))) if f.where == "junction"]
+    assert finding.holds[0].line() == "at least 4 legs"
+    legs = (leg("N", 2, 1), leg("S", 1, 2))
+    found = [f for f in findings(ONE_WAY, network(*legs)) if "one-way" in f.what]
+    assert set(found[0].holds[0].values) == {"N", "S"}
+    assert all(0 in (*choice["lanes_in"], *choice["lanes_out"]) for choice in found[0].holds[0].either)
