@@ -26,7 +26,9 @@ class Mentions:
         self.rng, self.crash, self.ciren = rng, crash, ciren
         style = "V{n}" if ciren else rng.choices(list(STYLES), list(STYLES.values()))[0]
         self.style = "V {n}" if style == "V 1" else style
-        self.mixed = not ciren and rng.random() < 0.35
+        self.mixed = not ciren and rng.random() < 0.6
+        self.second = rng.choices(list(STYLES), list(STYLES.values()))[0].replace("V 1", "V {n}")
+        """Another way to write numbers in a report that mixes them, as more than half of the long ones do."""
         self.introduced: set[int] = set()
         self.years = {i: rng.choice(YEARS) for i in range(len(crash.actors))}
         for actor in crash.actors:
@@ -51,6 +53,8 @@ class Mentions:
         plain = self.style.format(n=number, w=NUMBER_WORDS[number])
         if not self.ciren and "(V" in plain and index in self.introduced and self.rng.random() < 0.7:
             plain = f"V{number}"
+        if self.mixed and self.rng.random() < 0.2:
+            return self.second.format(n=number, w=NUMBER_WORDS[number])
         if self.mixed and self.rng.random() < 0.3:
             make = actor.model.split(" ")[0]
             return self.rng.choice(

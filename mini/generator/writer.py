@@ -205,6 +205,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         if not self.ciren and len(order) > 1 and self.rng.random() < 0.04:
             order.pop()
         out: list[str] = []
+        if not self.ciren and not self.held_out and self.rng.random() < 0.08:
+            out += [self.say(["{Vi}"], index) for index in order]
         for place, index in enumerate(order):
             out.append(self._approach(index, order[:place]))
         if len(order) == 2 and self.rng.random() < 0.06:
