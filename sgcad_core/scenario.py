@@ -60,8 +60,8 @@ def _check_ids(behavior: BehaviorSpec) -> None:
 
 
 def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
-    """A vehicle that a contact names and no actor is: it belongs among the actors where its number says."""
-    place = int(name[1:]) - 1 if name.startswith("V") else len(ids) + 1
+    """One that a contact names and no actor is: a vehicle belongs where its number says, others behind the vehicles."""
+    place = int(name[1:]) - 1 if name.startswith("V") else sum(other.startswith("V") for other in ids)
     return (Hold(items="actors", at=place, either=({"id": (name,)},)),) if 0 <= place <= len(ids) else ()
 
 

@@ -58,3 +58,19 @@ def test_an_unknown_road_is_said():
     lost = CROSSING.actors[0].model_copy(update={"road": "Z"})
     with pytest.raises(InvalidOutput, match="Z"):
         compile_scenario(BehaviorSpec(actors=(lost,)), crossroads())
+
+
+@pytest.mark.parametrize(
+    ("struck", "held"),
+    [
+        ("V4", "actors[3]: id V4"),
+        ("V3", "actors[2]: id V3"),
+        ("O1", "actors[2]: id O1"),
+    ],
+)
+def test_whom_a_contact_names_belongs_among_the_actors(struck, held):
+    contact = CROSSING.contacts[0].model_copy(update={"striker": "V1", "struck": struck})
+    with pytest.raises(InvalidOutput) as fault:
+        compile_scenario(CROSSING.model_copy(update={"contacts": (contact,)}), crossroads())
+    (finding,) = fault.value.findings
+    assert [hold.line() for hold in finding.holds] == [held]
