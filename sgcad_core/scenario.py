@@ -44,7 +44,7 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     """Raise InvalidOutput for actor ids used twice and for contacts of unknown actors or with oneself."""
     ids = [actor.id for actor in behavior.actors]
     findings = [
-        _finding(f"actors[{i}].id", "two actors have this id", name, "number them as the report does")
+        _finding(f"actors[{i}].id", "two actors have this id", name, "number them as the report does", _next(i, ids))
         for i, name in enumerate(ids)
         if name in ids[:i]
     ]
@@ -57,6 +57,12 @@ def _check_ids(behavior: BehaviorSpec) -> None:
             findings.append(_finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known))
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
+
+
+def _next(place: int, ids: list[str]) -> tuple[Hold, ...]:
+    """The next number in place of one that is taken."""
+    taken = sum(name[0] == ids[place][0] for name in dict.fromkeys(ids[:place]))
+    return (Hold(items="actors", at=place, either=({"id": (f"{ids[place][0]}{taken + 1}",)},)),)
 
 
 def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:

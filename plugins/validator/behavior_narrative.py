@@ -131,9 +131,11 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     ways = ways_of(spec) if spec is not None else ()
     if fact.heading is not None and fact.heading_stated:
         ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < _NEAR_RAD)
-    choices = [_course(way, spec, fact.maneuver) | does for way in ways] if spec is not None else []
-    choices = [choice for choice in choices if choice.get("exit_road") != ()] or ([does] if does else [])
-    if not choices:
+    starts = [_course(way, spec, fact.maneuver) | does for way in ways] if spec is not None else []
+    choices = [start for start in starts if start.get("exit_road") != ()]
+    if not choices:  # the road as written has no such turn: what is left to hold is the start
+        choices = [{k: v for k, v in start.items() if k != "exit_road"} for start in starts] or [does]
+    if choices == [{}]:
         return ()
     others = tuple(name for name in _IDS if name != fact.id)
     return (Hold(items="actors", key="id", values=(fact.id,), others=others, either=tuple(choices)),)

@@ -110,7 +110,7 @@ class RoadNarrative(Validator):
             word = WORDS[v.heading]
             what = f"{v.id} travels {word}, but no road carries traffic that way"
             remedy = f"give a road lanes that head {word}; x is east, y is north"
-            yield _finding(what, v.id, f"heading {word}", remedy)
+            yield _finding(what, v.id, f"heading {word}", remedy, holds=_carrying(v.heading))
 
     def _carries(self, road: _Drawn, way: Compass, divided: bool) -> bool:
         """Whether traffic may head that way; of a divided road one carriageway may stand for both."""
@@ -176,6 +176,15 @@ def allowed_totals(road: RoadFact) -> set[int]:
         return set()
     extra = sum(len(turns) for turns in lanes.turns.values()) + 1
     return set(range(max(1, named - (lanes.center_turn_lane or named % 2)), named + extra + 1))
+
+
+def _carrying(way: Compass) -> tuple[Hold, ...]:
+    """Lanes that way on both legs that may lie along it."""
+    behind = compass_of_angle(angle_of(way) + math.pi)
+    return (
+        Hold(items="legs", key="bearing", values=(behind,), either=({"lanes_in": _SOME},)),
+        Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": _SOME},)),
+    )
 
 
 def _totals(road: RoadFact, allowed: set[int]) -> Hold:

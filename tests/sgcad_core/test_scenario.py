@@ -74,3 +74,11 @@ def test_whom_a_contact_names_belongs_among_the_actors(struck, held):
         compile_scenario(CROSSING.model_copy(update={"contacts": (contact,)}), crossroads())
     (finding,) = fault.value.findings
     assert [hold.line() for hold in finding.holds] == [held]
+
+
+def test_a_number_that_is_taken_gives_way_to_the_next():
+    actors = (CROSSING.actors[0], CROSSING.actors[1].model_copy(update={"id": "V1"}))
+    contact = CROSSING.contacts[0].model_copy(update={"striker": "V1", "struck": "V1"})
+    with pytest.raises(InvalidOutput) as fault:
+        compile_scenario(CROSSING.model_copy(update={"actors": actors, "contacts": (contact,)}), crossroads())
+    assert fault.value.findings[0].holds[0].line() == "actors[1]: id V2"

@@ -145,3 +145,15 @@ def test_a_missing_vehicle_is_held_to_its_place_and_a_contact_to_the_first() -> 
     assert "V3" not in invented.holds[0].either[0]["id"]
     (sides,) = _found(_contact(struck_area="left"))
     assert sides.holds[0].line() == "contacts[0]: striker V1, struck V2, striker_area front, struck_area right"
+
+
+def test_a_start_is_held_where_the_road_has_no_such_turn() -> None:
+    plain = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "S"))))
+    evidence = Evidence(report=CrashReport(case="x", narrative=TEXT), network=RoadNetwork(spec=plain))
+    wrong = _changed(1, road="S", exit_road="N")
+    found = BehaviorNarrative().findings(Scenario(actors=(), behavior=wrong), evidence)
+    held = [hold for finding in found if finding.where == "V2.road" for hold in finding.holds]
+    assert [hold.line() for hold in held] == [
+        "actors with id V2: road N, direction forward, maneuver turn_left or road S, direction backward, "
+        "maneuver turn_left"
+    ]

@@ -129,3 +129,12 @@ def test_a_missing_junction_and_a_one_way_road_are_held() -> None:
     found = [f for f in findings(ONE_WAY, network(*legs)) if "one-way" in f.what]
     assert set(found[0].holds[0].values) == {"N", "S"}
     assert all(0 in (*choice["lanes_in"], *choice["lanes_out"]) for choice in found[0].holds[0].either)
+
+
+def test_a_direction_that_no_road_carries_is_held_on_both_legs() -> None:
+    legs = (leg("N", 0, 2), leg("S", 2, 0), leg("E", 1, 1), leg("W", 0, 1))
+    found = [f for f in findings(T.replace("northbound", "southbound"), network(*legs)) if "no road carries" in f.what]
+    assert [hold.values for hold in found[0].holds] == [("N",), ("S",)]
+    assert [tuple(hold.either[0]) for hold in found[0].holds] == [("lanes_in",), ("lanes_out",)]
+    changed = held(found, *legs)
+    assert not any("no road carries" in what for what in repairs(T.replace("northbound", "southbound"), *changed))
