@@ -28,10 +28,10 @@ NOTES = (
     "gravel",
     "Lawn",
     "telephone pole",
-    "standing outside of vehicle",
+    "witness stood here",
     "Stop",
-    "RP = SE corner, RL = S curb line",
-    "V1 - {y} Cadillac, 4-dr sedan\nV2 - {y} GMC Vandura 2500, van",
+    "measured from this curb",
+    "V1 - {y} Saturn, wagon\nV2 - {y} Mazda, pickup",
     "N/S road {n} mph, E/W road {n} mph",
 )
 
