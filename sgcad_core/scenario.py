@@ -62,13 +62,17 @@ def _check_ids(behavior: BehaviorSpec) -> None:
 def _next(place: int, ids: list[str]) -> tuple[Hold, ...]:
     """The next number in place of one that is taken."""
     taken = sum(name[0] == ids[place][0] for name in dict.fromkeys(ids[:place]))
-    return (Hold(items="actors", at=place, either=({"id": (f"{ids[place][0]}{taken + 1}",)},)),)
+    return (_named(place, f"{ids[place][0]}{taken + 1}"),)
 
 
 def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
     """One that a contact names and no actor is: a vehicle belongs where its number says, others behind the vehicles."""
     place = int(name[1:]) - 1 if name.startswith("V") else sum(other.startswith("V") for other in ids)
-    return (Hold(items="actors", at=place, either=({"id": (name,)},)),) if 0 <= place <= len(ids) else ()
+    return (_named(place, name),) if 0 <= place <= len(ids) else ()
+
+
+def _named(place: int, name: str) -> Hold:
+    return Hold(items="actors", at=place, either=({"id": (name,)},))
 
 
 def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:

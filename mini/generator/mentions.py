@@ -11,7 +11,7 @@ from mini.generator.world import Actor, Crash
 NUMBER_WORDS = ("zero", "one", "two", "three", "four", "five")
 STYLES = {
     "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4, "Vehicle-{n}": 2,
-    "V 1": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
+    "V {n}": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
 }  # fmt: skip
 OBJECTS = (
     "a tree", "a utility pole", "a {d}cm tree", "a guardrail", "a concrete barrier", "a {d}-cm diameter tree", "a sign post", "a large tree", "an embankment",
@@ -19,15 +19,18 @@ OBJECTS = (
 )  # fmt: skip
 
 
+def _numbered(style: str, number: int) -> str:
+    return style.format(n=number, w=NUMBER_WORDS[number])
+
+
 class Mentions:
     """Names of the actors in one report; the first mention introduces year, make and model."""
 
     def __init__(self, rng: Random, crash: Crash, ciren: bool) -> None:
         self.rng, self.crash, self.ciren = rng, crash, ciren
-        style = "V{n}" if ciren else rng.choices(list(STYLES), list(STYLES.values()))[0]
-        self.style = "V {n}" if style == "V 1" else style
+        self.style = "V{n}" if ciren else rng.choices(list(STYLES), list(STYLES.values()))[0]
         self.mixed = not ciren and rng.random() < 0.6
-        self.second = rng.choices(list(STYLES), list(STYLES.values()))[0].replace("V 1", "V {n}")
+        self.second = rng.choices(list(STYLES), list(STYLES.values()))[0]
         """Another way to write numbers in a report that mixes them, as more than half of the long ones do."""
         self.introduced: set[int] = set()
         self.years = {i: rng.choice(YEARS) for i in range(len(crash.actors))}
@@ -50,11 +53,11 @@ class Mentions:
                 else actor.model
             )
         number = int(actor.id[1:])
-        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
+        plain = _numbered(self.style, number)
         if not self.ciren and "(V" in plain and index in self.introduced and self.rng.random() < 0.7:
             plain = f"V{number}"
         if self.mixed and self.rng.random() < 0.2:
-            return self.second.format(n=number, w=NUMBER_WORDS[number])
+            return _numbered(self.second, number)
         if self.mixed and self.rng.random() < 0.3:
             make = actor.model.split(" ")[0]
             return self.rng.choice(
@@ -76,19 +79,17 @@ class Mentions:
         if self.ciren:
             case = " - case vehicle" if number == 1 or self.rng.random() < 0.1 else ""
             return f"Vehicle {NUMBER_WORDS[number]} (V{number}{case}), {text},".replace(",,", ","), True
-        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
+        plain = _numbered(self.style, number)
         forms = [f"{plain}, {text},", f"{plain}, {text},", f"{plain} ({text})", f"{plain}, {text}", f"{text} ({plain})"]
         person = f"{self.rng.randint(16, 88)}-year{self.rng.choice('- ')}old {self.rng.choice(('male', 'female'))}"
         forms += [f"{plain}, {text}, driven by a {person},", f"{plain}, {text} driven by a {person},"]
         return self.rng.choices(forms, [4, 4, 4, 4, 4, 1, 1])[0], True
 
     def presented(self, index: int) -> tuple[str, bool]:
-        """`V1 was a 2003 Kia Rio sedan`, which motion follows without another verb."""
+        """`V1 was a 1999 Ford Taurus sedan`, which motion follows without another verb."""
         actor = self.crash.actors[index]
         self.introduced.add(index)
-        number = int(actor.id[1:])
-        plain = self.style.format(n=number, w=NUMBER_WORDS[number])
-        return f"{plain} was {self._year_model(index, actor, 0.7)}", True
+        return f"{_numbered(self.style, int(actor.id[1:]))} was {self._year_model(index, actor, 0.7)}", True
 
     def _year_model(self, index: int, actor: Actor, body_odds: float) -> str:
         color = f"{self.rng.choice(COLORS)} " if not self.ciren and self.rng.random() < 0.15 else ""

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from random import Random
 from typing import Any
 
 from mini.generator import clauses_scene as scene
 from mini.generator import words
-from mini.generator.grammar import Told, choose, families
+from mini.generator.grammar import choose, families
 from mini.generator.road_phrases import RoadsMixin
-from mini.generator.world import WORDS, Crash, Leg
+from mini.generator.world import WORDS, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
 TIMES = ("morning", "early morning", "afternoon", "late afternoon", "evening", "early evening", "mid-morning", "night")
@@ -18,14 +17,6 @@ TIMES = ("morning", "early morning", "afternoon", "late afternoon", "evening", "
 
 class SceneMixin(RoadsMixin):
     """Slots and sentences about the place; needs the writer's fields."""
-
-    rng: Random
-    crash: Crash
-    held_out: bool
-    ciren: bool
-    told: Told
-    stated: set[str]
-    roads_left: bool
 
     say: Any
 

@@ -250,8 +250,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
     def _why_waiting(self, actor: Actor) -> str:
         """What for: a sign, a light, a gap in traffic, a turn."""
         keys = ["sign" if self.crash.leg(actor.leg).control == "stop" else "traffic"]  # type: ignore[union-attr]
-        keys += ["turn_left", "turn_left"] if actor.maneuver == "turn_left" else []
-        keys += ["turn_right", "turn_right"] if actor.maneuver == "turn_right" else []
+        keys += [actor.maneuver] * 2 if actor.maneuver in motion.WHY else []
         key = self.rng.choice(keys)
         if key.startswith("turn"):
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}

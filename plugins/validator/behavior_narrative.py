@@ -128,10 +128,11 @@ def _maneuvers(
 def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     """The starts, exits and maneuvers that the report leaves a vehicle, as far as it states heading and maneuver."""
     does: dict[str, tuple[str, ...]] = {"maneuver": (fact.maneuver,)} if fact.maneuver_stated else {}
-    ways = ways_of(spec) if spec is not None else ()
+    every = ways_of(spec) if spec is not None else ()
+    ways = every
     if fact.heading is not None and fact.heading_stated:
         ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < _NEAR_RAD)
-    starts = [_course(way, spec, fact.maneuver) | does for way in ways] if spec is not None else []
+    starts = [_course(way, every, fact.maneuver) | does for way in ways]
     choices = [start for start in starts if start.get("exit_road") != ()]
     if not choices:  # the road as written has no such turn: what is left to hold is the start
         choices = [{k: v for k, v in start.items() if k != "exit_road"} for start in starts] or [does]
@@ -141,14 +142,14 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     return (Hold(items="actors", key="id", values=(fact.id,), others=others, either=tuple(choices)),)
 
 
-def _course(way: Way, spec: RoadSpec | None, maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
+def _course(way: Way, ways: tuple[Way, ...], maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
     """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
     start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
     side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
-    if side is None or spec is None:
+    if side is None:
         return start
-    onward = exits(way, ways_of(spec))
-    return start | {"exit_road": tuple(w.road.id for w in onward if side * turn_of(way, w) > _TURN_RAD)}
+    onward = (w.road.id for w in exits(way, ways) if side * turn_of(way, w) > _TURN_RAD)
+    return start | {"exit_road": tuple(onward)}
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:

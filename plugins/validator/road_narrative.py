@@ -16,7 +16,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.lane_graph import LaneGraph, road_of
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of, compass_of_angle
+from sgcad_core.narrative.compass import angle_of, turned
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
@@ -180,9 +180,8 @@ def allowed_totals(road: RoadFact) -> set[int]:
 
 def _carrying(way: Compass) -> tuple[Hold, ...]:
     """Lanes that way on both legs that may lie along it."""
-    behind = compass_of_angle(angle_of(way) + math.pi)
     return (
-        Hold(items="legs", key="bearing", values=(behind,), either=({"lanes_in": _SOME},)),
+        Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": _SOME},)),
         Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": _SOME},)),
     )
 
@@ -197,7 +196,7 @@ def _totals(road: RoadFact, allowed: set[int]) -> Hold:
 def _ends(road: RoadFact) -> tuple[str, ...]:
     """Bearings of the legs that a road may have."""
     axis = road.axis or "N"
-    return axis, compass_of_angle(angle_of(axis) + math.pi)
+    return axis, turned(axis, 180)
 
 
 def _near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool) -> bool:
