@@ -105,12 +105,20 @@ class Answerer:
         self.forward, self.coder = forward, coder
 
     @torch.no_grad()
-    def answer(self, rows: Sequence[Row], roads: Sequence[Any] | None = None, most: int = 400) -> list[tuple[Any, Any]]:
+    def answer(
+        self,
+        rows: Sequence[Row],
+        roads: Sequence[Any] | None = None,
+        most: int = 400,
+        views: Sequence[Sequence[Row]] = (),
+    ) -> list[tuple[Any, Any]]:
         """(road, behavior) for every evidence row; behavior is None behind a refused road.
 
-        With `roads` the road answers are given and only the behavior is written.
+        With `roads` the road answers are given and only the behavior is written. `views` are the same rows with their
+        drawings laid out otherwise; what they predict is averaged, as the product does.
         """
-        cache = Cache(self.forward, rows, self.coder, most)
+        count = 1 + len(views)
+        cache = Cache(self.forward, [row for some in (rows, *views) for row in some], self.coder, most)
         courses = [Course(answers.road_walk(), [self.coder.special[ROAD]]) for _ in rows]
         if roads is not None:
             for course, road in zip(courses, roads, strict=True):
@@ -120,7 +128,8 @@ class Answerer:
             alive = [not course.done for course in courses]
             if not any(alive):
                 break
-            logits = cache.feed(tokens, alive)
+            logits = cache.feed(tokens * count, alive * count)
+            logits = logits.log_softmax(-1).view(count, len(rows), -1).mean(0)
             for course, row in zip(courses, logits, strict=True):
                 if not course.done and not course.queue:
                     self._next(course, row)

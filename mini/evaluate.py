@@ -48,8 +48,9 @@ def answers_of(
     reports: Sequence[Report],
     blind: bool = False,
     batch: int = 24,
+    views: int = 1,
 ) -> list[Answer]:
-    """Greedy answers, reports sorted by length within the call."""
+    """Greedy answers, reports sorted by length within the call; each drawing read in so many views."""
     order = sorted(range(len(reports)), key=lambda i: len(reports[i].narrative))
     found: dict[int, Answer] = {}
     answerer = Answerer(forward, coder)
@@ -57,8 +58,11 @@ def answers_of(
         some = order[start : start + batch]
         drawings = [None if blind else drawing(reports[i]) for i in some]
         upright = [sight.upright(image) if image else None for image in drawings]
-        rows = [evidence(coder, reports[i].narrative, image) for i, image in zip(some, upright, strict=True)]
-        found |= dict(zip(some, answerer.answer(rows), strict=True))
+        rows, *others = (
+            [evidence(coder, reports[i].narrative, image, view) for i, image in zip(some, upright, strict=True)]
+            for view in range(1 if blind else views)
+        )
+        found |= dict(zip(some, answerer.answer(rows, views=others), strict=True))
     return [found[i] for i in range(len(reports))]
 
 
@@ -158,10 +162,11 @@ def measure(
     count: int,
     held_out: bool = True,
     base: int = HELD_OUT_BASE,
+    views: int = 1,
 ) -> dict[str, Any]:
     """All figures on `count` reports."""
     reports = [make_report(base + i, held_out, 0.6, MODES) for i in range(count)]
-    found = answers_of(forward, coder, sight, reports)
+    found = answers_of(forward, coder, sight, reports, views=views)
     figures: dict[str, Any] = tally(reports, found)
     seeing = [i for i, r in enumerate(reports) if r.mode == "both"]
     some = [reports[i] for i in seeing]
@@ -189,9 +194,10 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seen", action="store_true", help="the trained phrase families, new crashes")
+    parser.add_argument("--views", type=int, default=1, help="layouts of a drawing whose predictions are averaged")
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
-    figures = measure(*load(options.folder), options.count, not options.seen)
+    figures = measure(*load(options.folder), options.count, not options.seen, views=options.views)
     sys.stdout.write(table(figures) + "\n")
     if options.json:
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")

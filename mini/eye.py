@@ -75,9 +75,9 @@ class Sight:
         return self.finder.upright(image) if self.finder else image
 
     @torch.no_grad()
-    def patches(self, image: Image.Image) -> tuple[Tensor, tuple[int, int]]:
+    def patches(self, image: Image.Image, view: int = 0) -> tuple[Tensor, tuple[int, int]]:
         """Patches (P, CHANNELS * SIDE * SIDE) of a drawing as it was drawn, and its grid (rows, columns)."""
-        sheet, grid = picture.look(self.upright(image))
+        sheet, grid = picture.look(self.upright(image), view)
         return self.eye.patches(torch.from_numpy(sheet)[None])[0], grid
 
 

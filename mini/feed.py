@@ -17,12 +17,14 @@ from typing import Any
 from PIL import Image
 
 from mini.generator.report import MODES, TEXT_MODES, Report, make_report
-from mini.picture import quarters_of, turn_points, turn_upright
+from mini.picture import VIEWS, quarters_of, turn_points, turn_upright
 from mini.renderer.draw import Shape, draw_labeled
 from mini.rows import MAX_TEXT, Row, training_row
 from mini.tokens import Coder, load_tokenizer
 
 POOL = 96
+MOVED = 0.5
+"""Share of the drawings that do not fill their sheet."""
 AHEAD = 3
 HELD_OUT_BASE = 50_000_000
 """Seeds from here on are for measuring."""
@@ -62,7 +64,8 @@ def one_row(coder: Coder, seed: int, progress: float, stage: str = "all") -> Row
     while True:
         report = make_report(seed, False, length, modes)
         if len(report.narrative) < MAX_TEXT * 4.6 or length < 0.05:
-            return training_row(coder, report, *labeled(report))
+            view = rng.randrange(len(VIEWS)) if rng.random() < MOVED else 0
+            return training_row(coder, report, *labeled(report), view)
         length *= 0.7
 
 

@@ -17,6 +17,9 @@ PATCH = 24
 GRIDS = ((16, 16), (12, 20), (20, 12), (10, 24), (24, 10), (8, 32), (32, 8))
 """Rows and columns of patches; at most 256 patches, 64 tokens."""
 GAMMA = 0.55
+VIEWS = ((1.0, 0, 0), (0.94, -16, -16), (0.9, 16, 16), (0.97, 12, -12), (0.92, -12, 12))
+"""Scale and shift (pixels of the sheet) of the views of one drawing. The edges of the tokens, 48 pixels apart, cut each
+view elsewhere, so a line or a vehicle that one view reads badly another may read well."""
 Floats = NDArray[np.float32]
 
 
@@ -43,6 +46,8 @@ class Fit:
     box: tuple[int, int, int, int]
     grid: tuple[int, int]
     scale: float
+    shift: tuple[int, int] = (0, 0)
+    """Pixels of the sheet by which the crop lies off the middle, as far as there is room."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -53,7 +58,9 @@ class Fit:
     @property
     def corner(self) -> tuple[int, int]:
         """Left and top of the crop on the sheet."""
-        return (self.grid[1] * PATCH - self.size[0]) // 2, (self.grid[0] * PATCH - self.size[1]) // 2
+        rooms = (self.grid[1] * PATCH - self.size[0], self.grid[0] * PATCH - self.size[1])
+        left, top = (min(max(room // 2 + by, 0), room) for room, by in zip(rooms, self.shift, strict=True))
+        return left, top
 
     def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Pixels of the drawing (n, 2) to pixels of the sheet."""
@@ -61,18 +68,19 @@ class Fit:
         return laid
 
 
-def fit(image: Image.Image) -> Fit:
-    """Crop, grid and scale of a drawing."""
+def fit(image: Image.Image, view: int = 0) -> Fit:
+    """Crop, grid and scale of a drawing, in one of its VIEWS."""
     box = crop_box(255 - np.asarray(image.convert("L")))
     width, height = box[2] - box[0], box[3] - box[1]
     grid = fit_grid(width, height)
-    return Fit(box, grid, min(grid[1] * PATCH / width, grid[0] * PATCH / height))
+    scale, *shift = VIEWS[view]
+    return Fit(box, grid, scale * min(grid[1] * PATCH / width, grid[0] * PATCH / height), tuple(shift))
 
 
-def look(image: Image.Image) -> tuple[NDArray[np.uint8], tuple[int, int]]:
+def look(image: Image.Image, view: int = 0) -> tuple[NDArray[np.uint8], tuple[int, int]]:
     """Ink of each color, (3, H, W) from 0 (white) to 255, and the grid of patches (rows, columns)."""
     rgb = image.convert("RGB")
-    laid = fit(rgb)
+    laid = fit(rgb, view)
     small = rgb.crop(laid.box).resize(laid.size, Image.Resampling.BOX if laid.scale < 1 else Image.Resampling.BILINEAR)
     (at_x, at_y), size = laid.corner, laid.size
     sheet = np.zeros((3, laid.grid[0] * PATCH, laid.grid[1] * PATCH), np.uint8)

@@ -49,11 +49,11 @@ class Row:
     """What each picture token shows, (tokens, len(tags.PICTURE)) of 0 and 1."""
 
 
-def evidence(coder: Coder, narrative: str, image: Image.Image | None) -> Row:
-    """The prompt without its task."""
+def evidence(coder: Coder, narrative: str, image: Image.Image | None, view: int = 0) -> Row:
+    """The prompt without its task; the drawing in one of its views."""
     row = Row(coder.text(narrative.strip()), [])
     if image is not None:
-        row.sheet, row.grid = picture.look(image)
+        row.sheet, row.grid = picture.look(image, view)
         row.image_start = len(row.ids) + 1
         count = row.grid[0] * row.grid[1] // 4
         row.ids += [coder.special[VISION_START], *[coder.special[IMAGE]] * count, coder.special[VISION_END]]
@@ -76,9 +76,9 @@ def tag_text(coder: Coder, row: Row, report: Report) -> None:
         row.text_tags.append((int(np.searchsorted(ends, end)), tags.told(report.crash, facts)))
 
 
-def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape]) -> None:
+def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:
     """Note for every token of a picture which shapes cover it."""
-    fit = picture.fit(image)
+    fit = picture.fit(image, view)
     rows, columns = fit.grid[0] // 2, fit.grid[1] // 2
     row.picture_tags = np.zeros((rows * columns, len(tags.PICTURE)), np.uint8)
     for shape in shapes:
@@ -89,12 +89,14 @@ def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape]) -> None:
         row.picture_tags[np.ix_(share >= shape.least, shape.tags)] = 1
 
 
-def training_row(coder: Coder, report: Report, image: Image.Image | None, shapes: Sequence[Shape] = ()) -> Row:
+def training_row(
+    coder: Coder, report: Report, image: Image.Image | None, shapes: Sequence[Shape] = (), view: int = 0
+) -> Row:
     """Evidence and both answers, and the tags of both sources."""
-    row = evidence(coder, report.narrative, image)
+    row = evidence(coder, report.narrative, image, view)
     tag_text(coder, row, report)
     if image is not None:
-        tag_picture(row, image, shapes)
+        tag_picture(row, image, shapes, view)
     _answer(coder, row, ROAD, answers.write(answers.road_walk(), report.road), report)
     if report.behavior is not None:
         walk = answers.behavior_walk(road_ids(report.road))

@@ -12,7 +12,7 @@ from typing import Any
 from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.grammar import Told, families, fill
+from mini.generator.grammar import Told, choose, families, fill
 from mini.generator.world import Actor, Contact, Crash
 
 BY_MANEUVER = {
@@ -174,7 +174,9 @@ class BlocksMixin:
         maneuver = self.crash.actors[index].maneuver
         return maneuver if maneuver in said.DID else None
 
-    def _phrase(self, options: str, v: int = 0, w: int | None = None, person: dict[str, str] | None = None) -> str:
-        """One of `a|b|~c`, of its side of the split, with its slots filled."""
-        chosen = self.rng.choice(families(options.split("|"), self.held_out))
+    def _phrase(
+        self, options: list[str], v: int = 0, w: int | None = None, person: dict[str, str] | None = None
+    ) -> str:
+        """One phrase of its side of the split, with its slots filled."""
+        chosen = choose(self.rng, self.rng.choice(families(options, self.held_out)))
         return fill(chosen, lambda slot: self._slot(slot, v, v if w is None else w, person or {}))

@@ -6,7 +6,8 @@
 
 from __future__ import annotations
 
-from mini.generator.grammar import clauses
+from mini.generator.further import enlarge
+from mini.generator.grammar import clauses, tables
 
 AVOID = clauses("""
 {V} took evasive [action|maneuvers] by [braking|steering {anyside}|braking and steering {anyside}]
@@ -145,14 +146,14 @@ The {sa} [side |]of {S} [struck|contacted|made contact with] the {ta} side of {T
 ~{S} scraped its {sa} side along the {ta} side of {T}
 """)
 
-LEADS = (
+LEADS = [
     "Moments later", "Seconds later", "As it did so", "Before either driver could react", "With no time to stop", "During this maneuver", "At the point of impact",
     "Shortly thereafter", "In the process", "Then", "While both were still moving", "A moment later", "Consequently", "According to both drivers",
-)  # fmt: skip
-TAILS = (
+]  # fmt: skip
+TAILS = [
     " and both vehicles spun", ", pushing it to the {any8}", " at an angle", " at moderate speed", " near the middle of the road", " before either could stop",
     ", and both drivers were surprised", ", causing damage to both", " with great force", ", after which both stopped",
-)  # fmt: skip
+]  # fmt: skip
 """What may stand before and behind what a clause tells of a contact; never in held-out narratives."""
 
 THEN = clauses("""
@@ -174,12 +175,12 @@ The front of {S} then [struck|impacted] the [rear|back] of {T}
 ~This knocked {S} into the vehicle in front of it, {T}
 """)
 
-AREA = {
-    "front": "front|front|front|front|front end|frontal area|grille|frontal plane|leading edge|[left|right] front|front [left|right]|front portion|front side|front grill|frontal portion|hood|[left|right] headlight|[left|right] front corner|front [left|right] corner|~nose|~front bumper",
-    "back": "back|rear|rear|rear end|rear area|back bumper|rear plane|trunk|tailgate|back end|[left|right] rear|rear [left|right] corner|back side|back portion|[left|right] taillight|rear hatch|[left|right] rear corner|rear portion|rear plane|back side|~tail|~rear bumper",
-    "left": "left side|left side|left side|left front door|left rear quarter panel|left doors|left plane|left front fender|driver side doors|left side|left|driver's side|driver side|left front side|left-side|left rear door|left front wheel|left rear wheel|left rear side|left side doors|left mid-section|left quarter panel|left rear fender|driver side|left side of the body|~left flank|~driver's door",
-    "right": "right side|right side|right side|right front door|right rear quarter panel|right doors|right plane|right front fender|passenger side doors|right side|right|passenger side|passenger's side|right front side|right-side|right rear door|right front wheel|right rear wheel|right rear side|right side doors|right mid-section|right quarter panel|right rear fender|passenger side|right side of the body|~right flank|~passenger door",
-}
+AREA = tables(
+    front="front|front|front|front|front end|frontal area|grille|frontal plane|leading edge|[left|right] front|front [left|right]|front portion|front side|front grill|frontal portion|hood|[left|right] headlight|[left|right] front corner|front [left|right] corner|~nose|~front bumper",
+    back="back|rear|rear|rear end|rear area|back bumper|rear plane|trunk|tailgate|back end|[left|right] rear|rear [left|right] corner|back side|back portion|[left|right] taillight|rear hatch|[left|right] rear corner|rear portion|rear plane|back side|~tail|~rear bumper",
+    left="left side|left side|left side|left front door|left rear quarter panel|left doors|left plane|left front fender|driver side doors|left side|left|driver's side|driver side|left front side|left-side|left rear door|left front wheel|left rear wheel|left rear side|left side doors|left mid-section|left quarter panel|left rear fender|driver side|left side of the body|~left flank|~driver's door",
+    right="right side|right side|right side|right front door|right rear quarter panel|right doors|right plane|right front fender|passenger side doors|right side|right|passenger side|passenger's side|right front side|right-side|right rear door|right front wheel|right rear wheel|right rear side|right side doors|right mid-section|right quarter panel|right rear fender|passenger side|right side of the body|~right flank|~passenger door",
+)
 
 REST = clauses("""
 {V} [stopped|ended up] [in the roadway|on the shoulder|in a ditch|at the {anyside} edge of the road][ facing {any8}|]
@@ -204,3 +205,5 @@ There was no physical evidence to [support|substantiate] the final rest position
 {V} was pushed [off the road|into the next lane|into a driveway] before coming to rest
 ~After that {V} rolled to a stop facing {any8}
 """)
+
+enlarge("contact", globals())

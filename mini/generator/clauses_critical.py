@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from mini.generator.clauses_turning import TURNING
+from mini.generator.further import enlarge
 from mini.generator.grammar import clauses
 
 CRITICAL = TURNING | {
@@ -169,3 +170,5 @@ The driver of {V} [thought|believed] there was room to pass and moved into the {
 ~{V} pulled out to get around a slow vehicle
 """),
 }
+
+enlarge("critical", globals())

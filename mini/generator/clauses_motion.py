@@ -6,7 +6,8 @@
 
 from __future__ import annotations
 
-from mini.generator.grammar import clauses
+from mini.generator.further import enlarge
+from mini.generator.grammar import clauses, tables
 
 APPROACH = clauses("""
 The driver of {Vf} was [traveling|driving|going] {xb} [in the {lane}|on {road}|]{appr}
@@ -186,13 +187,13 @@ As the road[way|] curved {curve}, {Vf} was traveling {dir} [in the {lane}|on {ro
 ~{Vf}, {xb}, was in a {curve}-hand bend [of {road}|]
 """)
 
-WHY = {
-    "light": "[for a red light|at a red light|waiting for the light to change|for a red traffic signal|for the traffic signal|due to a red light|for the red signal phase|for the red light ahead|to wait for a green light|for a traffic light|because of a red traffic light|in response to a red signal|for the signal light, which was red|since the traffic light had turned red|as the light changed to red|in obedience to the red signal|for a red traffic control signal|~while the signal was red]",
-    "sign": "[at the stop sign|for the stop sign|at a posted stop sign|as required by the stop sign|in obedience to the stop sign|to obey the stop sign|because of the stop sign|due to a stop sign|in compliance with the stop sign|~before the stop sign]",
-    "traffic": "[for traffic ahead|in traffic|due to stopped traffic|for traffic|because traffic had backed up|for a vehicle ahead|because of congestion ahead|for slower traffic|due to heavy traffic|behind other stopped vehicles|because the traffic in front had stopped|for a stopped vehicle ahead|as traffic came to a halt|in response to traffic ahead|for a non-contact vehicle|due to congestion|because another vehicle had stopped ahead|to avoid a vehicle in front|~in a line of cars]",
-    "turn_left": "[waiting to turn left|waiting to make a left turn|preparing to turn left|to make a left turn into a driveway|in order to turn left|for a left turn|to turn left|so that it could turn left|before turning left|to wait for a gap in order to turn left|as it waited for a gap to turn left|because its driver intended to turn left|in preparation for a left turn|while its driver waited to turn left|to allow oncoming traffic to pass before turning left|~with its left blinker on]",
-    "turn_right": "[waiting to turn right|preparing to turn right|to make a right turn|in order to turn right|for a right turn|to turn right|to turn right into a driveway|before turning right|in preparation for a right turn|because its driver intended to turn right|while its driver waited to turn right|so that it could turn right|~with its right blinker on]",
-}
+WHY = tables(
+    light="for a red light|at a red light|waiting for the light to change|for a red traffic signal|for the traffic signal|due to a red light|for the red signal phase|for the red light ahead|to wait for a green light|for a traffic light|because of a red traffic light|in response to a red signal|for the signal light, which was red|since the traffic light had turned red|as the light changed to red|in obedience to the red signal|for a red traffic control signal|~while the signal was red",
+    sign="at the stop sign|for the stop sign|at a posted stop sign|as required by the stop sign|in obedience to the stop sign|to obey the stop sign|because of the stop sign|due to a stop sign|in compliance with the stop sign|~before the stop sign",
+    traffic="for traffic ahead|in traffic|due to stopped traffic|for traffic|because traffic had backed up|for a vehicle ahead|because of congestion ahead|for slower traffic|due to heavy traffic|behind other stopped vehicles|because the traffic in front had stopped|for a stopped vehicle ahead|as traffic came to a halt|in response to traffic ahead|for a non-contact vehicle|due to congestion|because another vehicle had stopped ahead|to avoid a vehicle in front|~in a line of cars",
+    turn_left="waiting to turn left|waiting to make a left turn|preparing to turn left|to make a left turn into a driveway|in order to turn left|for a left turn|to turn left|so that it could turn left|before turning left|to wait for a gap in order to turn left|as it waited for a gap to turn left|because its driver intended to turn left|in preparation for a left turn|while its driver waited to turn left|to allow oncoming traffic to pass before turning left|~with its left blinker on",
+    turn_right="waiting to turn right|preparing to turn right|to make a right turn|in order to turn right|for a right turn|to turn right|to turn right into a driveway|before turning right|in preparation for a right turn|because its driver intended to turn right|while its driver waited to turn right|so that it could turn right|~with its right blinker on",
+)
 
 SAME = clauses("""
 {Vf} was [directly |]behind {W} [in the {lane}|], [traveling {dir}|{xb}]
@@ -243,9 +244,11 @@ The driver of {Vf} was [driving|traveling] {dir} [in the {lane} |]ahead of {W}
 ~In front of {W} was {Vf}[, also {xb}|]
 """)
 
-INTENT = {
-    "straight": "[intending to go straight|intending on going straight|intending to travel straight through|going straight|planning to go straight|in order to go straight through|with the intention of going straight|proceeding straight ahead|intending to drive straight across|about to go straight through|expecting to pass straight through|to go straight|continuing straight ahead|with no intention of turning|~meaning to continue straight]",
-    "turn_left": "[intending to turn left|intending on turning left|attempting to make a left turn|about to turn left|planning to turn left|in order to make a left turn|with the intention of turning left|preparing for a left turn|to make a left|getting ready to turn left|intending a left turn|where its driver planned to turn left|to turn left|~meaning to go left]",
-    "turn_right": "[intending to turn right|intending on turning right|attempting a right turn|about to turn right|planning to turn right|in order to make a right turn|with the intention of turning right|preparing for a right turn|to make a right|getting ready to turn right|intending a right turn|where its driver planned to turn right|to turn right|~meaning to go right]",
-    "u_turn": "[intending to make a U-turn|planning a U-turn|about to make a U-turn|attempting a U-turn|in order to make a U-turn|~wanting to turn around]",
-}
+INTENT = tables(
+    straight="intending to go straight|intending on going straight|intending to travel straight through|going straight|planning to go straight|in order to go straight through|with the intention of going straight|proceeding straight ahead|intending to drive straight across|about to go straight through|expecting to pass straight through|to go straight|continuing straight ahead|with no intention of turning|~meaning to continue straight",
+    turn_left="intending to turn left|intending on turning left|attempting to make a left turn|about to turn left|planning to turn left|in order to make a left turn|with the intention of turning left|preparing for a left turn|to make a left|getting ready to turn left|intending a left turn|where its driver planned to turn left|to turn left|~meaning to go left",
+    turn_right="intending to turn right|intending on turning right|attempting a right turn|about to turn right|planning to turn right|in order to make a right turn|with the intention of turning right|preparing for a right turn|to make a right|getting ready to turn right|intending a right turn|where its driver planned to turn right|to turn right|~meaning to go right",
+    u_turn="intending to make a U-turn|planning a U-turn|about to make a U-turn|attempting a U-turn|in order to make a U-turn|~wanting to turn around",
+)
+
+enlarge("motion", globals())

@@ -7,6 +7,7 @@ vehicles, {He} {he} {his} the driver, {sex} {age}; {kn} a rest of numbers, {mph}
 
 from __future__ import annotations
 
+from mini.generator.further import enlarge
 from mini.generator.grammar import clauses
 
 TOW = clauses("""
@@ -281,3 +282,5 @@ GROUPS = {
     "tow": TOW, "occupant": OCCUPANT, "interview": INTERVIEW, "health": HEALTH, "codes": CODES, "police": POLICE,
     "noncontact": NONCONTACT,
 }  # fmt: skip
+
+enlarge("noise", globals())

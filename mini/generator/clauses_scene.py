@@ -7,7 +7,8 @@ Slots: {jn} junction, {road} / {road2} main and other road, {lim} / {lim2} their
 
 from __future__ import annotations
 
-from mini.generator.grammar import clauses
+from mini.generator.further import enlarge
+from mini.generator.grammar import clauses, tables
 
 OPENING_JUNCTION = clauses("""
 [This|The] [{day} |]crash took place [at|in] the intersection of {road} and {road2}[ during the {tod}|]
@@ -248,24 +249,26 @@ It was {light} [in the {tod}|] and {wx}
 ~{Surf} [pavement|road surface] and {wx} weather were [noted|present]; it was {light}
 """)
 
-LIGHT = {
-    "day": "daylight|light|day time|during the day|daylight conditions|daylight|daylight|daytime|during daylight hours|broad daylight|daytime hours|during daytime|bright daylight|in the daytime|lit by daylight|daylight hours|~full daylight|~light out",
-    "dusk": "dusk|twilight|at dusk|dusk|near dusk|sunset|at sunset|just after sunset|evening twilight|dusk hours|~getting dark",
-    "dawn": "dawn|at dawn|just before sunrise|dawn|sunrise|at sunrise|near dawn|morning twilight|first light|daybreak|dawn hours|~early dawn",
-    "dark": "dark|dark with no lights|dark with no artificial lighting|after dark on an unlit road|dark and not lighted|dark, unlighted|dark with no streetlights|dark and unlit|dark, there were no streetlights|dark out|dark and without lighting|unlit and dark|night with no lighting|dark (not lighted)|nighttime, unlighted|dark, no lights|night and unlit|~nighttime without street lights|~pitch dark",
-    "dark_lit": "dark with overhead lighting|dark with street lights|lit by overhead lights|dark with artificial lighting|dark and lighted|dark with artificial illumination|dark with streetlights|dark, but lighted|dark but lighted|dark with lights|illuminated|night with overhead lighting|dark (lighted)|dark, lighted|dark with functioning streetlights|nighttime with artificial lighting|dark, lit by street lights|dark with street lighting|night and illuminated|~night, with street lamps lit|~dark though the street lights were on",
-}
-WEATHER = {
-    "clear": "clear|clear skies|with no adverse weather|without precipitation|good|clear|clear|clear with no adverse conditions|clear and sunny|nice|fine|without rain or snow|clear with good visibility|with clear skies|with no precipitation|~sunny|~fair",
-    "cloudy": "cloudy|cloudy skies|mostly cloudy|overcast skies|cloudy|overcast|partly cloudy|cloud covered|somewhat cloudy|mainly cloudy|heavily overcast|cloudy with no precipitation|overcast and cloudy|dull|~gray and clouded",
-    "rain": "raining|rain|light rain|heavy rain|showers|pouring rain|raining|rainy|raining lightly|raining heavily|rain falling|light showers|a downpour|moderate rain|rain showers|stormy with rain|thunderstorms|raining steadily|wet weather|~wet with a steady rain|~drizzling",
-    "snow": "snowing|snow|light snow|heavy snow|blowing snow|snowing|snowing lightly|snow falling|snow flurries|snow showers|moderate snow|a snowstorm|blizzard conditions|~snowy with flakes falling",
-    "sleet": "sleeting|sleet|a wintry mix|sleeting|ice pellets|mixed rain and sleet|sleet falling|rain mixed with snow|hail|~freezing rain and sleet",
-    "fog": "foggy|fog|dense fog|hazy|foggy|thick fog|patchy fog|fog with low visibility|fog limiting visibility|fog and haze|~misty with fog",
-}
-SURFACE = {
-    "dry": "dry|dry and level|free of moisture|dry|dry|bare and dry|in dry condition|free of water|dry with no defects|~dry and clean",
-    "wet": "wet|wet with rain|rain soaked|wet and slippery|moist|wet|wet|wet from rain|rain-soaked|wet due to rain|water covered|covered with water|soaked|wet on the surface|wet with standing water|~damp|~slick and wet",
-    "snow": "snow covered|snowy|covered in snow|slushy|snow-covered|covered with snow|under snow|snow packed|slush covered|covered by fresh snow|~under packed snow",
-    "ice": "icy|covered with ice|glazed with ice|slippery with ice|icy|ice covered|ice-covered|icy and slippery|coated in ice|frozen|covered with black ice|partly icy|~iced over|~slick with ice",
-}
+LIGHT = tables(
+    day="daylight|light|day time|during the day|daylight conditions|daylight|daylight|daytime|during daylight hours|broad daylight|daytime hours|during daytime|bright daylight|in the daytime|lit by daylight|daylight hours|~full daylight|~light out",
+    dusk="dusk|twilight|at dusk|dusk|near dusk|sunset|at sunset|just after sunset|evening twilight|dusk hours|~getting dark",
+    dawn="dawn|at dawn|just before sunrise|dawn|sunrise|at sunrise|near dawn|morning twilight|first light|daybreak|dawn hours|~early dawn",
+    dark="dark|dark with no lights|dark with no artificial lighting|after dark on an unlit road|dark and not lighted|dark, unlighted|dark with no streetlights|dark and unlit|dark, there were no streetlights|dark out|dark and without lighting|unlit and dark|night with no lighting|dark (not lighted)|nighttime, unlighted|dark, no lights|night and unlit|~nighttime without street lights|~pitch dark",
+    dark_lit="dark with overhead lighting|dark with street lights|lit by overhead lights|dark with artificial lighting|dark and lighted|dark with artificial illumination|dark with streetlights|dark, but lighted|dark but lighted|dark with lights|illuminated|night with overhead lighting|dark (lighted)|dark, lighted|dark with functioning streetlights|nighttime with artificial lighting|dark, lit by street lights|dark with street lighting|night and illuminated|~night, with street lamps lit|~dark though the street lights were on",
+)
+WEATHER = tables(
+    clear="clear|clear skies|with no adverse weather|without precipitation|good|clear|clear|clear with no adverse conditions|clear and sunny|nice|fine|without rain or snow|clear with good visibility|with clear skies|with no precipitation|~sunny|~fair",
+    cloudy="cloudy|cloudy skies|mostly cloudy|overcast skies|cloudy|overcast|partly cloudy|cloud covered|somewhat cloudy|mainly cloudy|heavily overcast|cloudy with no precipitation|overcast and cloudy|dull|~gray and clouded",
+    rain="raining|rain|light rain|heavy rain|showers|pouring rain|raining|rainy|raining lightly|raining heavily|rain falling|light showers|a downpour|moderate rain|rain showers|stormy with rain|thunderstorms|raining steadily|wet weather|~wet with a steady rain|~drizzling",
+    snow="snowing|snow|light snow|heavy snow|blowing snow|snowing|snowing lightly|snow falling|snow flurries|snow showers|moderate snow|a snowstorm|blizzard conditions|~snowy with flakes falling",
+    sleet="sleeting|sleet|a wintry mix|sleeting|ice pellets|mixed rain and sleet|sleet falling|rain mixed with snow|hail|~freezing rain and sleet",
+    fog="foggy|fog|dense fog|hazy|foggy|thick fog|patchy fog|fog with low visibility|fog limiting visibility|fog and haze|~misty with fog",
+)
+SURFACE = tables(
+    dry="dry|dry and level|free of moisture|dry|dry|bare and dry|in dry condition|free of water|dry with no defects|~dry and clean",
+    wet="wet|wet with rain|rain soaked|wet and slippery|moist|wet|wet|wet from rain|rain-soaked|wet due to rain|water covered|covered with water|soaked|wet on the surface|wet with standing water|~damp|~slick and wet",
+    snow="snow covered|snowy|covered in snow|slushy|snow-covered|covered with snow|under snow|snow packed|slush covered|covered by fresh snow|~under packed snow",
+    ice="icy|covered with ice|glazed with ice|slippery with ice|icy|ice covered|ice-covered|icy and slippery|coated in ice|frozen|covered with black ice|partly icy|~iced over|~slick with ice",
+)
+
+enlarge("scene", globals())

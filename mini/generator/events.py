@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - lists of words
 """The event sentences of a report: who erred, who avoided, who struck whom, where they came to rest.
 
 A part of the writer.
@@ -14,8 +15,24 @@ from mini.generator.clauses_critical import CRITICAL
 from mini.generator.grammar import Told, choose, clauses, families
 from mini.generator.world import Contact, Crash
 
-_STATE = re.compile(r"\{W\}[^{.]*?\b(stopped|slow)")
-"""A clause that says of the other vehicle that it had stopped or was slowing."""
+_BEHIND = {
+    "stopped": "stopped|stand|stood|sitting|sat|stationary|halted|motionless|not moving|at rest|to a [a-z ]*stop|waiting|last vehicle",
+    "slowing": "slow(?:s|ed|ing)?|decelerat|brak(?:ed|ing|es)|stopping|losing speed|reduc[a-z]+ (?:its )?speed|speed had",
+}
+_BEFORE = {
+    "stopped": "stopped|stationary|standing|stopping|sudden stop",
+    "slowing": "slow|slowing|decelerating|braking|brake lights",
+}
+_APART = {"stopped": r"\{W\} to a stop|when \{W\} did", "slowing": "brake lights ahead"}
+STATES = {
+    word: re.compile(
+        rf"\{{W\}}[^{{.;]*?\b(?:{behind})|\b(?:{_BEFORE[word]}) (?:vehicle, |of |by )?\{{W\}}|{_APART[word]}",
+        re.IGNORECASE,
+    )
+    for word, behind in _BEHIND.items()
+}
+"""Clauses that say of the other vehicle that it had stopped or was slowing."""
+TRIES = 40
 
 
 class EventsMixin:
@@ -69,11 +86,16 @@ class EventsMixin:
         return out + [self.say(told.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _true_of(self, index: int, options: list[str]) -> list[str]:
-        """Clauses that say of the other vehicle only what it does: that it slowed, that it had stopped."""
-        does = {"stopped": "stopped", "slowing": "slow"}.get(self.crash.actors[index].maneuver)
-        chosen = [choose(self.rng, c) for c in options]
-        true = [c for c in chosen if (found := _STATE.search(c)) is None or found[1] == does]
-        return true if any(c.startswith("~") == self.held_out for c in true) else options
+        """One clause that says of the other vehicle only what it does: that it slowed, that it had stopped.
+
+        All clauses, should none of a good many be true.
+        """
+        does, mine = self.crash.actors[index].maneuver, families(options, self.held_out)
+        for _ in range(TRIES):
+            clause = choose(self.rng, self.rng.choice(mine))
+            if not any(word != does and found.search(clause) for word, found in STATES.items()):
+                return [clause]
+        return options
 
     def _turn(self, index: int) -> str:
         maneuver = self.crash.actors[index].maneuver
@@ -102,8 +124,8 @@ class EventsMixin:
         """Now and then with a few words before or behind every clause."""
         if self.held_out:
             return options
-        lead = f"{self.rng.choice(told.LEADS)}, " if self.rng.random() < 0.15 else ""
-        tail = self.rng.choice(told.TAILS) if self.rng.random() < 0.12 else ""
+        lead = f"{choose(self.rng, self.rng.choice(told.LEADS))}, " if self.rng.random() < 0.15 else ""
+        tail = choose(self.rng, self.rng.choice(told.TAILS)) if self.rng.random() < 0.12 else ""
         if not lead:
             return [clause + tail for clause in options]
         return [
@@ -111,19 +133,7 @@ class EventsMixin:
         ]
 
     def _area(self, area: str) -> str:
-        return choose(self.rng, self.rng.choice(families(_split_top(told.AREA[area]), self.held_out)))
-
-
-def _split_top(text: str) -> list[str]:
-    """Split at | outside brackets."""
-    out, depth = [""], 0
-    for letter in text:
-        depth += (letter == "[") - (letter == "]")
-        if letter == "|" and not depth:
-            out.append("")
-        else:
-            out[-1] += letter
-    return out
+        return choose(self.rng, self.rng.choice(families(told.AREA[area], self.held_out)))
 
 
 _FIXED = """

@@ -26,6 +26,23 @@ def clauses(text: str) -> list[str]:
     return [line.strip() for line in text.strip().splitlines() if line.strip() and not line.startswith("#")]
 
 
+def phrases(text: str) -> list[str]:
+    """`a|b [c|d]|~e` split at the outer bars."""
+    out, depth = [""], 0
+    for letter in text:
+        depth += (letter == "[") - (letter == "]")
+        if letter == "|" and not depth:
+            out.append("")
+        else:
+            out[-1] += letter
+    return out
+
+
+def tables(**texts: str) -> dict[str, list[str]]:
+    """Phrases by what they tell."""
+    return {key: phrases(text) for key, text in texts.items()}
+
+
 def families(options: list[str], held_out: bool) -> list[str]:
     """The clauses of one side of the split; a list without held-out clauses serves both."""
     kept = [o.lstrip("~") for o in options if o.startswith("~") == held_out]

@@ -191,5 +191,5 @@ class SceneMixin(RoadsMixin):
             "surf": ("surface", scene.SURFACE),
         }[slot]
         self.told.add(key)
-        options = table[getattr(self.crash, key)].split("|")
+        options = table[getattr(self.crash, key)]
         return choose(self.rng, self.rng.choice(families(options, self.held_out)))

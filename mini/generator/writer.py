@@ -268,8 +268,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             return ""
         return " " + self._option(motion.WHY[purpose])
 
-    def _option(self, bracket: str) -> str:
-        return self.rng.choice(families(bracket.strip("[]").split("|"), self.held_out))
+    def _option(self, options: list[str]) -> str:
+        return choose(self.rng, self.rng.choice(families(options, self.held_out)))
 
     def _approaching(self, index: int, later: bool) -> str:
         """What the vehicle comes to and means to do."""

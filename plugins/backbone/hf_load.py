@@ -19,8 +19,9 @@ from PIL import Image
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 
-Prepare = Callable[[Image.Image], Mapping[str, Any]]
-"""A picture to the tensors of the model's arguments, and what else the processor says of it."""
+Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
+"""A picture in one of its views (0: as it is) to the tensors of the model's arguments, and what else the processor says
+of it."""
 
 
 @dataclass(frozen=True)
@@ -126,8 +127,19 @@ def _prepare(place: str, revision: str | None) -> Prepare:
     except (OSError, ValueError) as fault:
         raise _not_loaded(place, fault) from fault
     if type(processor).__name__.startswith(("Idefics3", "SmolVLM")):
-        return lambda picture: processor([[picture]], return_tensors="pt", return_row_col_info=True)
-    return lambda picture: processor([picture], return_tensors="pt")
+        return lambda picture, view: processor([[moved(picture, view)]], return_tensors="pt", return_row_col_info=True)
+    return lambda picture, view: processor([moved(picture, view)], return_tensors="pt")
+
+
+def moved(picture: Image.Image, view: int) -> Image.Image:
+    """A picture on a white sheet a little larger, lying elsewhere in every view; view 0 is the picture itself."""
+    if not view:
+        return picture
+    room_x, room_y = (round(side * 0.04 * (1 + view // 4)) for side in picture.size)
+    sheet = Image.new("RGB", (picture.width + 2 * room_x, picture.height + 2 * room_y), "white")
+    right, low = view % 2, view // 2 % 2
+    sheet.paste(picture, (2 * room_x * right, 2 * room_y * low))
+    return sheet
 
 
 def _own_kind(place: str) -> str:
@@ -149,8 +161,8 @@ def _mini(folder: Path) -> Prepare:
     except FileNotFoundError as fault:
         raise ConfigError(f"backbone.model {fault}") from fault
 
-    def prepare(picture: Image.Image) -> Mapping[str, Any]:
-        patches, grid = sight.patches(picture)
+    def prepare(picture: Image.Image, view: int) -> Mapping[str, Any]:
+        patches, grid = sight.patches(picture, view)
         return {"pixel_values": patches, "image_grid_thw": torch.tensor([[1, *grid]])}
 
     return prepare

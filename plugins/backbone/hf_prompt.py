@@ -53,9 +53,9 @@ class Prompter:
         found += [] if self.loaded.prepare else ["the model sees no pictures: diagrams are left out"]
         return tuple(found)
 
-    def prompt(self, parts: Parts) -> Prompt:
-        """Token ids and pictures. Raises ConfigError if the template drops a picture."""
-        pictures = [self.picture(diagram) for diagram in parts.diagrams] if self.loaded.prepare else []
+    def prompt(self, parts: Parts, view: int = 0) -> Prompt:
+        """Token ids and pictures in one of their views. Raises ConfigError if the template drops a picture."""
+        pictures = [self.picture(diagram, view) for diagram in parts.diagrams] if self.loaded.prepare else []
         text = self._templated(parts, len(pictures)) if self.loaded.template else self._plain(parts, len(pictures))
         ids = self._ids(text)
         shown = ids.count(self.family.image_token) if self.family.image_token is not None else 0
@@ -143,20 +143,20 @@ class Prompter:
         return found
 
     # ------------------------------------------------------------------ pictures
-    def picture(self, diagram: Diagram) -> Picture:
+    def picture(self, diagram: Diagram, view: int = 0) -> Picture:
         """A diagram as the model takes it; prepared once."""
-        digest = hashlib.sha256(diagram.png).hexdigest()
+        digest = hashlib.sha256(diagram.png + bytes([view] * bool(view))).hexdigest()
         with self.lock:
             if digest not in self.kept:
-                self.kept[digest] = self._prepared(diagram, digest)
+                self.kept[digest] = self._prepared(diagram, digest, view)
                 if len(self.kept) > _KEPT_PICTURES:
                     self.kept.popitem(last=False)
             return self.kept[digest]
 
-    def _prepared(self, diagram: Diagram, digest: str) -> Picture:
+    def _prepared(self, diagram: Diagram, digest: str, view: int) -> Picture:
         assert self.loaded.prepare is not None  # noqa: S101 -- asked by the caller
         with Image.open(io.BytesIO(diagram.png)) as opened:
-            found = dict(self.loaded.prepare(opened.convert("RGB")))
+            found = dict(self.loaded.prepare(opened.convert("RGB"), view))
         if "rows" in found:
             self.layouts[digest] = (int(found["rows"][0][0]), int(found["cols"][0][0]))
         layout = ("rows", "cols", "num_tiles")

@@ -36,6 +36,7 @@ class Call:
     max_new_tokens: int
     draft: Sequence[int]
     truncate: bool
+    views: int = 1
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,12 @@ class Running:
 
         try:
             grammar = self._grammar(call.schema)
-            with_context, note = self._fitted(call.with_context, call)
+            seen, with_context, note = self._fitted(call.with_context, call)
             without = self.prompter.prompt(call.without_context) if call.without_context else None
             request = records.Request(
-                with_context, without, call.policy, grammar, call.seed, call.max_new_tokens, self.eos, call.draft
-            )
+                with_context, without, call.policy, grammar, call.seed, call.max_new_tokens, self.eos, call.draft,
+                views=self._views(seen, call.views),
+            )  # fmt: skip
             found = self.engine.generate(request)
         except records.DoesNotFit as fault:
             finding = Finding(
@@ -89,7 +91,12 @@ class Running:
             )
         return self.maker.grammar(schema)
 
-    def _fitted(self, parts: Parts, call: Call) -> tuple[Prompt, list[str]]:
+    def _views(self, parts: Parts, count: int) -> list[Prompt]:
+        """Further views of the same evidence; none where there is nothing to be seen."""
+        sees = parts.diagrams and self.prompter.loaded.prepare
+        return [self.prompter.prompt(parts, view) for view in range(1, count)] if sees else []
+
+    def _fitted(self, parts: Parts, call: Call) -> tuple[Parts, Prompt, list[str]]:
         """The prompt, its narrative cut to the window if the config allows it, and a note if it was cut."""
         room = self.engine.window - call.max_new_tokens
         prompt = self.prompter.prompt(parts)
@@ -100,8 +107,10 @@ class Running:
             kept = max(0, min(kept - 1, int(kept * (1 - over) * 0.98)))
             prompt = self.prompter.prompt(dataclasses.replace(parts, narrative=parts.narrative[:kept]))
         if kept == whole:
-            return prompt, []
-        return prompt, [f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"]
+            return parts, prompt, []
+        parts = dataclasses.replace(parts, narrative=parts.narrative[:kept])
+        note = f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"
+        return parts, prompt, [note]
 
     def _generation(self, found: Answer, notes: list[str]) -> Generation:
         parts = [bytes(self.maker.tokens.decode_bytes([token])) for token in found.ids]

@@ -42,6 +42,9 @@ class HfVision(Backbone):
     prefix_cache_mb: int = Field(1024, ge=0, description="kept beginnings of prompts; 0 = none")
     truncate: bool = Field(False, description="cut a narrative that does not fit in the model's window")
     pictures_first: bool = Field(True, description="diagrams before the narrative")
+    views: int = Field(
+        1, ge=1, le=5, description="layouts of the diagrams read side by side, their predictions averaged"
+    )
     always_ground: bool = Field(False, description="run the row without context for decoders that do not need it too")
 
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
@@ -77,6 +80,7 @@ class HfVision(Backbone):
             max_new_tokens=self.max_new_tokens,
             draft=ids,
             truncate=self.truncate,
+            views=self.views,
         )
         generation, ids = running.answer(call)
         with self._lock:

@@ -44,7 +44,7 @@ class Job:
     future: Future[Answer] = field(default_factory=Future)
     answer: Answer = field(default_factory=Answer)
     rows: list[Row] = field(default_factory=list)
-    """With context, then without, if that row is run."""
+    """With context, then without, if that row is run, then further views of the context."""
     pending: list[int] = field(default_factory=list)
     """Decided tokens that the rows have not been fed: the last of the prompt, or a picked one and forced ones."""
     guesses: list[int] = field(default_factory=list)

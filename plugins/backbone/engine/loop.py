@@ -22,7 +22,7 @@ from plugins.backbone.engine.job import Job
 from plugins.backbone.engine.memory import tried
 from plugins.backbone.engine.records import Answer, BadLogits, EngineFault, Request, TooBig, TooLong
 from plugins.backbone.engine.runner import Runner
-from plugins.backbone.engine.scoring import Heard, heard
+from plugins.backbone.engine.scoring import Heard, averaged, heard
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""
@@ -61,7 +61,7 @@ class Engine:
 
         Cancelling the future ends the report before its next token.
         """
-        longest = max(len(p.ids) for p in (request.with_context, request.without_context) if p)
+        longest = max(len(p.ids) for p in request.prompts)
         if longest + request.max_new_tokens > self.window:
             raise TooLong(
                 f"the prompt has {longest} tokens and the answer may have {request.max_new_tokens}, together "
@@ -127,9 +127,8 @@ class Engine:
         self.jobs.append(job)
         request = job.request
         job.begin()
-        for prompt in (request.with_context, request.without_context):
-            if prompt:
-                job.rows.append(self.runner.open(prompt, job.fed()))
+        for prompt in request.prompts:
+            job.rows.append(self.runner.open(prompt, job.fed()))
         job.answer.model_calls += self.runner.calls - before
 
     def _step(self) -> None:
@@ -163,8 +162,9 @@ class Engine:
         logits = iter(self.runner.step(chunks))
         with_context, without_context = [], []
         for job in jobs:
-            with_context.append(next(logits))
-            without_context.append(next(logits) if len(job.rows) > 1 else None)
+            first = next(logits)
+            without_context.append(next(logits) if job.request.without_context is not None else None)
+            with_context.append(averaged(first, [next(logits) for _ in job.request.views]))
             job.answer.model_calls += self.runner.calls - before
         return heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
 

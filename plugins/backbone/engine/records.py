@@ -100,6 +100,13 @@ class Request:
     draft: Sequence[int] = ()
     """The tokens of an earlier answer that this one may largely repeat; changes the speed, never the answer."""
     jump_forward: bool = True
+    views: Sequence[Prompt] = ()
+    """The evidence with its pictures laid out otherwise: what these rows predict is averaged with the first's."""
+
+    @property
+    def prompts(self) -> list[Prompt]:
+        """A row each: with context, without it if that is run, then the views."""
+        return [prompt for prompt in (self.with_context, self.without_context, *self.views) if prompt is not None]
 
 
 @dataclass

@@ -57,6 +57,18 @@ def heard(
     return found
 
 
+def averaged(first: Tensor, views: Sequence[Tensor]) -> Tensor:
+    """Logits (chunk, vocabulary) of several views as one row: the geometric mean of what they predict.
+
+    Test-time augmentation, as in Krizhevsky et al. 2012, "ImageNet Classification with Deep Convolutional Neural
+    Networks", section 4.1, which averages softmax layers; logits keep the contrast with the prior row additive.
+    """
+    if not views:
+        return first
+    rows = [row.float().log_softmax(-1) for row in (first, *views)]
+    return torch.stack(rows).mean(0)
+
+
 @dataclass(frozen=True)
 class _Row:
     """Logits of one row's chunk and the logarithm of their mass, (chunk,), in fp32."""
@@ -155,7 +167,7 @@ def _described(found: object) -> str:
 
 def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
     finite, *rest = lists
-    rows = len(job.rows)
+    rows = 1 + (job.request.without_context is not None)
     if not finite[0]:
         one.fault = BadLogits(f"the model gave NaN or inf behind token {len(job.answer.ids)} of the answer")
         return
