@@ -55,12 +55,19 @@ class Running:
 
         try:
             grammar = self._grammar(call.schema)
-            seen, with_context, note = self._fitted(call.with_context, call)
+            (with_context, *views), note = self._fitted(call.with_context, call)
             without = self.prompter.prompt(call.without_context) if call.without_context else None
             request = records.Request(
-                with_context, without, call.policy, grammar, call.seed, call.max_new_tokens, self.eos, call.draft,
-                views=self._views(seen, call.views),
-            )  # fmt: skip
+                with_context,
+                without,
+                call.policy,
+                grammar,
+                call.seed,
+                call.max_new_tokens,
+                self.eos,
+                call.draft,
+                views=views,
+            )
             found = self.engine.generate(request)
         except records.DoesNotFit as fault:
             finding = Finding(
@@ -91,26 +98,23 @@ class Running:
             )
         return self.maker.grammar(schema)
 
-    def _views(self, parts: Parts, count: int) -> list[Prompt]:
-        """Further views of the same evidence; none where there is nothing to be seen."""
-        sees = parts.diagrams and self.prompter.loaded.prepare
-        return [self.prompter.prompt(parts, view) for view in range(1, count)] if sees else []
-
-    def _fitted(self, parts: Parts, call: Call) -> tuple[Parts, Prompt, list[str]]:
-        """The prompt, its narrative cut to the window if the config allows it, and a note if it was cut."""
+    def _fitted(self, parts: Parts, call: Call) -> tuple[list[Prompt], list[str]]:
+        """The prompt in its views, its narrative cut to the window if the config allows that; a note if it was cut."""
         room = self.engine.window - call.max_new_tokens
-        prompt = self.prompter.prompt(parts)
-        whole = len(parts.narrative)
-        kept = whole
-        while len(prompt.ids) > room and call.truncate and kept > 0:
-            over = (len(prompt.ids) - room) / max(1, len(prompt.ids))
+        prompts = self._views(parts, call.views)
+        kept = whole = len(parts.narrative)
+        while (longest := max(len(prompt.ids) for prompt in prompts)) > room and call.truncate and kept > 0:
+            over = (longest - room) / max(1, longest)
             kept = max(0, min(kept - 1, int(kept * (1 - over) * 0.98)))
-            prompt = self.prompter.prompt(dataclasses.replace(parts, narrative=parts.narrative[:kept]))
+            prompts = self._views(dataclasses.replace(parts, narrative=parts.narrative[:kept]), call.views)
         if kept == whole:
-            return parts, prompt, []
-        parts = dataclasses.replace(parts, narrative=parts.narrative[:kept])
-        note = f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"
-        return parts, prompt, [note]
+            return prompts, []
+        return prompts, [f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"]
+
+    def _views(self, parts: Parts, count: int) -> list[Prompt]:
+        """One prompt a view; a single one where there is nothing to be seen."""
+        sees = parts.diagrams and self.prompter.loaded.prepare
+        return [self.prompter.prompt(parts, view) for view in range(count if sees else 1)]
 
     def _generation(self, found: Answer, notes: list[str]) -> Generation:
         parts = [bytes(self.maker.tokens.decode_bytes([token])) for token in found.ids]

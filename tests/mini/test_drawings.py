@@ -88,3 +88,25 @@ def test_an_empty_sheet_is_no_fault() -> None:
     sheet, grid = picture.look(Image.new("RGB", (50, 40), "white"))
     assert sheet.shape == (3, grid[0] * picture.PATCH, grid[1] * picture.PATCH)
     assert not sheet.any()
+
+
+@settings(max_examples=60, deadline=None)
+@given(width=st.integers(60, 1400), height=st.integers(60, 1400), view=st.integers(0, len(picture.VIEWS) - 1))
+def test_every_view_lies_on_its_sheet(width: int, height: int, view: int) -> None:
+    image = Image.new("RGB", (width, height), "white")
+    ImageDraw.Draw(image).rectangle((5, 5, width - 6, height - 6), outline="black", width=3)
+    laid, plain = picture.fit(image, view), picture.fit(image)
+    assert laid.grid == plain.grid
+    sheet = np.array([laid.grid[1], laid.grid[0]]) * picture.PATCH
+    edges = laid(np.array([laid.box[:2], laid.box[2:]], np.float64))
+    assert (edges >= -1).all()
+    assert (edges <= sheet + 1).all()
+    assert laid.scale <= plain.scale
+
+
+def test_views_show_the_same_ink_elsewhere() -> None:
+    image = draw_report(make_report(5, modes={"image": 1.0}))
+    sheets = [picture.look(image, view)[0].astype(float) for view in range(len(picture.VIEWS))]
+    for i, one in enumerate(sheets):
+        assert 0.7 < one.sum() / sheets[0].sum() < 1.1
+        assert all(np.abs(one - other).mean() > 1 for other in sheets[:i])
