@@ -32,6 +32,13 @@ STATES = {
     for word, behind in _BEHIND.items()
 }
 """Clauses that say of the other vehicle that it had stopped or was slowing."""
+MUTUAL = re.compile(
+    r"^(?!.*(?:hit|str[iu]c?k)).*"
+    r"(?:\bmet the\b|\bmade between\b|each other|(?:^|, )\[?(?:The two|Both|The vehicles|They)\b"
+    r"|\{S\} and \{T\} \[?(?:crashed|collided|made|sideswiped))",
+    re.IGNORECASE,
+)
+"""Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
 TRIES = 40
 
 
@@ -112,13 +119,17 @@ class EventsMixin:
             options = told.THEN_REAR if later else told.IMPACT_REAR
         elif self.rng.random() < 0.06 and not later:
             options, areas = told.IMPACT_BARE, False
-        self.told |= {f"contact.{number}"} | ({f"areas.{number}"} if areas else set())
         if self.crash.actors[contact.struck].kind in ("object", "pedestrian", "bicycle"):
             options = clauses(_FIXED)
         sides = ("left", "right", "left", "right") if options is told.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area)
         ta = contact.struck_area if sides else self._area(contact.struck_area)
-        return self.say(self._framed(options), contact.striker, contact.struck, sa=sa, ta=ta)
+        clause = self.rng.choice(families(self._framed(options), self.held_out))
+        head_first = contact.striker_area == "front" != contact.struck_area
+        if not MUTUAL.search(clause) or (areas and head_first):
+            self.told.add(f"contact.{number}")
+        self.told |= {f"areas.{number}"} if areas else set()
+        return self.say([clause], contact.striker, contact.struck, sa=sa, ta=ta)
 
     def _framed(self, options: list[str]) -> list[str]:
         """Now and then with a few words before or behind every clause."""

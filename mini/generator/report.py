@@ -19,7 +19,7 @@ from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash
 from mini.generator.writer import Writer
 
-MODES = {"both": 42.0, "image": 25.0, "text": 17.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
+MODES = {"both": 42.0, "image": 17.0, "text": 25.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
 TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
 CARELESS = 0.15
 """Share of drawings beside a narrative whose lanes are wrong: where both tell lanes, the narrative is to be believed,
