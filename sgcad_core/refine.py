@@ -224,9 +224,9 @@ def prompt_text(query: Query) -> str:
 
 
 def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:
-    """What all findings so far tell exactly, each once."""
+    """What all findings tell exactly, each once, newest first: of two that exclude each other the first is kept."""
     found: list[Hold] = []
-    for turn in turns:
+    for turn in reversed(turns):
         told = (hold for f in turn.attempt.findings if f.severity == "repair" for hold in f.holds)
         found += [hold for hold in told if hold not in found]
     return tuple(found)

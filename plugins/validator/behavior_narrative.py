@@ -85,7 +85,15 @@ def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
         if name not in told:
             yield _finding("the report numbers no such vehicle", "actors", name,
                            f"keep to {', '.join(told)}; other road users are P, B or O",
-                           holds=(Hold(items="actors", either=({"id": (*told, *_UNNUMBERED)},)),))  # fmt: skip
+                           holds=(_unnumbered(name, told, behavior),))  # fmt: skip
+
+
+def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
+    """Behind the places of the numbered vehicles the invented one is something else; before, any that there is."""
+    at = next(i for i, actor in enumerate(behavior.actors) if actor.id == name)
+    if at >= len(told):
+        return Hold(items="actors", at=at, either=({"id": _UNNUMBERED},))
+    return Hold(items="actors", either=({"id": (*told, *_UNNUMBERED)},))
 
 
 # ------------------------------------------------------------------ headings

@@ -138,3 +138,11 @@ def test_a_hold_reads_as_one_line():
     assert TURNS_LEFT.line() == "actors with id V1: maneuver turn_left"
     assert THREE.line() == "at least 3 legs"
     assert FIRST.line() == "contacts[0]: striker V2, struck V1, struck_area left"
+
+
+@pytest.mark.parametrize(("first", "second"), [("V2", "O1"), ("O1", "V2")])
+def test_of_two_holds_that_exclude_each_other_the_first_is_kept(first, second):
+    holds = [Hold(items="actors", at=1, either=({"id": (name,)},)) for name in (first, second)]
+    narrowed_ = grammar_of(BehaviorSpec, *holds)
+    assert accepts(narrowed_, behavior(actor("V1"), actor(first)))
+    assert not accepts(narrowed_, behavior(actor("V1"), actor(second)))

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Context, CrashReport, Evidence, Finding, Generation, Hold, Query, RoadNetwork
-from sgcad_core.refine import MAX_ATTEMPTS, Refinement, Turn, refine
+from sgcad_core.records import Attempt, Context, CrashReport, Evidence, Finding, Generation, Hold, Query, RoadNetwork
+from sgcad_core.refine import MAX_ATTEMPTS, Refinement, Turn, _holds, refine
 
 CONTEXT = Context(narrative="V1 struck V2.")
 REPORT = CrashReport(case="c", narrative="V1 struck V2.")
@@ -238,3 +238,12 @@ def test_findings_are_not_held_unless_asked():
     outcome = held_run(hold_findings=False)
     assert (outcome.status, len(outcome.attempts)) == ("exhausted", 3)
     assert not any(attempt.held for attempt in outcome.attempts)
+
+
+def test_the_newest_findings_hold_before_older_ones():
+    def turn(number):
+        hold = Hold(items="actors", at=1, either=({"id": (f"V{number}",)},))
+        finding = Finding(source="exact", what="an actor", holds=(hold,))
+        return Turn(Attempt(stage="scenario", number=number, findings=(finding,)), None)
+
+    assert [hold.either[0]["id"] for hold in _holds([turn(1), turn(2), turn(1)])] == [("V1",), ("V2",)]

@@ -157,3 +157,12 @@ def test_a_start_is_held_where_the_road_has_no_such_turn() -> None:
         "actors with id V2: road N, direction forward, maneuver turn_left or road S, direction backward, "
         "maneuver turn_left"
     ]
+
+
+def test_an_invented_vehicle_behind_the_numbered_ones_becomes_something_else() -> None:
+    third = GOOD.actors[1].model_copy(update={"id": "V3"})
+    behavior = GOOD.model_copy(update={"actors": (*GOOD.actors, third)})
+    invented = next(f for f in _found(behavior) if f.what == "the report numbers no such vehicle")
+    (hold,) = invented.holds
+    assert hold.at == 2
+    assert not {name for name in hold.either[0]["id"] if str(name).startswith("V")}
