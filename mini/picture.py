@@ -73,8 +73,8 @@ def fit(image: Image.Image, view: int = 0) -> Fit:
     box = crop_box(255 - np.asarray(image.convert("L")))
     width, height = box[2] - box[0], box[3] - box[1]
     grid = fit_grid(width, height)
-    scale, *shift = VIEWS[view]
-    return Fit(box, grid, scale * min(grid[1] * PATCH / width, grid[0] * PATCH / height), tuple(shift))
+    scale, right, down = VIEWS[view]
+    return Fit(box, grid, scale * min(grid[1] * PATCH / width, grid[0] * PATCH / height), (right, down))
 
 
 def look(image: Image.Image, view: int = 0) -> tuple[NDArray[np.uint8], tuple[int, int]]:
