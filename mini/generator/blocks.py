@@ -12,7 +12,7 @@ from typing import Any
 from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.grammar import Told, choose, families, fill
+from mini.generator.grammar import Told, clause_of, fill
 from mini.generator.world import Actor, Contact, Crash
 
 BY_MANEUVER = {
@@ -178,5 +178,5 @@ class BlocksMixin:
         self, options: list[str], v: int = 0, w: int | None = None, person: dict[str, str] | None = None
     ) -> str:
         """One phrase of its side of the split, with its slots filled."""
-        chosen = choose(self.rng, self.rng.choice(families(options, self.held_out)))
+        chosen = clause_of(self.rng, options, self.held_out)
         return fill(chosen, lambda slot: self._slot(slot, v, v if w is None else w, person or {}))

@@ -12,7 +12,7 @@ from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator.clauses_critical import CRITICAL
-from mini.generator.grammar import Told, choose, clauses, families
+from mini.generator.grammar import Told, choose, clause_of, clauses, families
 from mini.generator.world import Contact, Crash
 
 _BEHIND = {
@@ -97,9 +97,9 @@ class EventsMixin:
 
         All clauses, should none of a good many be true.
         """
-        does, mine = self.crash.actors[index].maneuver, families(options, self.held_out)
+        does = self.crash.actors[index].maneuver
         for _ in range(TRIES):
-            clause = choose(self.rng, self.rng.choice(mine))
+            clause = clause_of(self.rng, options, self.held_out)
             if not any(word != does and found.search(clause) for word, found in STATES.items()):
                 return [clause]
         return options
@@ -144,7 +144,7 @@ class EventsMixin:
         ]
 
     def _area(self, area: str) -> str:
-        return choose(self.rng, self.rng.choice(families(told.AREA[area], self.held_out)))
+        return clause_of(self.rng, told.AREA[area], self.held_out)
 
 
 _FIXED = """

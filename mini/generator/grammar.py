@@ -59,6 +59,11 @@ def choose(rng: Random, clause: str) -> str:
         clause = clause[: found.start()] + chosen + clause[found.end() :]
 
 
+def clause_of(rng: Random, options: list[str], held_out: bool) -> str:
+    """One clause of a side of the split, its choices made."""
+    return choose(rng, rng.choice(families(options, held_out)))
+
+
 def fill(clause: str, slot: Fill) -> str:
     """Put slot values in and tidy the spaces."""
     text = SLOTS.sub(lambda m: slot(m[1]), clause)

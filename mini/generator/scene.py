@@ -7,7 +7,7 @@ from typing import Any
 
 from mini.generator import clauses_scene as scene
 from mini.generator import words
-from mini.generator.grammar import choose, families
+from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.world import WORDS, Leg
 
@@ -192,4 +192,4 @@ class SceneMixin(RoadsMixin):
         }[slot]
         self.told.add(key)
         options = table[getattr(self.crash, key)]
-        return choose(self.rng, self.rng.choice(families(options, self.held_out)))
+        return clause_of(self.rng, options, self.held_out)

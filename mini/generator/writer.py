@@ -12,7 +12,7 @@ from mini.generator import clauses_motion as motion
 from mini.generator import words
 from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
-from mini.generator.grammar import HINT, MARK, SLOTS, Told, choose, families, fill, sentence, unmark
+from mini.generator.grammar import HINT, MARK, SLOTS, Told, clause_of, fill, sentence, unmark
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.scene import SceneMixin
@@ -112,7 +112,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
     # -------------------------------------------------------------- slots
     def say(self, options: list[str], v: int = 0, w: int | None = None, **extra: str) -> str:
         """One sentence of a role about actors v and w."""
-        clause = choose(self.rng, self.rng.choice(families(options, self.held_out)))
+        clause = clause_of(self.rng, options, self.held_out)
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
         text = sentence(fill(clause, lambda slot: self._slot(slot, v, other, extra)))
@@ -254,7 +254,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         key = self.rng.choice(keys)
         if key.startswith("turn"):
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-        return " " + self._option(motion.WHY[key]) if key != "traffic" else ""
+        return " " + clause_of(self.rng, motion.WHY[key], self.held_out) if key != "traffic" else ""
 
     def _behind(self, index: int, other: int | None) -> bool | None:
         """Whether one drives behind the other in a rear-end crash: the striker does."""
@@ -266,10 +266,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
     def _why(self, purpose: str) -> str:
         if not purpose or self.rng.random() < 0.15:
             return ""
-        return " " + self._option(motion.WHY[purpose])
-
-    def _option(self, options: list[str]) -> str:
-        return choose(self.rng, self.rng.choice(families(options, self.held_out)))
+        return " " + clause_of(self.rng, motion.WHY[purpose], self.held_out)
 
     def _approaching(self, index: int, later: bool) -> str:
         """What the vehicle comes to and means to do."""
@@ -281,5 +278,5 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-            text += (", " if text else " ") + self._option(motion.INTENT[actor.maneuver])
+            text += (", " if text else " ") + clause_of(self.rng, motion.INTENT[actor.maneuver], self.held_out)
         return text
