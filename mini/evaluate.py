@@ -19,6 +19,7 @@ import torch
 from transformers import Qwen2_5_VLForConditionalGeneration
 
 from mini import eye
+from mini.answers import COMPASS
 from mini.decode import Answerer
 from mini.eye import Sight
 from mini.feed import HELD_OUT_BASE, drawing
@@ -80,13 +81,15 @@ def fields(report: Report, answer: Answer) -> Iterator[tuple[str, str, bool]]:
 def _road_fields(report: Report, road: Any) -> Iterator[tuple[str, str, bool]]:
     want = {leg["bearing"]: leg for leg in report.road["legs"]}
     got = {leg["bearing"]: leg for leg in road["legs"]}
+    turning = {COMPASS[leg.bearing]: leg.turns_in for leg in report.crash.legs}
     if len(want) > 2:
         yield "junction", "layout", len(got) > 2
-    yield "legs", "layout", set(want) == set(got)
+    yield "legs", "legs", set(want) == set(got)
     for bearing, leg in want.items():
-        axis = ("N", "NE", "E", "SE", "S", "SW", "W", "NW").index(bearing) % 4
+        axis = COMPASS.index(bearing) % 4
         have = got.get(bearing, {})
-        yield "lanes", f"lanes.{axis}", all(have.get(k) == leg[k] for k in ("lanes_in", "lanes_out"))
+        hidden = f" turns.{axis}" if turning.get(bearing) else ""
+        yield "lanes", f"lanes.{axis}{hidden}", all(have.get(k) == leg[k] for k in ("lanes_in", "lanes_out"))
         yield "median", f"median.{axis}", have.get("median") == leg["median"]
         yield "control", "control", have.get("control") == leg["control"]
         if leg["turns_in"]:
@@ -123,8 +126,14 @@ def _sides(contact: Any) -> dict[str, str]:
 
 
 def source(report: Report, key: str) -> str:
-    """Who tells a fact: "text", "diagram", "both" or "none"."""
-    told, drawn = key in report.told, report.has_image and key in report.drawn
+    """Who tells facts (one or several, apart by spaces): "text", "diagram", "both" or "none".
+
+    What the narrative tells without saying which legs are meant stands in no source by itself.
+    """
+    facts = set(key.split())
+    told, drawn = facts <= report.told, report.has_image and facts <= report.drawn
+    if facts & report.doubtful:
+        return "both" if drawn else "none"
     return {(True, True): "both", (True, False): "text", (False, True): "diagram"}.get((told, drawn), "none")
 
 

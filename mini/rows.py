@@ -115,14 +115,25 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
 
 def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], report: Report) -> None:
     row.ids.append(coder.special[task])
+    open_number = False
     for text, pick in pieces:
         ids = coder.piece(text)
+        row.picks += [(len(row.ids), 1.0)] * open_number
+        open_number = pick is not None and _goes_on(text, pick.options)
         if pick is not None and len(pick.options) >= 1:
             weight = report.weight(pick.path)
             row.picks += [(len(row.ids) + i, weight) for i in range(len(ids))]
             if weight >= 1 and (sources := _sources(row, report, pick.path)):
                 row.pointers.append((len(row.ids), sources))
         row.ids += ids
+
+
+def _goes_on(number: str, options: tuple[str, ...]) -> bool:
+    """Whether more digits might follow a number, so that its end is a choice too ("5", where "51" may be written).
+
+    A decoder that goes by tokens, not by the options of a walk, asks there.
+    """
+    return number.isdigit() and any(other.startswith(number) and other != number for other in options)
 
 
 def positions(row: Row) -> Ints:

@@ -13,6 +13,7 @@ from typing import Any
 
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
+from mini.generator.settled import STEM
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
@@ -80,6 +81,8 @@ def told(crash: Crash, facts: Iterable[str]) -> list[int]:
         key, _, rest = fact.partition(".")
         if key.startswith(HINT):
             names.append(f"{key}={rest}")
+        elif key == "layout" and STEM not in facts and crash.layout not in ("plain", "four"):
+            continue  # three legs, and no telling which
         elif key in ("layout", "control", "curve"):
             names += [name for leg in crash.legs for name in _of_leg(key, leg)]
         elif key in ("lanes", "turns", "median", "limit"):

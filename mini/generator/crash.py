@@ -133,7 +133,7 @@ def _lane_and_speed(rng: Random, crash: Crash, actor: Actor) -> None:
             or leg.kind == "driveway"
         )
         actor.speed = (
-            rng.choice((5, 5, 10, 15, 20))
+            rng.choice((5, 5, 5, 5, 10, 15, 20))
             if slow
             else max(10, min(80, limit + rng.choice((-15, -10, -5, 0, 0, 0, 5, 10))))
         )

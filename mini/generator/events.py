@@ -23,7 +23,11 @@ _BEFORE = {
     "stopped": "stopped|stationary|standing|stopping|sudden stop",
     "slowing": "slow|slowing|decelerating|braking|brake lights",
 }
-_APART = {"stopped": r"\{W\} to a stop|when \{W\} did", "slowing": "brake lights ahead"}
+_APART = {
+    "stopped": r"\{W\} to a stop|when \{W\} did|\{W\} stop\b|stop made by \{W\}|just stopped in front",
+    "slowing": r"brake lights ahead|\{W\} began to brake|\{W\} first and|\{W\} and \{V\} were both braking"
+    r"|slow speed of \{W\}|moving slowly, \{W\}|slower vehicle, \{W\}|while (?:braking|slowing)",
+}
 STATES = {
     word: re.compile(
         rf"\{{W\}}[^{{.;]*?\b(?:{behind})|\b(?:{_BEFORE[word]}) (?:vehicle, |of |by )?\{{W\}}|{_APART[word]}",
@@ -34,8 +38,8 @@ STATES = {
 """Clauses that say of the other vehicle that it had stopped or was slowing."""
 MUTUAL = re.compile(
     r"^(?!.*(?:hit|str[iu]c?k)).*"
-    r"(?:\bmet the\b|\bmade between\b|each other|(?:^|, )\[?(?:The two|Both|The vehicles|They)\b"
-    r"|\{S\} and \{T\} \[?(?:crashed|collided|made|sideswiped))",
+    r"(?:\bmet the\b|\bbetween\b|in (?:contact|collision)\b|each other|(?:^|, )\[?(?:The two|Both|The vehicles|They)\b"
+    r"|\{S\} and \{T\}|\{S\} and the \{ta\}|\{S\}'s \{sa\} side and)",
     re.IGNORECASE,
 )
 """Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
@@ -80,8 +84,9 @@ class EventsMixin:
             self.told |= {
                 f"man.{self.id_of(v)}",
                 f"exit.{self.id_of(v)}",
-                *({f"man.{self.id_of(w)}"} if config in ("crossing", "head_on") else ()),
             }
+            goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
+            self.told |= {f"man.{self.id_of(w)}"} if goes_on else set()
             out.append(self.say(self._true_of(w, CRITICAL[key]), v, w, turn=self._turn(v)))
         if rng.random() < (0.12 if self.ciren else 0.4):
             alone = not self.id_of(w).startswith("V")

@@ -15,6 +15,7 @@ from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
 from mini.generator.roads import carriageway, misdrawn
+from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash
 from mini.generator.writer import Writer
@@ -46,6 +47,8 @@ class Report:
     """Where each sentence of the narrative ends and which facts it tells."""
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
+    doubtful: set[str] = field(default_factory=set)
+    """What the narrative tells of a road without saying which legs are meant."""
 
     def weight(self, path: tuple[Any, ...]) -> float:
         """Weight of a value in the loss."""
@@ -74,9 +77,9 @@ def make_report(
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
         narrative, sentences = "", []
-    told = {fact for _, facts in sentences for fact in facts if not fact.startswith(HINT)}
+    told, doubtful = _told(crash, sentences)
     seen = drawn if mode in ("both", "image") else set()
-    targets = Targets(crash, told | seen)
+    targets = Targets(crash, told | doubtful | seen, doubtful - seen)
     if mode == "none":
         targets = _prior(crash, rng)
     return Report(
@@ -92,7 +95,16 @@ def make_report(
         drawn,
         sentences,
         shown,
+        doubtful,
     )
+
+
+def _told(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:
+    """What sentences tell of a crash, and what they tell without saying of which legs."""
+    facts = {fact for _, some in sentences for fact in some if not fact.startswith(HINT)}
+    facts |= {"legs"} if "layout" in facts or crash.layout == "plain" else set()
+    doubtful = facts & unsettled(crash, [some for _, some in sentences])
+    return facts - doubtful, doubtful
 
 
 def _without_road(crash: Crash, sentences: Sentences) -> Sentences:
@@ -117,13 +129,16 @@ def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) ->
         narrative = " ".join(writer.aftermath())
     else:
         narrative = " ".join(writer.place() + writer.aftermath())
-    narrative, told = unmark(narrative)[0], {fact for fact in writer.told if not fact.startswith(HINT)}
+    if mode == "conflict":
+        return Report(seed, mode, crash, unmark(narrative)[0], False, refusal(2), None, None, set())
+    narrative, sentences = writer.finish(narrative)
+    told, doubtful = _told(crash, sentences)
     if mode == "no_crash":
-        targets = Targets(crash, told)
+        targets = Targets(crash, told | doubtful, doubtful)
         known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"
         road = targets.road if known else refusal(0)
         return Report(seed, mode, crash, narrative, False, road, refusal(1) if known else None, targets, told)
-    return Report(seed, mode, crash, narrative, False, refusal(2 if mode == "conflict" else 0), None, None, told)
+    return Report(seed, mode, crash, narrative, False, refusal(0), None, None, told)
 
 
 def _conflicting(rng: Random, crash: Crash, writer: Writer) -> str:

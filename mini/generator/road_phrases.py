@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import re
 from random import Random
 
+from mini.generator import clauses_road as more
 from mini.generator import words
 from mini.generator.grammar import Told
+from mini.generator.settled import AXIS, ROAD
 from mini.generator.world import Crash, Leg
 
 ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
@@ -16,6 +19,9 @@ MEDIAN_WORDS = {
 }  # fmt: skip
 LOOKS = ("level", "straight", "straight and level", "dry", "level, straight", "dry, level", "busy", "straight, dry")
 """Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
+_ARTICLE = re.compile("^an? ")
+NAMED = "\uf8ff"
+"""A mark in a phrase that says by what a road is divided."""
 
 
 class RoadsMixin:
@@ -35,6 +41,7 @@ class RoadsMixin:
     def _road(self, axis: int, bare: bool = False) -> str:
         """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
         rng, legs = self.rng, self._legs_on(axis)
+        self.told.add(f"{ROAD}.{axis % 4}")
         leg = legs[0] if legs else self.crash.legs[0]
         if leg.kind != "road" and len(legs) == 1:
             self.told |= {"layout"}
@@ -52,14 +59,23 @@ class RoadsMixin:
             )
         self.stated.add(key)
         text, told = self._lanes_text(leg, legs)
-        self.told |= {key, f"median.{axis % 4}"} if told else set()
+        self.told |= {key} if told else set()
+        self.told |= {f"median.{axis % 4}"} if leg.median == "none" or NAMED in text else set()
+        text = text.replace(NAMED, "")
         if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
-            return text if bare or text.startswith("a ") else "a " + text
-        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {text.removeprefix('a ')}"
+            return text
+        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {_ARTICLE.sub('', text)}"
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
-        """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure."""
+        """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure.
+
+        A mark stands in it where it says by what the road is divided.
+        """
         rng = self.rng
+        kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
+        simple = not any(side.turns_in for side in legs) and not (leg.twltl and leg.lanes_in != leg.lanes_out)
+        if simple and not self.held_out and rng.random() < words.MORE:
+            return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
         even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
         plain = not any(side.turns_in for side in legs) and not leg.twltl and leg.lanes_in * leg.lanes_out
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
@@ -68,7 +84,6 @@ class RoadsMixin:
         extra = sum(use in ("left", "right") for use in leg.turns_in)
         if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
             total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
-        kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
         word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")
@@ -76,6 +91,7 @@ class RoadsMixin:
         if leg.lanes_in * leg.lanes_out == 0:
             return self._one_way(leg, n, word), True
         divided = MEDIAN_WORDS.get(leg.median, "")
+        divided += NAMED * bool(divided)
         if plain and not self.held_out and rng.random() < 0.3:
             return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
         if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35:
@@ -90,12 +106,33 @@ class RoadsMixin:
         told = even or (leg.twltl and total in (3, 5))
         if bracket:
             text, told = f"{text} {self._bracket(leg, legs)}", True
+            text += NAMED * (leg.median in words.IN_BRACKETS)
             self.told.add(f"turns.{leg.bearing % 4}")
         elif divided and rng.random() < 0.5:
             text += f" {divided}"
         elif leg.twltl and rng.random() < 0.5:
             text += " with a center turn lane"
         return text, told
+
+    def _further(self, leg: Leg, noun: str) -> str:
+        """A phrase of `clauses_road` for a road without turn lanes at the junction, whatever its lanes."""
+        rng, axis = self.rng, leg.bearing % 4
+        lanes = [f"{words.NUMBERS[n]} lane{'s' * (n > 1)}" for n in (leg.lanes_in, leg.lanes_out)]
+        total = words.NUMBERS[min(leg.lanes_in + leg.lanes_out + leg.twltl, len(words.NUMBERS) - 1)]
+        to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
+        if not leg.lanes_in * leg.lanes_out:
+            xb, count = (to, lanes[0]) if leg.lanes_in else (fro, lanes[1])
+            text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=count, xb=xb)
+            self.told |= {f"{AXIS}.{axis}"} if xb in text else set()
+            return text
+        if leg.lanes_in != leg.lanes_out:
+            self.told.add(f"{AXIS}.{axis}")
+            a, b = (f"{n.replace(' ', f' {xb} ')}" for n, xb in zip(lanes, (to, fro), strict=True))
+            a, b = (a, b) if rng.random() < 0.5 else (b, a)
+            return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
+        options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
+        median = more.phrase(rng, more.MEDIAN[leg.median]) + NAMED if leg.median in more.MEDIAN else ""
+        return more.phrase(rng, options, noun=noun, n=total, each=lanes[0], median=median)
 
     def _counted(self, n: str, ways: str, word: str) -> str:
         """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
@@ -119,7 +156,9 @@ class RoadsMixin:
                 f"a {n}, one-way, {xb} {word}",
                 f"a one-way {xb} {word} that had {count}",
             ]
-        return rng.choice(forms)
+        text = rng.choice(forms)
+        self.told |= {f"{AXIS}.{leg.bearing % 4}"} if xb in text else set()
+        return text
 
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
         """`a road with two northbound lanes and one southbound lane` and the like."""
@@ -137,18 +176,20 @@ class RoadsMixin:
             )
         sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
         rng.shuffle(sides)
+        self.told.add(f"{AXIS}.{leg.bearing % 4}")
         lanes = [f"{words.NUMBERS[n]} {xb} lane{'s' * (n > 1)}" for n, xb in sides]
         return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
         rng = self.rng
+        self.told.add(f"{AXIS}.{leg.bearing % 4}")
         return words.split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing))
 
     def _limit(self, slot: str) -> str:
         axis = (self.crash.main + 2 * (slot == "lim2")) % 4
         legs = [leg for leg in self._legs_on(axis) if leg.limit]
         if not legs:
-            return words.limit(self.rng, 25)
+            return words.limit(self.rng, 25, self.held_out)
         self.told.add(f"limit.{axis}")
-        return words.limit(self.rng, legs[0].limit or 25)
+        return words.limit(self.rng, legs[0].limit or 25, self.held_out)

@@ -9,6 +9,7 @@ from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
+from mini.generator.settled import AXIS, STEM
 from mini.generator.world import WORDS, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
@@ -36,7 +37,9 @@ class SceneMixin(RoadsMixin):
         if slot in ("light", "wx", "surf"):
             return self._condition(slot)
         if slot in ("axis", "axis2"):
-            return words.axis(rng, crash.main + 2 * (slot == "axis2"))
+            axis = (crash.main + 2 * (slot == "axis2")) % 4
+            self.told.add(f"{AXIS}.{axis}")
+            return words.axis(rng, axis)
         if slot in ("lim", "lim2"):
             return self._limit(slot)
         if slot == "curve":
@@ -50,7 +53,7 @@ class SceneMixin(RoadsMixin):
             return str(rng.randint(60, 900))
         if slot == "stemdir":
             stem = next(leg for leg in crash.legs if not crash.is_main(leg.bearing))
-            self.told.add("layout")
+            self.told |= {"layout", STEM}
             return WORDS[stem.bearing]
         if slot == "tcd":
             return self._tcd()
@@ -72,7 +75,7 @@ class SceneMixin(RoadsMixin):
         self.told |= {"layout"} if layout == "four" else set()
         if self.rng.random() < (0.6 if layout == "four" else 0.93):
             self.told |= {"layout"}
-            text = words.junction(self.rng, self.crash)
+            text = words.junction(self.rng, self.crash, self.held_out)
             if control == "none" and self.ciren and self.rng.random() < 0.2:
                 self.told.add("control")
                 text = text.replace("a ", "an uncontrolled ", 1)
@@ -112,6 +115,7 @@ class SceneMixin(RoadsMixin):
         axis = next((leg.bearing for leg in self.crash.legs if leg.control in ("stop", "yield")), 0)
         legs = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
         rng = self.rng
+        self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
         if slot == "caxis":
             return words.axis(rng, axis)
         names = [words.bound(rng, leg.bearing + 4) for leg in legs]
@@ -167,7 +171,7 @@ class SceneMixin(RoadsMixin):
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
         one, other = rng.sample((legs[0], back), 2)
         ab, bb = (words.bound(rng, leg.bearing + 4) for leg in (one, other))
-        self.told |= {f"lanes.{axis}", f"turns.{axis}"}
+        self.told |= {f"lanes.{axis}", f"turns.{axis}", f"{AXIS}.{axis}"}
         self.stated.add(f"lanes.{axis}")
         lists = {"alist": words.lane_phrase(rng, one), "blist": words.lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]

@@ -6,6 +6,7 @@ a small weight, so that a model learns how often it is so. Weights go by the pat
 
 from __future__ import annotations
 
+from collections.abc import Set
 from typing import Any
 
 from mini.generator.world import COMPASS, Actor, Crash, Leg
@@ -22,8 +23,9 @@ CONTACT = 6.0
 class Targets:
     """Both answers to one report and the weights of their values."""
 
-    def __init__(self, crash: Crash, known: set[str]) -> None:
-        self.crash, self.known = crash, known
+    def __init__(self, crash: Crash, known: set[str], doubtful: Set[str] = frozenset()) -> None:
+        """`doubtful`: what is known and cannot be laid on a leg; it stands in the answer with the weight of a guess."""
+        self.crash, self.known, self.sure = crash, known, known - doubtful
         self.weights: dict[tuple[Any, ...], float] = {}
         self.road = self._road()
         self.behavior = self._behavior()
@@ -41,15 +43,16 @@ class Targets:
     def _leg(self, index: int, leg: Leg) -> Json:
         axis, path = leg.bearing % 4, ("legs", index)
         lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
-        if not ("layout" in self.known or self.crash.layout == "plain"):
+        if "legs" not in self.sure:
             self._unsure(path, "bearing", "more", "kind")
-        if not lanes or (leg.turns_in and not turns):
+        if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
             self._unsure(path, "lanes_in", "lanes_out")
         median = leg.median if f"median.{axis}" in self.known else "none"
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE
-        self._unsure(path, *(("median",) if f"median.{axis}" not in self.known else ()))
-        self._unsure(path, *(("center_turn_lane",) if not lanes else ()))
+        self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
+        self._unsure(path, *(("center_turn_lane",) if f"lanes.{axis}" not in self.sure else ()))
+        self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
         return {
             "bearing": COMPASS[leg.bearing],
             "lanes_in": leg.lanes_in,
@@ -151,7 +154,7 @@ class Targets:
 
 def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
     """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather."""
-    facts = {"layout", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
+    facts = {"layout", "legs", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:
         facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "median", *(("turns",) if arrows else ()))}
     for actor in crash.actors:

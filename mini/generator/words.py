@@ -5,16 +5,22 @@ from __future__ import annotations
 
 from random import Random
 
+from mini.generator import clauses_road as more
 from mini.generator.world import WORDS, Crash, Leg
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
+IN_BRACKETS = {"grass": "grass median, ", "raised": "raised median, ", "barrier": "concrete barrier, "}
+MORE = 0.4
+"""How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
 SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
 
 
 def direction(rng: Random, bearing: int, held_out: bool) -> str:
     """`north`, `in a northerly direction`, ..."""
     word = WORDS[bearing % 8]
+    if not held_out and rng.random() < MORE / 2:
+        return more.phrase(rng, more.DIRECTION, word=word)
     forms = [word] * 6 + [f"in a {word}erly direction", f"{word}bound"]
     if not held_out:
         forms += [f"in the {word} direction", f"to the {word}", f"in a {word}ward direction", f"due {word}"]
@@ -43,9 +49,11 @@ def kph(mph: int) -> int:
     return round(mph * 1.609)
 
 
-def limit(rng: Random, mph: int) -> str:
+def limit(rng: Random, mph: int, held_out: bool) -> str:
     """A speed limit in one of the unit spellings; a wrong pair now and then."""
     k = kph(mph) if rng.random() > 0.015 else kph(mph + rng.choice((-5, 5)))
+    if not held_out and rng.random() < MORE:
+        return more.phrase(rng, more.LIMIT, mph=str(mph), kph=str(k))
     forms = (
         (f"{k} kmph ({mph} mph)", 24), (f"{k} KMPH ({mph} MPH)", 12), (f"{k}kmph ({mph}mph)", 10), (f"{mph} mph", 14), (f"{mph} MPH", 14),
         (f"{mph} MPH ({k} KPH)", 6), (f"{k} kph ({mph} mph)", 8), (f"{k}kph ({mph}mph)", 4), (f"{mph} mph ({k} kph)", 6),
@@ -76,8 +84,11 @@ def driver_speed(rng: Random, mph: int) -> tuple[str, int]:
     return text, mph
 
 
-def lane(rng: Random, leg: Leg, number: int | None, xb: str) -> str:
+def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> str:
     """The lane's name: by side, number, direction or use."""
+    if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
+        ordinal = NUMBERS[number or 1], ORDINALS[number or 1]
+        return more.phrase(rng, more.LANE[kind], xb=xb, number=ordinal[0], ordinal=ordinal[1])
     lanes, use = max(leg.lanes_in, 1), ""
     if leg.turns_in and number:
         use = leg.turns_in[number - 1]
@@ -112,8 +123,24 @@ def lane(rng: Random, leg: Leg, number: int | None, xb: str) -> str:
     return rng.choice(names)
 
 
-def junction(rng: Random, crash: Crash) -> str:
+def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:
+    """Which list of `clauses_road.LANE` names a lane; "" if none does."""
+    use = leg.turns_in[number - 1] if leg.turns_in and number else ""
+    if use in ("left", "right"):
+        return f"turn_{use}"
+    if leg.lanes_in == 1:
+        return "only"
+    if number is None or rng.random() < 0.2:
+        return "numbered" if number else ""
+    if number == 1 or number == leg.lanes_in:
+        return "right" if number == 1 else "left"
+    return "middle" if leg.lanes_in == 3 else "numbered"
+
+
+def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     """`a T-intersection`, `a four-leg intersection`, or the plain word."""
+    if not held_out and rng.random() < MORE:
+        return "a " + more.phrase(rng, more.JUNCTION[crash.layout])
     if crash.layout == "four":
         return "a " + rng.choice(
             (
@@ -157,13 +184,7 @@ def junction(rng: Random, crash: Crash) -> str:
 def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str) -> str:
     """The bracket that tells lanes each way: (two lanes northbound, center turn lane, two lanes southbound)."""
     to, fro = lane_list(rng, leg, xb), lane_list(rng, back, yb)
-    middle = (
-        "center turn lane, "
-        if leg.twltl
-        else {"grass": "grass median, ", "raised": "raised median, ", "barrier": "concrete barrier, "}.get(
-            leg.median, ""
-        )
-    )
+    middle = "center turn lane, " if leg.twltl else IN_BRACKETS.get(leg.median, "")
     parts = [p for p in (to, fro) if p]
     return f"({parts[0]}, {middle}{parts[1]})" if len(parts) == 2 else f"({parts[0]})"
 

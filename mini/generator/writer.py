@@ -163,7 +163,13 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
             self.told |= {f"lane.{actor.id}"}
-            return words.lane(self.rng, leg, actor.lane, words.bound(self.rng, actor.heading))  # type: ignore[arg-type]
+            return words.lane(  # the leg is there: actors stand on legs
+                self.rng,
+                leg,
+                actor.lane,
+                words.bound(self.rng, actor.heading),
+                self.held_out,  # type: ignore[arg-type]
+            )
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
         if bearing is not None:
             return words.bound(self.rng, bearing)

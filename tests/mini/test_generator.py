@@ -180,7 +180,7 @@ def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
     told = 0
     for seed in range(base, base + 1500):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
-        found = re.search(r"\bV(\d)\b[^.]* (?:behind|following) V(\d)\b", report.narrative)
+        found = re.search(r"\bV(\d)\b(?![^.]* rest)[^.]* (?:behind|following) V(\d)\b", report.narrative)
         if report.crash.config != "rear_end" or not found:
             continue
         pairs = {(report.crash.actors[c.striker].id, report.crash.actors[c.struck].id) for c in report.crash.contacts}

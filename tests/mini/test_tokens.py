@@ -58,3 +58,18 @@ def test_picks_point_at_value_tokens(coder: Coder) -> None:
     spoken = "".join(coder.tokenizer.decode([row.ids[at]]) for at, _ in row.picks)
     assert '"forward"' in spoken
     assert ',"direction":' not in spoken
+
+
+def test_where_more_digits_might_follow_the_end_of_a_number_is_learned(coder: Coder) -> None:
+    seen = 0
+    for seed in range(400):
+        report = make_report(seed, modes={"text": 1.0})
+        if report.behavior is None or "actors" not in report.behavior:
+            continue
+        speeds = [actor["speed_mph"] for actor in report.behavior["actors"]]
+        row = training_row(coder, report, None)
+        ends = [at for at, _ in row.picks if row.ids[at] == coder.piece(',"length_m":')[0]]
+        assert len(ends) == sum(speed is not None and 0 < speed < 10 for speed in speeds)
+        assert all(coder.tokenizer.decode([row.ids[at - 1]]).isdigit() for at in ends)
+        seen += len(ends)
+    assert seen > 3

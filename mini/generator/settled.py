@@ -1,0 +1,84 @@
+"""Which facts a narrative ties to the compass: a road counts as told only where a reader could say which legs it is.
+
+"A T-intersection of a four-lane street and a two-lane street" tells lanes, yet neither which legs there are nor which
+of them has how many lanes; that takes a direction of travel beside a road, or the word of an axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mini.generator.grammar import HINT
+from mini.generator.world import TURN_OF, Actor, Crash, Leg
+
+ROAD = f"{HINT}road"
+"""With an axis: a sentence speaks of the road of that axis, without saying how it lies."""
+AXIS = f"{HINT}axis"
+"""With an axis: a sentence says how the road of that axis lies."""
+STEM = f"{HINT}stem"
+"""A sentence says where the leg lies that ends at the junction."""
+
+BY_AXIS = ("lanes", "turns", "median", "limit")
+
+
+def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
+    """Facts that sentences tell and that lie on no known leg; "legs" where nobody could say which legs there are."""
+    sentences = list(sentences)
+    told = {fact for facts in sentences for fact in facts}
+    tied = _tied(crash, sentences, told)
+    out = {
+        fact
+        for facts in sentences
+        for fact in facts
+        if fact.partition(".")[0] in BY_AXIS and not _placed(crash, fact, facts, tied, sentences)
+    }
+    return out if _legs(crash, told, tied) else out | {"legs"}
+
+
+def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool:
+    """Whether some sentence lays some road on the compass; the other road then crosses it."""
+    if any(fact.startswith(AXIS) for fact in told):
+        return True
+    headed = [{f"{ROAD}.{actor.leg % 4}", f"heading.{actor.id}"} for actor in crash.actors]
+    if crash.layout in ("four", "t"):
+        return any(pair <= facts for facts in sentences for pair in headed)
+    return any(f"heading.{actor.id}" in told for actor in crash.actors)
+
+
+def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentences: list[frozenset[str]]) -> bool:
+    """Whether a fact of a road belongs to known legs: told beside a direction, of a road that is named, or of both."""
+    key, _, axis = fact.partition(".")
+    if any(other.startswith((AXIS, "heading.")) for other in facts):
+        return True
+    same = len({_value(key, leg) for leg in crash.legs}) == 1
+    if same or crash.layout not in ("four", "t"):
+        return tied
+    return tied and any(fact in some and f"{ROAD}.{axis}" in some for some in sentences)
+
+
+def _value(key: str, leg: Leg) -> tuple[object, ...]:
+    both = {"lanes": (leg.lanes_in, leg.lanes_out), "turns": tuple(leg.turns_in)}
+    return both.get(key) or (leg.median if key == "median" else leg.limit,)
+
+
+def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
+    """Whether the text tells which legs there are."""
+    if crash.layout in ("plain", "four"):
+        return tied or any(f"heading.{actor.id}" in told for actor in crash.actors)
+    found = {leg for actor in crash.actors if f"heading.{actor.id}" in told for leg in _driven(actor, told)}
+    found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
+    stem = {leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)}
+    if stem <= found and crash.layout != "t":
+        return tied
+    return STEM in told or {leg.bearing for leg in crash.legs} <= found
+
+
+def _driven(actor: Actor, told: set[str]) -> list[int]:
+    """Legs that an actor with a known heading uses, as bearings."""
+    out = actor.out if f"man.{actor.id}" in told else None
+    return [actor.leg] + [out] * (out is not None)  # type: ignore[list-item]
+
+
+def _led_to(leg: Leg) -> list[int]:
+    """Legs that the lanes of one lead to."""
+    return [(leg.bearing + TURN_OF[way]) % 8 for use in leg.turns_in for way in use.split("_") if way in TURN_OF]

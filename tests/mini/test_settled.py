@@ -1,0 +1,108 @@
+"""Tests of what ties a narrative's roads to the compass."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mini.evaluate import source
+from mini.generator.crash import sample_crash
+from mini.generator.report import make_report
+from mini.generator.settled import AXIS, ROAD, STEM, unsettled
+from mini.generator.targets import GUESS, SURE
+from mini.generator.world import Actor, Crash, Leg
+
+LANES = {"lanes.0", "lanes.2"}
+
+
+def _crash(layout: str, *legs: tuple[int, int], actors: tuple[Actor, ...] = ()) -> Crash:
+    """A crash on legs (bearing, lanes each way), the first of the main road."""
+    made = [Leg(bearing, lanes, lanes) for bearing, lanes in legs]
+    return Crash("crossing", layout, legs[0][0], made, list(actors), [], "day", "clear", "dry")
+
+
+def _car(name: str, leg: int, out: int | None) -> Actor:
+    return Actor(name, "car", leg, out, "straight")
+
+
+CROSS = ((0, 2), (2, 1), (4, 2), (6, 1))
+TEE = ((0, 2), (4, 2), (6, 1))
+SAID = [frozenset({"layout", *LANES, f"{ROAD}.0", f"{ROAD}.2"})]
+
+
+def test_lanes_without_a_direction_belong_to_no_leg() -> None:
+    assert unsettled(_crash("four", *CROSS), SAID) == LANES | {"legs"}
+
+
+@pytest.mark.parametrize("tie", [{"heading.V1", f"{ROAD}.0"}, {f"{AXIS}.2"}])
+def test_a_direction_beside_a_road_settles_both_roads(tie: set[str]) -> None:
+    crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
+    assert not unsettled(crash, [*SAID, frozenset(tie)])
+
+
+def test_a_direction_alone_tells_the_legs_of_a_crossing_but_not_which_road_is_which() -> None:
+    crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
+    assert unsettled(crash, [*SAID, frozenset({"heading.V1"})]) == LANES
+
+
+def test_roads_alike_need_no_direction_of_their_own() -> None:
+    crash = _crash("four", *((bearing, 2) for bearing in (0, 2, 4, 6)), actors=(_car("V1", 0, 4),))
+    assert not unsettled(crash, [*SAID, frozenset({"heading.V1", f"{ROAD}.0"})])
+
+
+def test_a_tee_needs_somebody_who_uses_its_stem() -> None:
+    main, stem = _car("V1", 0, 4), _car("V2", 6, 0)
+    crash = _crash("t", *TEE, actors=(main, stem))
+    said = [*SAID, frozenset({"heading.V1", "man.V1", f"{ROAD}.0"})]
+    assert unsettled(crash, said) == {"legs"}
+    assert not unsettled(crash, [*said, frozenset({"heading.V2"})])
+    assert not unsettled(crash, [*said, frozenset({STEM})])
+
+
+def test_turn_lanes_show_where_the_stem_lies() -> None:
+    crash = _crash("t", *TEE, actors=(_car("V1", 0, 4),))
+    crash.legs[1].turns_in = ["through", "left"]  # from the south: left is west
+    said = [*SAID, frozenset({"heading.V1", "man.V1", "turns.0", f"{ROAD}.0", f"{AXIS}.0"})]
+    assert not unsettled(crash, said)
+
+
+def test_a_limit_of_this_road_is_of_no_road() -> None:
+    crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
+    crash.legs[0].limit = crash.legs[2].limit = 35
+    tied = [*SAID, frozenset({"heading.V1", f"{ROAD}.0"})]
+    assert unsettled(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
+    assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{AXIS}.0"})])
+    assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{ROAD}.0"})])
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 2**31))
+def test_more_said_never_unsettles(seed: int) -> None:
+    rng = Random(seed)
+    crash = sample_crash(rng)
+    headings = {f"heading.{actor.id}" for actor in crash.actors} | {f"man.{actor.id}" for actor in crash.actors}
+    roads = {f"{key}.{leg.bearing % 4}" for key in ("lanes", ROAD) for leg in crash.legs}
+    some = [frozenset(fact for fact in sorted(headings | roads) if rng.random() < 0.4) for _ in range(3)]
+    more = [*some, frozenset(fact for fact in sorted(headings) if rng.random() < 0.5)]
+    known = {fact for facts in some for fact in facts} | {"legs"}
+    assert unsettled(crash, more) & known <= unsettled(crash, some)
+
+
+def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> None:
+    found = 0
+    for seed in range(400):
+        report = make_report(seed, modes={"text": 1.0})
+        for fact in report.doubtful:
+            assert source(report, fact) == "none"
+        for index, leg in enumerate(report.crash.legs):
+            weight, limit = report.weight(("legs", index, "speed_limit_mph")), f"limit.{leg.bearing % 4}"
+            if limit in report.doubtful:
+                found += 1
+                assert report.road["legs"][index]["speed_limit_mph"] == leg.limit
+                assert weight == GUESS
+            elif limit in report.told:
+                assert weight == SURE
+    assert found > 20
