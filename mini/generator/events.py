@@ -133,7 +133,8 @@ class EventsMixin:
         head_first = contact.striker_area == "front" != contact.struck_area
         if not MUTUAL.search(clause) or (areas and head_first):
             self.told.add(f"contact.{number}")
-        self.told |= {f"areas.{number}"} if areas else set()
+        walks = self.crash.actors[contact.struck].kind in ("pedestrian", "bicycle")  # no clause tells its side
+        self.told |= {f"areas.{number}"} if areas and not walks else set()
         return self.say([clause], contact.striker, contact.struck, sa=sa, ta=ta)
 
     def _framed(self, options: list[str]) -> list[str]:

@@ -153,14 +153,19 @@ class Targets:
 
 
 def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
-    """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather."""
+    """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather.
+
+    Nor that somebody slowed, which of two that touch with the same side struck the other, or how a pedestrian stood.
+    """
     facts = {"layout", "legs", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:
         facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "median", *(("turns",) if arrows else ()))}
     for actor in crash.actors:
-        facts |= {f"{key}.{actor.id}" for key in ("heading", "man", "exit", "lane")}
+        facts |= {f"{key}.{actor.id}" for key in ("heading", "exit", "lane")}
+        facts |= {f"man.{actor.id}"} if actor.maneuver != "slowing" else set()
         if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):
             facts.add(f"kind.{actor.id}")
-    for index in range(len(crash.contacts)):
-        facts |= {f"contact.{index}", f"areas.{index}"}
+    for index, contact in enumerate(crash.contacts):
+        facts |= {f"contact.{index}"} if contact.striker_area != contact.struck_area else set()
+        facts |= {f"areas.{index}"} if crash.actors[contact.struck].kind != "pedestrian" else set()
     return facts

@@ -67,7 +67,7 @@ class Stage:
     def __init__(self, rng: Random, crash: Crash, ground: Ground, scale: float) -> None:
         self.rng, self.crash, self.ground = rng, crash, ground
         self.sizes = [tuple(scale * v for v in SIZES[a.kind]) for a in crash.actors]
-        self.ways = [ground.way(a) for a in crash.actors]
+        self.ways = [self._parked(ground.way(a), a) if a.maneuver == "parked" else ground.way(a) for a in crash.actors]
         self.at: dict[int, Pose] = {}
         self.index: dict[int, int] = {}
 
@@ -83,6 +83,11 @@ class Stage:
             areas = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
             self._attach(placed, other, areas[placed], areas[other])
         return [self._track(i) for i in range(len(self.crash.actors)) if i in self.at or self._loose(i)]
+
+    def _parked(self, way: Points, actor: Actor) -> Points:
+        """At the curb or beyond it, where nobody drives."""
+        band = self.ground.bands[actor.leg]
+        return shift(way, -2, -1, -(band.right - band.lane_in(actor.lane)) * self.rng.uniform(0.6, 1.3))
 
     def _keeper(self, first: int, second: int) -> int:
         """Who stays on its line at the contact."""
