@@ -184,7 +184,9 @@ class RoadsMixin:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
         rng = self.rng
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        return words.split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing))
+        return words.split(
+            rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing), self.held_out
+        )
 
     def _limit(self, slot: str) -> str:
         axis = (self.crash.main + 2 * (slot == "lim2")) % 4

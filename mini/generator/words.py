@@ -10,7 +10,11 @@ from mini.generator.world import WORDS, Crash, Leg
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
-IN_BRACKETS = {"grass": "grass median, ", "raised": "raised median, ", "barrier": "concrete barrier, "}
+IN_BRACKETS = {
+    "grass": ("grass median", "grassy median", "grass divider"),
+    "raised": ("raised median", "raised divider", "raised concrete median"),
+    "barrier": ("concrete barrier", "median barrier", "concrete dividing wall"),
+}
 MORE = 0.4
 """How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
 SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
@@ -181,12 +185,22 @@ def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     )
 
 
-def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str) -> str:
+def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str, held_out: bool) -> str:
     """The bracket that tells lanes each way: (two lanes northbound, center turn lane, two lanes southbound)."""
-    to, fro = lane_list(rng, leg, xb), lane_list(rng, back, yb)
-    middle = "center turn lane, " if leg.twltl else IN_BRACKETS.get(leg.median, "")
-    parts = [p for p in (to, fro) if p]
-    return f"({parts[0]}, {middle}{parts[1]})" if len(parts) == 2 else f"({parts[0]})"
+    plain = held_out or rng.random() < 0.4
+    listed = lane_list if plain else _further_lanes
+    ways = [lanes for lanes in (listed(rng, leg, xb), listed(rng, back, yb)) if lanes]
+    middles = ("center turn lane",) if leg.twltl else IN_BRACKETS.get(leg.median, ())
+    middle = [middles[0] if plain else rng.choice(middles)] if middles and len(ways) == 2 else []
+    if plain:
+        return f"({', '.join([ways[0], *middle, *ways[1:]])})"
+    if rng.random() < 0.3:
+        ways.reverse()
+    text = rng.choice((", ", ", ", "; ")).join([ways[0], *middle, *ways[1:]])
+    head, comma, tail = text.rpartition(", ")
+    if comma and rng.random() < 0.6:
+        text = f"{head}{rng.choice((', and ', ' and '))}{tail}"
+    return rng.choice(("({})", "({})", "({})", "with {}", "made up of {}", "- {} -", "that has {}")).format(text)
 
 
 def lane_list(rng: Random, leg: Leg, xb: str) -> str:
@@ -208,6 +222,38 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
             )
         )
     parts += [f"one {xb} right-turn lane"] * bool(right)
+    return ", ".join(parts)
+
+
+_WAYS = {
+    "": ("lane", "travel lane", "lane"),
+    "through": ("through lane", "through-lane", "lane", "travel lane", "straight lane"),
+    "left": ("left turn lane", "left-turn lane", "left turn only lane", "left turn bay", "lane for left turns"),
+    "right": ("right turn lane", "right-turn lane", "right turn only lane", "right turn bay", "lane for right turns"),
+}
+
+
+def _further_lanes(rng: Random, leg: Leg, xb: str) -> str:
+    """The same from either side of the approach, with more words and numbers."""
+    if not leg.lanes_in:
+        return ""
+    left, right = leg.turns_in.count("left"), leg.turns_in.count("right")
+    through = leg.lanes_in - left - right
+    counts = [("left", left), ("through" if left + right else "", through), ("right", right)]
+    if rng.random() < 0.5:
+        counts.reverse()
+    if rng.random() < 0.25:
+        rng.shuffle(counts)
+    behind = rng.random() < 0.3
+    parts = []
+    for use, count in counts:
+        if count:
+            word = rng.choice(_WAYS[use])
+            word = word.replace("lane", "lanes", 1).replace("bay", "bays") if count > 1 else word
+            number = rng.choice(
+                (NUMBERS[count], NUMBERS[count], str(count), *(("a", "a single") if count == 1 else ()))
+            )
+            parts.append(f"{number} {word} {xb}" if behind else f"{number} {xb} {word}")
     return ", ".join(parts)
 
 
