@@ -7,6 +7,7 @@ from typing import Any
 
 from mini.generator import clauses_scene as scene
 from mini.generator import words
+from mini.generator.clauses_road import STEM as STEMS
 from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, STEM
@@ -51,10 +52,10 @@ class SceneMixin(RoadsMixin):
         crash, rng = self.crash, self.rng
         if slot == "radius":
             return str(rng.randint(60, 900))
-        if slot == "stemdir":
+        if slot in ("stemdir", "opposite"):
             stem = next(leg for leg in crash.legs if not crash.is_main(leg.bearing))
             self.told |= {"layout", STEM}
-            return WORDS[stem.bearing]
+            return WORDS[(stem.bearing + 4 * (slot == "opposite")) % 8]
         if slot == "tcd":
             return self._tcd()
         if slot in ("cxb", "caxis"):
@@ -153,6 +154,8 @@ class SceneMixin(RoadsMixin):
             out.append(self.say(scene.ROAD2, main))
         if not self.held_out and rng.random() < 0.3:
             out += self._each_way()
+        if not self.held_out and self.crash.layout in STEMS and rng.random() < 0.3:
+            out.append(self.say(STEMS[self.crash.layout], main))
         curved = self._leg_of(main).curve != "none"
         if curved and rng.random() < 0.7:
             out.append(self.say(scene.CURVE, main))
