@@ -13,6 +13,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from flows.store import CaseFolder
 from flows.worker import Order
 from sgcad_core.config import Config, load
 from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.interfaces import Backbone
 from sgcad_core.refine import OnAttempt
 from sgcad_core.workers import Worker
 
@@ -147,8 +149,12 @@ class Crew:
         self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads than that
 
     def begin(self, plan: Sequence[Job]) -> None:
-        """Start what needs no model."""
-        waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
+        """Start what needs no model, and load the first model that will be asked while the server starts."""
+        fresh = [job for job in plan if self.reusable(job) is None]
+        model = next((job.config.backbone for job in fresh if job.config.backbone), None)
+        if model:
+            threading.Thread(target=_load, args=(model,), daemon=True, name="load").start()
+        waiting = [job for job in fresh if job.config.backbone is None]
         if not waiting:
             return
         count = min(self.batch.processes, len(waiting))
@@ -217,6 +223,11 @@ class Crew:
             self._threads.shutdown(wait=True)
         for worker in self._workers:
             worker.close()
+
+
+def _load(model: Backbone) -> None:
+    with suppress(Exception):  # told by the first question, to whom it belongs
+        model.load()
 
 
 class Interrupted(BaseException):

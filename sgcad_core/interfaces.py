@@ -102,6 +102,12 @@ class Backbone(Plugin):
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answer a query. Thread-safe. Raises InvalidOutput if no valid answer fits."""
 
+    def load(self) -> None:
+        """Do now what the first question would wait for; called beside other work, and most have nothing to do.
+
+        What it raises the first question raises again.
+        """
+
 
 class RoadWriter(Plugin):
     """Evidence to a road network."""

@@ -60,6 +60,10 @@ class HfVision(Backbone):
                 self._stamp = folder_stamp(self.model)
             return self._stamp
 
+    def load(self) -> None:
+        """Import what runs the model and load its weights."""
+        self._loaded()
+
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answer a query; blocks until the loop has it.
 

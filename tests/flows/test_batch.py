@@ -1,12 +1,13 @@
 """A batch in worker processes: what one case dies of, the others survive."""
 
+import threading
 from concurrent.futures import CancelledError
 
 import pytest
 
 from flows.batch import Crew, Interrupted, batch_of
 from flows.cases import cases_in
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.refine import run_at_once
 
 
@@ -99,3 +100,26 @@ def test_a_model_is_asked_in_this_process(batch, config_file):
     assert not crew.began(plan[0])
     assert crew.finish(plan[0], note).result["status"] == "generated"
     assert names == ["road[1]", "road[2]", "scenario[1]"]
+
+
+@pytest.mark.parametrize("fault", [None, MissingTool("no weights")])
+def test_a_model_is_loaded_while_the_server_starts_and_a_fault_is_left_to_its_first_question(
+    batch, config_file, monkeypatch, fault
+):
+    loaded = threading.Event()
+
+    def load(model):
+        loaded.set()
+        if fault:
+            raise fault
+
+    asked = {"name": "scripted", "answers": ["ok"]}
+    made = batch(config=config_file(road_writer="testkit_asking", decoder="greedy", backbone=asked), a="")
+    plan, crew = made.plan(), Crew(made)
+    monkeypatch.setattr(type(plan[0].config.backbone), "load", load)
+    crew.begin(plan)
+    assert loaded.wait(10)
+    assert crew.finish(plan[0], run_at_once).result["status"] == "generated"
+    loaded.clear()
+    Crew(made).begin(plan)  # nothing is left to ask
+    assert not loaded.wait(0.2)
