@@ -138,8 +138,7 @@ class SceneMixin(RoadsMixin):
         }
         if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
-        first = next(i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg) or True)
-        main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), first)
+        main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
