@@ -17,7 +17,7 @@ Fill = Callable[[str], str]
 
 
 _NUMBERED = re.compile(r"\bthe (lane (?:one|two|three|four|five|\d)\b)")
-_ARTICLE = re.compile(r"\b([Aa]) (?=(?:[aeioAEIO]|8|11\b|18\b|un(?!i))(?!ne\b|nce|eu))")
+_ARTICLE = re.compile(r"\b([Aa]) (?=(?:[aeioAEIO]|8|11\b|18\b|un(?!i)|urb)(?!ne\b|nce|eu))")
 """`a` before a vowel, which fillings and choices bring together; not before "one" or "unit"."""
 
 

@@ -1,0 +1,102 @@
+"""Names of roads, lanes, junctions and limits: what they count is what there is."""
+
+from __future__ import annotations
+
+import re
+from random import Random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mini.generator import clauses_road, words
+from mini.generator.report import make_report
+from mini.generator.settled import AXIS, ROAD
+from mini.generator.world import Leg
+
+COUNTS = {word: n for n, word in enumerate(words.NUMBERS)} | {str(n): n for n in range(13)} | {"a": 1}
+seeds = st.integers(0, 2**31)
+
+
+def _leg(rng: Random) -> Leg:
+    plain = rng.randint(1, 4)
+    turns = rng.choice(([], [], ["left"], ["right"], ["left", "right"]))
+    uses = [*(["right"] if "right" in turns else []), *["through"] * plain, *(["left"] if "left" in turns else [])]
+    return Leg(rng.choice((0, 2, 4, 6)), plain + len(turns), rng.randint(1, 4), uses if turns else [])
+
+
+@settings(max_examples=300, deadline=None)
+@given(seed=seeds)
+def test_lanes_told_one_way_add_up(seed: int) -> None:
+    rng = Random(seed)
+    leg = _leg(rng)
+    text = words._further_lanes(rng, leg, "northbound")
+    parts = text.replace("a single", "one").split(", ")
+    assert sum(COUNTS[part.split()[0]] for part in parts) == leg.lanes_in
+    for use in ("left", "right"):
+        assert text.count(use) == leg.turns_in.count(use)
+    assert all("northbound" in part for part in parts)
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=seeds)
+def test_a_bracket_tells_both_ways_and_what_lies_between(seed: int) -> None:
+    rng = Random(seed)
+    leg, back = _leg(rng), _leg(rng)
+    leg.median = back.median = rng.choice(("none", "painted", "grass", "raised", "barrier"))
+    text = words.split(rng, leg, back, "northbound", "southbound", rng.random() < 0.5)
+    assert text.count("northbound") >= 1 <= text.count("southbound")
+    named = leg.median in words.IN_BRACKETS
+    assert any(word in text for word in ("median", "barrier", "divider", "wall")) == named
+    assert text[0] + text[-1] == "()" or "(" not in text
+
+
+def test_the_held_out_side_tells_lanes_as_it_always_did() -> None:
+    leg, back = Leg(0, 3, 2, ["right", "through", "left"]), Leg(4, 2, 2)
+    told = {words.split(Random(i), leg, back, "southbound", "northbound", True) for i in range(60)}
+    assert all(text.startswith("(one southbound left-turn lane, one ") for text in told)
+
+
+@pytest.mark.parametrize(
+    ("lanes", "number", "turns", "kind"),
+    [
+        (1, 1, [], "only"),
+        (2, 1, [], "right"),
+        (3, 3, [], "left"),
+        (3, 2, [], "middle"),
+        (4, 2, [], "numbered"),
+        (2, 2, ["through", "left"], "turn_left"),
+        (2, 1, ["right", "through"], "turn_right"),
+    ],
+)
+def test_a_lane_is_named_for_its_place_or_its_number(lanes: int, number: int, turns: list[str], kind: str) -> None:
+    leg = Leg(0, lanes, 1, turns)
+    assert {words._kind_of_lane(Random(i), leg, number) for i in range(40)} - {"numbered"} <= {kind}
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds, held_out=st.booleans())
+def test_articles_fit_and_no_slot_or_mark_is_left(seed: int, held_out: bool) -> None:
+    text = make_report(seed, held_out, 0.3, {"text": 1.0}).narrative
+    assert not re.search(r"[{}\[\]|\uf8ff]", text)
+    assert not re.search(r"\ba (?:eight|undivided|intersection|ordinary|urban|asphalt|eleven)\b", text, re.IGNORECASE)
+    assert not re.search(r"\ban (?:one|two|four|divided|road|northbound)\b", text, re.IGNORECASE)
+
+
+def test_roads_that_are_told_are_noted_and_axes_where_a_direction_stands() -> None:
+    seen = 0
+    for seed in range(400):
+        report = make_report(seed, modes={"text": 1.0})
+        for _, facts in report.sentences:
+            lanes = {fact.partition(".")[2] for fact in facts if fact.startswith("lanes.")}
+            roads = {fact.partition(".")[2] for fact in facts if fact.startswith((ROAD, AXIS))}
+            if any(fact.startswith(ROAD) for fact in facts):
+                seen += 1
+            assert lanes <= roads or "layout" in facts, facts  # "a five-lane T-intersection" names no road
+    assert seen > 200
+
+
+@pytest.mark.parametrize("layout", ["four", "t"])
+def test_names_of_junctions_tell_how_many_legs(layout: str) -> None:
+    other = {"four": r"\bthree|\b3|\btee\b|\bT\b", "t": r"\bfour|\b4|cross"}[layout]
+    assert not [name for name in clauses_road.JUNCTION[layout] if re.search(other, name)]
