@@ -1,8 +1,8 @@
 """A written network against what the narrative states of the roads: lanes, legs, one-way, limits, directions.
 
 Only statements that the text makes in so many words are held against a network, and each with the readings
-that it allows ("four-lane" with or without turn lanes): a false alarm costs an attempt. Reads the compiled
-network; compass is north up.
+that it allows ("four-lane" with or without turn lanes, where a diagram may show them): a false alarm costs an
+attempt. Reads the compiled network; compass is north up.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class RoadNarrative(Validator):
         drawn = _drawn(graph)
         found = [
             *self._legs(facts.junction, graph), *self._directions(facts, drawn), *self._one_way(facts, drawn),
-            *self._lanes(facts, drawn), *self._limits(facts, drawn),
+            *self._lanes(facts, drawn, bool(evidence.report.diagrams)), *self._limits(facts, drawn),
         ]  # fmt: skip
         return sorted(found, key=lambda f: f.severity != "repair")
 
@@ -133,11 +133,11 @@ class RoadNarrative(Validator):
         return [d for d in drawn if axis and d.along(axis, self.tolerance_deg, either=True)]
 
     # -------------------------------------------------------------- lanes
-    def _lanes(self, facts: RoadFacts, drawn: list[_Drawn]) -> Iterator[Finding]:
+    def _lanes(self, facts: RoadFacts, drawn: list[_Drawn], pictured: bool) -> Iterator[Finding]:
         for road in facts.streets:
-            allowed = allowed_totals(road)
+            allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
-            if not allowed or not here or any(d.total in allowed for d in drawn):
+            if not allowed or not here or any(d.total in allowed for d in (drawn if pictured else here)):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"
@@ -161,11 +161,12 @@ class RoadNarrative(Validator):
         return abs(limit - speed_mph) <= self.limit_tolerance_mph
 
 
-def allowed_totals(road: RoadFact) -> set[int]:
+def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     """Totals of both directions that agree with the text; empty where it does not state one for sure.
 
     A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
-    not, and turn lanes at the junction may stand beside the lanes named.
+    not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
+    but those that the text names.
     """
     lanes = road.lanes
     if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
@@ -174,8 +175,9 @@ def allowed_totals(road: RoadFact) -> set[int]:
     named = named or (sum(lanes.toward.values()) if len(lanes.toward) == 2 else None)
     if not named:
         return set()
-    extra = sum(len(turns) for turns in lanes.turns.values()) + 1
-    return set(range(max(1, named - (lanes.center_turn_lane or named % 2)), named + extra + 1))
+    extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
+    fewer = lanes.center_turn_lane or (pictured and named % 2)
+    return set(range(max(1, named - fewer), named + extra + 1))
 
 
 def _carrying(way: Compass) -> tuple[Hold, ...]:

@@ -8,7 +8,7 @@ from sgcad_core.formats.netconvert import compile_network
 from sgcad_core.formats.plain_xml import plain_xml
 from sgcad_core.layout import road_spec
 from sgcad_core.narrative.roads import road_facts
-from sgcad_core.records import Context, CrashReport, Evidence, Finding, RoadNetwork
+from sgcad_core.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.specs import Leg, RoadLayout
 
 CROSSING = (
@@ -32,12 +32,13 @@ def leg(bearing: str, lanes_in: int, lanes_out: int, limit: int | None = None) -
     )
 
 
-def findings(text: str, artifact: RoadNetwork) -> list[Finding]:
-    return RoadNarrative().findings(artifact, Evidence(report=CrashReport(case="c", narrative=text)))
+def findings(text: str, artifact: RoadNetwork, pictured: bool = False) -> list[Finding]:
+    diagrams = (Diagram(png=b"", width_px=1, height_px=1),) if pictured else ()
+    return RoadNarrative().findings(artifact, Evidence(report=CrashReport(case="c", narrative=text, diagrams=diagrams)))
 
 
-def repairs(text: str, *legs: Leg) -> list[str]:
-    return [f.what for f in findings(text, network(*legs)) if f.severity == "repair"]
+def repairs(text: str, *legs: Leg, pictured: bool = False) -> list[str]:
+    return [f.what for f in findings(text, network(*legs), pictured) if f.severity == "repair"]
 
 
 @pytest.mark.parametrize("text", [CROSSING, T, PLAIN, ONE_WAY])
@@ -51,9 +52,16 @@ def test_wrong_lane_totals_are_found() -> None:
     assert any("north-south road has 4" in what for what in repairs(CROSSING, *north_south, *east_west))
 
 
-def test_turn_lanes_beside_the_named_lanes_are_allowed() -> None:
+def test_turn_lanes_beside_the_named_lanes_are_allowed_where_a_diagram_may_show_them() -> None:
     legs = (leg("N", 3, 2, 45), leg("S", 3, 2, 45), leg("E", 1, 1), leg("W", 1, 1))
-    assert repairs(CROSSING, *legs) == []
+    assert repairs(CROSSING, *legs, pictured=True) == []
+    assert any("north-south road has 4 lanes" in what for what in repairs(CROSSING, *legs))
+
+
+def test_without_a_diagram_the_lanes_of_another_road_do_not_excuse_those_of_this() -> None:
+    legs = (leg("N", 1, 1, 45), leg("S", 1, 1, 45), leg("E", 2, 2), leg("W", 2, 2))
+    assert repairs(CROSSING, *legs, pictured=True) == []
+    assert len([what for what in repairs(CROSSING, *legs) if "lanes in both directions together" in what]) == 2
 
 
 def test_a_junction_without_the_named_legs_is_found() -> None:
@@ -97,6 +105,7 @@ def test_what_did_not_compile_or_says_nothing_is_passed_over() -> None:
 def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: int) -> None:
     road = road_facts(f"V1 was traveling north on {said}.").streets[0]
     assert (min(allowed_totals(road)), max(allowed_totals(road))) == (low, high)
+    assert max(allowed_totals(road, pictured=False)) == high - 1
 
 
 @pytest.mark.parametrize("said", ["a divided four-lane highway", "a two-lane, one-way street", "a road"])
@@ -118,7 +127,7 @@ def test_lanes_that_a_finding_holds_are_those_of_the_text() -> None:
     (hold,) = [hold for finding in found for hold in finding.holds]
     assert set(hold.values) == {"N", "S"}
     allowed = {n + out for choice in hold.either for n in choice["lanes_in"] for out in choice["lanes_out"]}
-    assert allowed == allowed_totals(road_facts(CROSSING).streets[0])
+    assert allowed == allowed_totals(road_facts(CROSSING).streets[0], pictured=False)
     assert repairs(CROSSING, *held(found, *legs)) == []
 
 
