@@ -137,7 +137,8 @@ class RoadNarrative(Validator):
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
-            if not allowed or not here or any(d.total in allowed for d in (drawn if pictured else here)):
+            vague = pictured and len(road.lanes.toward) < 2
+            if not allowed or not here or any(d.total in allowed for d in (drawn if vague else here)):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"
@@ -166,7 +167,7 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 
     A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
     not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
-    but those that the text names.
+    but those that the text names, and lanes told way by way leave no center lane open.
     """
     lanes = road.lanes
     if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
@@ -176,7 +177,7 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     if not named:
         return set()
     extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
-    fewer = lanes.center_turn_lane or (pictured and named % 2)
+    fewer = lanes.center_turn_lane or (pictured and len(lanes.toward) < 2 and named % 2)
     return set(range(max(1, named - fewer), named + extra + 1))
 
 

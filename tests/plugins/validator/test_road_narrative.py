@@ -64,6 +64,14 @@ def test_without_a_diagram_the_lanes_of_another_road_do_not_excuse_those_of_this
     assert len([what for what in repairs(CROSSING, *legs) if "lanes in both directions together" in what]) == 2
 
 
+def test_lanes_told_way_by_way_are_held_against_their_own_road_even_beside_a_diagram() -> None:
+    told = CROSSING.replace("four-lane, two-way road", "three-lane road (two northbound lanes, one southbound lane)")
+    legs = (leg("N", 1, 1, 45), leg("S", 1, 1, 45), leg("E", 2, 1), leg("W", 2, 1))
+    assert any("north-south road has 3 to 4 lanes" in what for what in repairs(told, *legs, pictured=True))
+    vague = CROSSING.replace("four-lane", "three-lane")
+    assert repairs(vague, *legs, pictured=True) == []
+
+
 def test_a_junction_without_the_named_legs_is_found() -> None:
     assert any("four-leg intersection" in what for what in repairs(CROSSING, leg("N", 2, 2), leg("S", 2, 2)))
 
