@@ -102,7 +102,7 @@ def make_report(
 def _told(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:
     """What sentences tell of a crash, and what they tell without saying of which legs."""
     facts = {fact for _, some in sentences for fact in some if not fact.startswith(HINT)}
-    facts |= {"legs"} if "layout" in facts or crash.layout == "plain" else set()
+    facts |= {"legs"} if "layout" in facts else set()
     doubtful = facts & unsettled(crash, [some for _, some in sentences])
     return facts - doubtful, doubtful
 

@@ -43,7 +43,7 @@ class Targets:
     def _leg(self, index: int, leg: Leg) -> Json:
         axis, path = leg.bearing % 4, ("legs", index)
         lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
-        if "legs" not in self.sure:
+        if "legs" not in self.sure and self.crash.layout != "plain":
             self._unsure(path, "bearing", "more", "kind")
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
             self._unsure(path, "lanes_in", "lanes_out")
