@@ -15,6 +15,9 @@ from sgcad_core.records import Hold
 Json = dict[str, Any]
 Allowed = Mapping[str, Sequence[str | int]]
 
+SOME_LANES = tuple(range(1, 9))
+"""Lanes one way that a leg of a layout may have, if it has any."""
+
 
 def narrowed(schema: Mapping[str, Any], holds: Sequence[Hold]) -> Json:
     """The schema with every hold that it can meet; others, and lists that it does not have, are passed over.

@@ -15,6 +15,7 @@ from typing import ClassVar
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.lane_graph import LaneGraph, road_of
 from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, turned
 from sgcad_core.narrative.junction import JunctionFacts
@@ -28,9 +29,6 @@ WORDS = {
     "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
     "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
 }  # fmt: skip
-_SOME = tuple(range(1, 9))
-"""Lanes one way that a leg may have, if it has any."""
-
 
 @dataclass(frozen=True)
 class _Drawn:
@@ -124,7 +122,7 @@ class RoadNarrative(Validator):
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
                 name = AXIS_WORDS[road.axis or "N"]
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
-                either = ({"lanes_in": _SOME, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": _SOME})
+                either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
                 holds = (Hold(items="legs", key="bearing", values=_ends(road), either=either),)
                 yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=holds)
 
@@ -184,14 +182,14 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 def _carrying(way: Compass) -> tuple[Hold, ...]:
     """Lanes that way on both legs that may lie along it."""
     return (
-        Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": _SOME},)),
-        Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": _SOME},)),
+        Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": SOME_LANES},)),
+        Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": SOME_LANES},)),
     )
 
 
 def _totals(road: RoadFact, allowed: set[int]) -> Hold:
     """Lanes of a leg, both ways, that add up to what the text allows."""
-    pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in _SOME)) for n in _SOME]
+    pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in SOME_LANES)) for n in SOME_LANES]
     either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
     return Hold(items="legs", key="bearing", values=_ends(road), either=either)
 

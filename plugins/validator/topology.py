@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
 from sgcad_core.formats.road_spec import turn_findings
 from sgcad_core.geometry import arc_lengths, resample
+from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
-from sgcad_core.specs import RoadSpec
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.specs import Compass, RoadSpec
 
 
 class Topology(Validator):
@@ -101,7 +102,7 @@ def _components(graph: LaneGraph) -> list[list[str]]:
 def _dead_ways(graph: LaneGraph) -> Iterator[Finding]:
     """Directions that cannot be left or reached though their node has other roads."""
     leads, led = {c.from_edge for c in graph.connections}, {c.to_edge for c in graph.connections}
-    roads_at: dict[str, set[str]] = {}
+    roads, roads_at = _roads(graph), dict[str, set[str]]()
     for edge in graph.edges.values():
         for node in (edge.from_node, edge.to_node):
             roads_at.setdefault(node, set()).add(road_of(edge.id)[0])
@@ -112,7 +113,17 @@ def _dead_ways(graph: LaneGraph) -> Iterator[Finding]:
             if edge.id not in known and len(roads_at[node]) > 1:
                 road, way = road_of(edge.id)
                 remedy = "turn a one-way road round, or give a road at that node lanes in the direction that lacks"
-                yield _finding(f"the {way} direction {how}", f"road {road} at node {node}", "", remedy)
+                holds = _turned(road, way, alone=len(roads[road]) == 1)
+                yield _finding(f"the {way} direction {how}", f"road {road} at node {node}", "", remedy, holds)
+
+
+def _turned(road: str, way: str, alone: bool) -> tuple[Hold, ...]:
+    """A leg of a layout without the lanes that nobody can use; a one-way leg the other way round."""
+    if road not in get_args(Compass):
+        return ()
+    gone, other = ("lanes_in", "lanes_out") if way == "forward" else ("lanes_out", "lanes_in")
+    choice = {gone: (0,)} | ({other: SOME_LANES} if alone else {})
+    return (Hold(items="legs", key="bearing", values=(road,), either=(choice,)),)
 
 
 def _spec_faults(spec: RoadSpec | None) -> Iterator[Finding]:
@@ -190,5 +201,5 @@ def _twins(graph: LaneGraph, a: str, b: str) -> bool:
     return (one[0].from_node, one[0].to_node) == (two[0].to_node, two[0].from_node)
 
 
-def _finding(what: str, where: str, value: str, remedy: str) -> Finding:
-    return Finding(source="topology", what=what, where=where, value=value, remedy=remedy)
+def _finding(what: str, where: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
+    return Finding(source="topology", what=what, where=where, value=value, remedy=remedy, holds=holds)

@@ -13,8 +13,9 @@ from plugins.validator.sumo_xsd import SumoXsd
 from plugins.validator.topology import Topology
 from sgcad_core.formats.netconvert import compile_network
 from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.layout import road_spec
 from sgcad_core.records import CrashReport, Evidence, PlainXml, RoadNetwork, Scenario
-from sgcad_core.specs import Node, RoadSpec
+from sgcad_core.specs import Leg, Node, RoadLayout, RoadSpec
 from tests.sgcad_core.formats.road_samples import NAMED, compiled, road, star
 
 EVIDENCE = Evidence(report=CrashReport(case="c", narrative="n"))
@@ -154,3 +155,29 @@ def test_a_worker_that_dies_is_a_finding_and_the_next_network_loads():
 def test_a_broken_xodr_is_a_finding_and_their_number_is_limited():
     bad = compiled("signal").xodr.replace("<width ", "<breadth ")
     assert len(OpenDrive(most=3).findings(RoadNetwork(xodr=bad), EVIDENCE)) == 3
+
+
+def layout_of(legs):
+    spec = road_spec(RoadLayout(legs=[Leg.model_validate(leg) for leg in legs]))
+    return compile_network(plain_xml(spec), spec)
+
+
+def test_a_ramp_that_nobody_can_use_is_held_the_other_way_round():
+    through = [{"bearing": "E", "lanes_in": 0, "lanes_out": 2}, {"bearing": "W", "lanes_in": 2, "lanes_out": 0}]
+    ramp = {"bearing": "SW", "kind": "ramp"}
+    (finding,) = Topology().findings(layout_of([*through, {**ramp, "lanes_in": 0, "lanes_out": 1}]), EVIDENCE)
+    assert "road SW " in finding.where
+    (hold,) = finding.holds
+    assert (hold.items, hold.key, hold.values) == ("legs", "bearing", ("SW",))
+    (choice,) = hold.either
+    turned = {name: values[0] for name, values in choice.items()}
+    assert turned == {"lanes_in": 1, "lanes_out": 0}
+    assert Topology().findings(layout_of([*through, {**ramp, **turned}]), EVIDENCE) == []
+
+
+def test_what_stands_in_no_layout_is_found_and_not_held():
+    nodes = (("a", -200, 0), ("b", 0, 0), ("c", 200, 0))
+    made = network(nodes, road("west", "a", "b", (1, 0)), road("east", "c", "b", (1, 0)))
+    found = [f for f in Topology().findings(made, EVIDENCE) if "leads nowhere" in f.what]
+    assert found
+    assert not any(f.holds for f in found)
