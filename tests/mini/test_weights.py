@@ -69,3 +69,21 @@ def test_the_products_engine_and_the_trainers_decoder_agree(backbone: HfVision) 
     road, _ = answers_of(*load(WEIGHTS), [report])[0]
     query = Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout))
     assert json.loads(backbone.generate(context(SEEDS[0]), query, Greedy()).text) == road
+
+
+@pytest.mark.slow
+def test_a_speed_of_one_digit_ends_alike_in_both_engines(backbone: HfVision) -> None:
+    """A decoder that goes by tokens may write more digits where one that goes by whole values may not."""
+    reports = (make_report(SEEDS[0] + i, length=0.2, modes={"text": 1.0}) for i in range(400))
+    slow = [r for r in reports if r.behavior and any(a["speed_mph"] == 5 for a in r.behavior.get("actors", ()))][:3]
+    for report, (road, behavior) in zip(slow, answers_of(*load(WEIGHTS), slow), strict=True):
+        ids = [leg["bearing"] for leg in road["legs"]]
+        query = Query(
+            task=load_prompt("mini_scenario", roads=json.dumps(road, separators=(",", ":"))),
+            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
+        )
+        answer = json.loads(backbone.generate(Context(narrative=report.narrative), query, Greedy()).text)
+        assert [(a["id"], a["speed_mph"]) for a in answer["actors"]] == [
+            (a["id"], a["speed_mph"]) for a in behavior["actors"]
+        ]
+        assert 5 in [a["speed_mph"] for a in answer["actors"]]
