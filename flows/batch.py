@@ -150,11 +150,10 @@ class Crew:
 
     def begin(self, plan: Sequence[Job]) -> None:
         """Start what needs no model, and load the first model that will be asked while the server starts."""
-        fresh = [job for job in plan if self.reusable(job) is None]
-        model = next((job.config.backbone for job in fresh if job.config.backbone), None)
-        if model:
+        asking = (job for job in plan if job.config.backbone and self.reusable(job) is None)
+        if model := next((job.config.backbone for job in asking), None):
             threading.Thread(target=_load, args=(model,), daemon=True, name="load").start()
-        waiting = [job for job in fresh if job.config.backbone is None]
+        waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
         if not waiting:
             return
         count = min(self.batch.processes, len(waiting))

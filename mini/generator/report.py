@@ -124,13 +124,9 @@ def _prior(crash: Crash, rng: Random) -> Targets:
 
 def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) -> Report:
     if mode == "conflict":
-        narrative = _conflicting(rng, crash, writer)
-    elif mode == "thin":
-        narrative = " ".join(writer.aftermath())
-    else:
-        narrative = " ".join(writer.place() + writer.aftermath())
-    if mode == "conflict":
-        return Report(seed, mode, crash, unmark(narrative)[0], False, refusal(2), None, None, set())
+        narrative = unmark(_conflicting(rng, crash, writer))[0]
+        return Report(seed, mode, crash, narrative, False, refusal(2), None, None, set())
+    narrative = " ".join(([] if mode == "thin" else writer.place()) + writer.aftermath())
     narrative, sentences = writer.finish(narrative)
     told, doubtful = _told(crash, sentences)
     if mode == "no_crash":

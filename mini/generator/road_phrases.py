@@ -73,11 +73,12 @@ class RoadsMixin:
         """
         rng = self.rng
         kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
-        simple = not any(side.turns_in for side in legs) and not (leg.twltl and leg.lanes_in != leg.lanes_out)
+        turns = any(side.turns_in for side in legs)
+        simple = not turns and not (leg.twltl and leg.lanes_in != leg.lanes_out)
         if simple and not self.held_out and rng.random() < words.MORE:
             return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
         even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
-        plain = not any(side.turns_in for side in legs) and not leg.twltl and leg.lanes_in * leg.lanes_out
+        plain = not turns and not leg.twltl and leg.lanes_in * leg.lanes_out
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
         other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
         total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
@@ -117,22 +118,21 @@ class RoadsMixin:
     def _further(self, leg: Leg, noun: str) -> str:
         """A phrase of `clauses_road` for a road without turn lanes at the junction, whatever its lanes."""
         rng, axis = self.rng, leg.bearing % 4
-        lanes = [f"{words.NUMBERS[n]} lane{'s' * (n > 1)}" for n in (leg.lanes_in, leg.lanes_out)]
         total = words.NUMBERS[min(leg.lanes_in + leg.lanes_out + leg.twltl, len(words.NUMBERS) - 1)]
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
         if not leg.lanes_in * leg.lanes_out:
-            xb, count = (to, lanes[0]) if leg.lanes_in else (fro, lanes[1])
-            text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=count, xb=xb)
+            xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
+            text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
             self.told |= {f"{AXIS}.{axis}"} if xb in text else set()
             return text
         if leg.lanes_in != leg.lanes_out:
             self.told.add(f"{AXIS}.{axis}")
-            a, b = (f"{n.replace(' ', f' {xb} ')}" for n, xb in zip(lanes, (to, fro), strict=True))
+            a, b = words.lanes(leg.lanes_in, to), words.lanes(leg.lanes_out, fro)
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
             return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
         options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
         median = more.phrase(rng, more.MEDIAN[leg.median]) + NAMED if leg.median in more.MEDIAN else ""
-        return more.phrase(rng, options, noun=noun, n=total, each=lanes[0], median=median)
+        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
 
     def _counted(self, n: str, ways: str, word: str) -> str:
         """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
@@ -149,7 +149,7 @@ class RoadsMixin:
         xb = words.bound(rng, leg.bearing + (4 if leg.lanes_in else 0))
         forms = [f"a {n}, one-way {word}", f"a one-way, {n} {word}", f"a {n} one-way {word}"]
         if not self.held_out:
-            count = f"{words.NUMBERS[lanes]} lane{'s' * (lanes > 1)}"
+            count = words.lanes(lanes)
             forms += [
                 f"a one-way {word} with {count}{rng.choice((' of travel', ' for travel', ''))}",
                 f"a {xb} one-way {word} with {count}",
@@ -164,7 +164,7 @@ class RoadsMixin:
         """`a road with two northbound lanes and one southbound lane` and the like."""
         rng, kind = self.rng, self.rng.choice(("two-way ", "", "undivided " if leg.median == "none" else "divided "))
         if even and rng.random() < 0.6:
-            each = words.NUMBERS[leg.lanes_in] + (" lane" if leg.lanes_in == 1 else " lanes")
+            each = words.lanes(leg.lanes_in)
             way = rng.choice(("in each direction", "each way", "for each direction", "per direction"))
             return rng.choice(
                 (
@@ -177,7 +177,7 @@ class RoadsMixin:
         sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
         rng.shuffle(sides)
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        lanes = [f"{words.NUMBERS[n]} {xb} lane{'s' * (n > 1)}" for n, xb in sides]
+        lanes = [words.lanes(n, xb) for n, xb in sides]
         return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:

@@ -42,7 +42,7 @@ def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool
     headed = [{f"{ROAD}.{actor.leg % 4}", f"heading.{actor.id}"} for actor in crash.actors]
     if crash.layout in ("four", "t"):
         return any(pair <= facts for facts in sentences for pair in headed)
-    return any(f"heading.{actor.id}" in told for actor in crash.actors)
+    return bool(_headed(crash, told))
 
 
 def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentences: list[frozenset[str]]) -> bool:
@@ -57,20 +57,29 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
 
 
 def _value(key: str, leg: Leg) -> tuple[object, ...]:
-    both = {"lanes": (leg.lanes_in, leg.lanes_out), "turns": tuple(leg.turns_in)}
-    return both.get(key) or (leg.median if key == "median" else leg.limit,)
+    return {
+        "lanes": (leg.lanes_in, leg.lanes_out),
+        "turns": tuple(leg.turns_in),
+        "median": (leg.median,),
+        "limit": (leg.limit,),
+    }[key]
 
 
 def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     """Whether the text tells which legs there are."""
     if crash.layout in ("plain", "four"):
-        return tied or any(f"heading.{actor.id}" in told for actor in crash.actors)
-    found = {leg for actor in crash.actors if f"heading.{actor.id}" in told for leg in _driven(actor, told)}
+        return tied or bool(_headed(crash, told))
+    found = {leg for actor in _headed(crash, told) for leg in _driven(actor, told)}
     found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
     stem = {leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)}
     if stem <= found and crash.layout != "t":
         return tied
     return STEM in told or {leg.bearing for leg in crash.legs} <= found
+
+
+def _headed(crash: Crash, told: set[str]) -> list[Actor]:
+    """Actors whose heading is told."""
+    return [actor for actor in crash.actors if f"heading.{actor.id}" in told]
 
 
 def _driven(actor: Actor, told: set[str]) -> list[int]:

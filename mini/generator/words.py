@@ -10,6 +10,7 @@ from mini.generator.world import WORDS, Crash, Leg
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
+SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
 IN_BRACKETS = {
     "grass": ("grass median", "grassy median", "grass divider"),
     "raised": ("raised median", "raised divider", "raised concrete median"),
@@ -17,7 +18,6 @@ IN_BRACKETS = {
 }
 MORE = 0.4
 """How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
-SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
 
 
 def direction(rng: Random, bearing: int, held_out: bool) -> str:
@@ -88,11 +88,15 @@ def driver_speed(rng: Random, mph: int) -> tuple[str, int]:
     return text, mph
 
 
+def lanes(count: int, way: str = "") -> str:
+    """`one lane`, `two northbound lanes`."""
+    return f"{NUMBERS[count]} {way}{' ' * bool(way)}lane{'s' * (count > 1)}"
+
+
 def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> str:
     """The lane's name: by side, number, direction or use."""
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
-        ordinal = NUMBERS[number or 1], ORDINALS[number or 1]
-        return more.phrase(rng, more.LANE[kind], xb=xb, number=ordinal[0], ordinal=ordinal[1])
+        return more.phrase(rng, more.LANE[kind], xb=xb, number=NUMBERS[number or 1], ordinal=ORDINALS[number or 1])
     lanes, use = max(leg.lanes_in, 1), ""
     if leg.turns_in and number:
         use = leg.turns_in[number - 1]

@@ -30,6 +30,7 @@ WORDS = {
     "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
 }  # fmt: skip
 
+
 @dataclass(frozen=True)
 class _Drawn:
     """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
@@ -135,8 +136,8 @@ class RoadNarrative(Validator):
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
-            vague = pictured and len(road.lanes.toward) < 2
-            if not allowed or not here or any(d.total in allowed for d in (drawn if vague else here)):
+            searched = drawn if _vague(road, pictured) else here
+            if not allowed or not here or any(d.total in allowed for d in searched):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"
@@ -175,8 +176,13 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     if not named:
         return set()
     extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
-    fewer = lanes.center_turn_lane or (pictured and len(lanes.toward) < 2 and named % 2)
+    fewer = lanes.center_turn_lane or (_vague(road, pictured) and named % 2)
     return set(range(max(1, named - fewer), named + extra + 1))
+
+
+def _vague(road: RoadFact, pictured: bool) -> bool:
+    """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
+    return pictured and len(road.lanes.toward) < 2
 
 
 def _carrying(way: Compass) -> tuple[Hold, ...]:

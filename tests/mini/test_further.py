@@ -30,9 +30,9 @@ MODULES: dict[str, ModuleType] = {
 }
 LISTS = [(name, heading) for name in MODULES for heading in further._read(name)]
 RUN = 4
+"""Words in a row that no further clause may share with held-out ones alone."""
 ALIKE = {"dir": "from", "surf": "Surf", "road": "Road"}
 """Slots that tell the same in other words."""
-"""Words in a row that no further clause may share with held-out ones alone."""
 
 
 def listed(name: str, heading: str) -> list[str]:
