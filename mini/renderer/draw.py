@@ -112,16 +112,20 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
 
 
 def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
-    """Center the sheet somewhere between the hub and the impact, so that both are on it."""
+    """Center the sheet somewhere between the hub and the impact, so that both are on it and, if that can be, where
+    everyone came from."""
     at = [track.poses[track.contact] for track in tracks]
+    came = [track.poses[track.contact - 1] for track in tracks if track.contact]
     x, y = sum(p.x for p in at) / len(at), sum(p.y for p in at) / len(at)
     room, share = 0.16 * min(pen.image.size) / pen.scale, rng.uniform(0.3, 0.85)
     shift = rng.uniform(-room, room), rng.uniform(-room, room)
-    for closer in (1.0, 0.8, 0.6, 0.4, 0.2):
-        pen.center = (closer * (share * x + shift[0]), closer * (share * y + shift[1]))
-        seen = pen.px(np.array([(0.0, 0.0), (x, y)])) / pen.image.size
-        if (seen > 0.1).all() and (seen < 0.9).all():
-            return
+    hub, before = np.array([(0.0, 0.0), (x, y)]), np.array([(p.x, p.y) for p in came]).reshape(-1, 2)
+    near = (1.0, 0.8, 0.6, 0.4, 0.2)
+    centers = [(k * (share * x + shift[0]), k * (share * y + shift[1])) for k in near]
+    for origins in (before, before[:0]):
+        for pen.center in centers:
+            if pen.shows(hub, 0.1) and pen.shows(origins, 0.03):
+                return
 
 
 # ------------------------------------------------------------------ vehicles
@@ -130,17 +134,22 @@ def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> None:
     arrows, labels = rng.random() < 0.55, rng.random() < 0.9
     order = list(tracks)
     rng.shuffle(order)
-    for track in order:
-        color = _color(rng, track)
-        for i, pose in enumerate(track.poses):
-            if i and arrows and i <= track.contact:
-                _link(pen, track.poses[i - 1], pose, track.size[0])
-            ghost = style == "icon" and i != track.contact and rng.random() < 0.3
-            _vehicle(rng, pen, track, pose, color, style, labels, ghost)
+    colors = {track.actor.id: _color(rng, track) for track in order}
+    # What came later lies below, the impact on top: every actor is to be seen where it counts.
+    layers = sorted(((t, i) for t in order for i in range(len(t.poses))), key=lambda at: _layer(*at))
+    for track, i in layers:
+        if i and arrows and i <= track.contact:
+            _link(pen, track.poses[i - 1], track.poses[i], track.size[0])
+        ghost = style == "icon" and i != track.contact and rng.random() < 0.3
+        _vehicle(rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghost)
     if rng.random() < 0.12 and tracks:
         x, y = pen.px(np.array([[tracks[0].poses[tracks[0].contact].x, tracks[0].poses[tracks[0].contact].y]]))[0]
         pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
         pen.draw.line([(x, y - 8), (x, y + 8)], fill=BLACK, width=2)
+
+
+def _layer(track: Track, index: int) -> int:
+    return 0 if index > track.contact else 1 if index < track.contact else 2
 
 
 def _color(rng: Random, track: Track) -> Color:

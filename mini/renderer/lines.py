@@ -112,11 +112,11 @@ class Ground:
 
 
 def bend(inbound: Points, away: Points, turn: int) -> Points:
-    """The curve that joins two lines: a cubic whose ends keep the directions."""
+    """The curve that joins two lines: a cubic whose ends keep the directions, nearly a chord for those who drive on."""
     a, b = inbound[-1], away[0]
     u = (inbound[-1] - inbound[-2]) / STEP
     v = (away[1] - away[0]) / STEP
-    reach = float(np.hypot(*(b - a))) * (0.8 if turn == 0 else 0.45)
+    reach = float(np.hypot(*(b - a))) * {0: 0.8, 4: 0.2}.get(turn, 0.45)
     t = np.linspace(0, 1, max(3, int(np.hypot(*(b - a)) / STEP * 1.3)))[1:-1, None]
     p, q = a + u * reach, b - v * reach
     return a * (1 - t) ** 3 + 3 * p * t * (1 - t) ** 2 + 3 * q * t**2 * (1 - t) + b * t**3

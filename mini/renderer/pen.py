@@ -42,6 +42,11 @@ class Pen:
         x, y = p[:, 0] * c - p[:, 1] * s, p[:, 0] * s + p[:, 1] * c
         return np.stack((self.image.width / 2 + x * self.scale, self.image.height / 2 - y * self.scale), axis=1)
 
+    def shows(self, points: Points, margin: float) -> bool:
+        """Whether world points lie on the sheet, a share of its sides away from its edges."""
+        seen = self.px(points) / self.image.size
+        return bool(((seen > margin) & (seen < 1 - margin)).all())
+
     def line(self, points: Points, width: int = 2, color: Color = BLACK, dash: float = 0.0, gap: float = 0.0) -> None:
         """A line through world points; dash and gap in metres."""
         if not dash:

@@ -82,7 +82,10 @@ class Stage:
             placed, other = (first, second) if first in self.at else (second, first)
             areas = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
             self._attach(placed, other, areas[placed], areas[other])
-        return [self._track(i) for i in range(len(self.crash.actors)) if i in self.at or self._loose(i)]
+        found = [self._track(i) for i in range(len(self.crash.actors)) if i in self.at]
+        for track in found:
+            track.poses += self._after(track, [other for other in found if other is not track])
+        return found
 
     def _parked(self, way: Points, actor: Actor) -> Points:
         """At the curb or beyond it, where nobody drives."""
@@ -166,11 +169,8 @@ class Stage:
         return wrap(float(headings(way)[index]) + turned)
 
     # -------------------------------------------------------------- tracks
-    def _loose(self, index: int) -> bool:
-        return False
-
     def _track(self, index: int) -> Track:
-        actor, rng = self.crash.actors[index], self.rng
+        actor = self.crash.actors[index]
         track = Track(actor, self.sizes[index])  # type: ignore[arg-type]
         at = self.at[index]
         still = actor.maneuver in ("stopped", "parked") or actor.kind == "object"
@@ -178,8 +178,6 @@ class Stage:
             track.poses += self._before(index, at)
         track.contact = len(track.poses)
         track.poses.append(at)
-        if actor.kind not in ("object", "pedestrian", "bicycle") and rng.random() < 0.5:
-            track.poses += self._after(at)
         return track
 
     def _before(self, index: int, at: Pose) -> list[Pose]:
@@ -190,24 +188,50 @@ class Stage:
         turned = math.pi if actor.maneuver == "backing" else 0.0
         found, gap = [], rng.uniform(7, 14) + self.sizes[index][0] * 0.6
         place = self.index[index] - int(gap / STEP)
+        if place < 1 and self.index[index] * STEP > self.sizes[index][0] + 1:
+            place = 1  # met near the end of its leg: closer together, but seen to have moved
         for _ in range(rng.choice((1, 1, 2, 2, 3))):
+            while place >= 1 and self._hidden(index, Pose(*way[place], float(h[place]))):
+                place -= 4
             if place < 1:
                 break
             found.append(Pose(*way[place], wrap(float(h[place]) + turned)))
             place -= int(gap * rng.uniform(0.9, 1.6) / STEP)
         return found[::-1]
 
-    def _after(self, at: Pose) -> list[Pose]:
-        rng, found = self.rng, []
+    def _hidden(self, index: int, pose: Pose) -> bool:
+        """Whether a box would lie on another actor's place of impact, so that nobody could tell them apart."""
+        return any(
+            overlap(pose, self.sizes[index], at, self.sizes[other]) for other, at in self.at.items() if other != index
+        )
+
+    def _after(self, track: Track, others: list[Track]) -> list[Pose]:
+        """Poses on the way to rest, now and then; up to the first that would hide how another actor came."""
+        rng, at, found = self.rng, track.poses[track.contact], []
+        if track.actor.kind in ("object", "pedestrian", "bicycle") or rng.random() >= 0.5:
+            return []
         away, turn = at.heading + rng.uniform(-1.2, 1.2), rng.uniform(-2.5, 2.5)
         for k in range(rng.choice((1, 1, 2))):
             reach = (k + 1) * rng.uniform(6, 12)
-            found.append(
-                Pose(
-                    at.x + reach * math.cos(away), at.y + reach * math.sin(away), wrap(at.heading + turn * (k + 1) / 2)
-                )
+            pose = Pose(
+                at.x + reach * math.cos(away), at.y + reach * math.sin(away), wrap(at.heading + turn * (k + 1) / 2)
             )
+            taken = ((other, one) for other in others for one in other.poses[: other.contact + 1])
+            if any(overlap(pose, track.size, one, other.size) for other, one in taken):
+                break
+            found.append(pose)
         return found
+
+
+def overlap(first: Pose, size: tuple[float, float], second: Pose, other: tuple[float, float]) -> bool:
+    """Whether two boxes share ground (separating axes)."""
+    boxes = corners(first, size), corners(second, other)
+    for heading in (first.heading, second.heading):
+        for angle in (heading, heading + math.pi / 2):
+            a, b = (box @ (math.cos(angle), math.sin(angle)) for box in boxes)
+            if a.max() <= b.min() or b.max() <= a.min():
+                return False
+    return True
 
 
 def corners(pose: Pose, size: tuple[float, float]) -> Points:

@@ -76,6 +76,7 @@ class RoadMarks:
             self._lanes(band, start)
             if arrows:
                 self._arrows(band, start)
+            self._one_way(band, start, arrows)
         if signs:
             self._signs()
 
@@ -212,11 +213,27 @@ class RoadMarks:
                 continue
             place = min(start + self.rng.uniform(4, 9), band.length - 6)
             for turn in TURN_STEPS.get(use, ()):
-                bend = self._turn_arrow(band, place, band.lane_in(k), turn)
-                if self.arrow_fill is None:
-                    self._thin_arrow(bend)
-                else:
-                    self._broad_arrow(bend, self.arrow_fill)
+                self._painted(self._turn_arrow(band, place, band.lane_in(k), turn))
+
+    def _one_way(self, band: Band, start: float, arrows: bool) -> None:
+        """Arrows on a one-way road, without which nobody could tell; on a plain one the vehicles mostly do."""
+        leg = band.leg
+        if leg.kind != "road" or leg.lanes_in * leg.lanes_out or (arrows and leg.turns_in):
+            return
+        if self.ground.plain and self.rng.random() < 0.4:
+            return
+        place = min(start + self.rng.uniform(5, 14), band.length - 6)
+        for k in range(1, leg.lanes_in + leg.lanes_out + 1):
+            lateral = band.lane_in(k) if leg.lanes_in else band.lane_out(k)
+            ends = band.at(place + 3, lateral)[0], band.at(place - 3, lateral)[0]
+            self._painted(self.pen.px(np.array(ends if leg.lanes_in else ends[::-1])))
+
+    def _painted(self, points: Points) -> None:
+        """An arrow on the road in the manner of this drawing."""
+        if self.arrow_fill is None:
+            self._thin_arrow(points)
+        else:
+            self._broad_arrow(points, self.arrow_fill)
 
     def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> Points:
         """Tail, knee and tip in pixels."""
@@ -228,19 +245,19 @@ class RoadMarks:
     def _thin_arrow(self, points: Points) -> None:
         pen = self.pen
         pen.draw.line([tuple(p) for p in points], fill=(0, 0, 0), width=self.mark, joint="curve")
-        pen.head(points[2], math.atan2(*(points[2] - points[1])[::-1]), max(6.0, 1.5 * pen.scale))
+        pen.head(points[-1], math.atan2(*(points[-1] - points[-2])[::-1]), max(6.0, 1.5 * pen.scale))
 
     def _broad_arrow(self, points: Points, fill: Color) -> None:
         """As painted on the road: a broad shaft and a head, outlined."""
         pen, size = self.pen, max(6.0, 1.6 * self.pen.scale)
-        angle = math.atan2(*(points[2] - points[1])[::-1])
-        neck = points[2] - 0.7 * size * np.array([math.cos(angle), math.sin(angle)])
-        shaft = [tuple(p) for p in (points[0], points[1], neck)]
+        angle = math.atan2(*(points[-1] - points[-2])[::-1])
+        neck = points[-1] - 0.7 * size * np.array([math.cos(angle), math.sin(angle)])
+        shaft = [tuple(p) for p in (*points[:-1], neck)]
         wide = max(2, round(0.45 * pen.scale))
         pen.draw.line(shaft, fill=(90, 80, 70), width=wide + 2, joint="curve")
-        pen.head(points[2], angle, size + 2, (90, 80, 70))
+        pen.head(points[-1], angle, size + 2, (90, 80, 70))
         pen.draw.line(shaft, fill=fill, width=wide, joint="curve")
-        pen.head(points[2] - np.array([math.cos(angle), math.sin(angle)]), angle, size - 1.5, fill)
+        pen.head(points[-1] - np.array([math.cos(angle), math.sin(angle)]), angle, size - 1.5, fill)
 
     def _signs(self) -> None:
         """Stop signs as red ovals or the word, signals as three lamps in the middle of the junction."""

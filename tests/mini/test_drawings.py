@@ -14,7 +14,8 @@ from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
 from mini.renderer.draw import draw_report
 from mini.renderer.lines import Ground
-from mini.renderer.poses import SIDE, Stage, corners, wrap
+from mini.renderer.poses import SIDE, Pose, Stage, corners, overlap, wrap
+from mini.renderer.road_marks import RoadMarks
 
 seeds = st.integers(0, 10**6)
 
@@ -110,3 +111,47 @@ def test_views_show_the_same_ink_elsewhere() -> None:
     for i, one in enumerate(sheets):
         assert 0.7 < one.sum() / sheets[0].sum() < 1.1
         assert all(np.abs(one - other).mean() > 1 for other in sheets[:i])
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds)
+def test_nothing_that_came_later_hides_how_an_actor_came(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    ground = Ground(crash, {leg.bearing: 50.0 for leg in crash.legs}, 100.0)
+    tracks = Stage(Random(seed), crash, ground, 1.2).tracks()
+    for track in tracks:
+        for other in tracks:
+            later = track.poses[track.contact + 1 :] if other is not track else []
+            came = other.poses[: other.contact + 1]
+            assert not any(overlap(a, track.size, b, other.size) for a in later for b in came)
+
+
+@given(x=st.floats(-20, 20), y=st.floats(-20, 20), one=st.floats(-3.2, 3.2), two=st.floats(-3.2, 3.2))
+def test_boxes_overlap_where_they_share_points(x: float, y: float, one: float, two: float) -> None:
+    first, second, size, other = Pose(0, 0, one), Pose(x, y, two), (4.8, 2.0), (13.0, 2.7)
+    found = overlap(first, size, second, other)
+    assert found == overlap(second, other, first, size)
+    grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 25), np.linspace(-0.5, 0.5, 11)), -1).reshape(-1, 2) * size
+    c, s = math.cos(one), math.sin(one)
+    points = grid @ np.array([(c, s), (-s, c)]) - (x, y)
+    c, s = math.cos(two), math.sin(two)
+    inside = (np.abs(points @ np.array([(c, -s), (s, c)])) < np.array(other) / 2).all(axis=1).any()
+    assert found or not inside
+    if math.hypot(x, y) > math.hypot(*size) / 2 + math.hypot(*other) / 2:
+        assert not found
+
+
+def test_a_one_way_street_shows_which_way() -> None:
+    """The same drawing turned the other way round differs in its arrows."""
+    report = next(
+        r
+        for r in (make_report(seed, modes={"image": 1.0}) for seed in range(400))
+        if r.crash.layout == "four" and any(not leg.lanes_in and leg.kind == "road" for leg in r.crash.legs)
+    )
+    pictures = []
+    for arrows in (True, False):
+        with pytest.MonkeyPatch.context() as patch:
+            if not arrows:
+                patch.setattr(RoadMarks, "_one_way", lambda *_: None)
+            pictures.append(np.asarray(draw_report(report), int))
+    assert (np.abs(pictures[0] - pictures[1]) > 60).any(axis=2).sum() > 60
