@@ -6,6 +6,9 @@ Slots: {noun} "urban road", {n} all its lanes ("four"), {each} lanes each way ("
 {ordinal} of a lane counted from the right, {word} "north". STEM says where the leg lies that ends at the road: {axis}
 {axis2} "north/south" of the through road and of the other, {stemdir} "south", {opposite} "north". They only train: nothing
 here is held out.
+
+Sentences: PAIR tells both roads of a junction at once ({one} and {other} with their articles, {a1} and {a2} their axes),
+LIMITS one {lim} that holds on both, EACH_WAY the lanes of a road ({axis0}) that has {each} either way ({w1}, {w2}).
 """
 
 from __future__ import annotations
@@ -82,6 +85,48 @@ To the {stemdir} [of the road |][there is|there was] a [private |]driveway
 The {stemdir} curb [is|was] [broken|interrupted|cut] by a driveway
 """),
 }
+
+PAIR = clauses("""
+The {a1} [road|street|roadway] [is|was] {one}, [and|while|whereas|but] the {a2} [road|street|roadway|one] [is|was] {other}
+[The road|The street|The roadway] [running|going|that runs] {a1} [is|was] {one}; [the one|that] [running|going|that runs] {a2} [is|was] {other}
+{Ione} [running|that runs|going|which ran] {a1} [crosses|meets|intersects|met|joined] {other} [running|that runs|going|which ran] {a2} [here|at this point|there|at this location]
+[Of the two roads|Of the two streets], the {a1} [one|road] [is|was] {one} and the {a2} [one|road] {other}
+[Running|Going] {a1} [is|was] {one}; [running|going] {a2} [is|was] {other}
+{a1}: {one}. {a2}: {other}
+[Traffic|A driver|Someone] [going|travelling|who travels] {a1} [uses|has|is on] {one}, [traffic|a driver|someone] [going|travelling|who travels] {a2} [uses|has|is on] {other}
+[The layout is|It is|This is] {one} that [goes|runs|leads] {a1} and {other} that [goes|runs|leads] {a2}
+The {a1} [road|street] consists of {one}, the {a2} [road|street] of {other}
+[Here|There|At this corner] {one} ({a1}) and {other} ({a2}) [cross|meet|come together]
+The {a1} [approaches|legs] [belong to|are of|are part of] {one} and the {a2} [approaches|legs] [to|of] {other}
+[Unlike|In contrast to] the {a2} [road|street], which [is|was] {other}, the {a1} [road|street] [is|was] {one}
+""")
+LIMITS = clauses("""
+The [posted |]speed limit on both [roads|roadways|streets] [was|is] {lim}
+Both [posted |]speed limits [were|are] {lim}
+[Both|The two] [roads|roadways|streets] [had|have|carried|carry] a [posted |]speed limit of {lim}
+[Both|The two] [roads|roadways|streets] [were|are] [posted|signed|limited|marked] at {lim}
+The [speed |]limit [for|of|on] [both roads|both roadways|both streets|either road|each street|either roadway] [was|is] {lim}
+[Each|Either] [road|street|roadway] [had|has] a [speed |]limit of {lim}
+[On both|On either of the|For both] [roads|streets|roadways] the [posted |][speed |]limit [is|was] {lim}
+{lim} [was|is] the speed limit [for all|for all approaches|on all legs|for everyone here|in all directions]
+All [approaches|legs] [had|have|share|shared] [a|the same] [speed |]limit of {lim}
+The [speed |]limit [did|does] not differ between the roads: {lim}[ everywhere|]
+The [posted |]speed limits of the two [roads|streets] [were|are] the same, {lim}
+No matter which [road|street] one [drove|drives] on, [no more than |]{lim} [was|is] [allowed|permitted|the limit]
+[The whole area|The neighborhood|The entire intersection] [has|had] a {lim} [speed |]limit
+""")
+EACH_WAY = clauses("""
+[There is|There was|It has|It had] {each} in both the {w1} and [the |]{w2} direction[s|]
+The {axis0} [road|street|roadway] [had|has] {each} in both the {w1} and [the |]{w2} direction[s|]
+The {axis0} [road|street|roadway] [has|had|carries|carried] {each} [each way|either way|in each direction|in either direction|both ways]
+[Both|The] {b1} and {b2} [traffic|drivers|motorists] [had|have|are given|were given] {each}[ each| apiece| of their own|]
+{b1} and {b2} [traffic|drivers] [each have|each had|both have|both had] {each}
+[On|Along] the {axis0} [road|street|roadway] there [is|was] {each} for {b1} and {each} for {b2} [traffic|travel]
+The {axis0} [road|street|roadway] [offers|offered|provides|provided] {each} [to|for] [either|each] direction
+[For|In] [both|either] direction[s|] of the {axis0} [road|street|roadway] there [is|was] {each}
+{each} [run|runs|go|goes|lead|leads] {w1} and {each} {w2}
+The {axis0} [road|street|roadway] [is|was] {each} wide [each way|in each direction|per direction]
+""")
 
 enlarge("road", globals())
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import words
-from mini.generator.clauses_road import STEM as STEMS
 from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, STEM
@@ -153,8 +153,10 @@ class SceneMixin(RoadsMixin):
             out.append(self.say(scene.ROAD2, main))
         if not self.held_out and rng.random() < 0.3:
             out += self._each_way()
-        if not self.held_out and self.crash.layout in STEMS and rng.random() < 0.3:
-            out.append(self.say(STEMS[self.crash.layout], main))
+        if not self.held_out and self.crash.layout in ("four", "t") and rng.random() < 0.3:
+            out += rng.choice((self._pair, self._limits))()
+        if not self.held_out and self.crash.layout in roads.STEM and rng.random() < 0.3:
+            out.append(self.say(roads.STEM[self.crash.layout], main))
         curved = self._leg_of(main).curve != "none"
         if curved and rng.random() < 0.7:
             out.append(self.say(scene.CURVE, main))
@@ -175,9 +177,33 @@ class SceneMixin(RoadsMixin):
         ab, bb = (words.bound(rng, leg.bearing + 4) for leg in (one, other))
         self.told |= {f"lanes.{axis}", f"turns.{axis}", f"{AXIS}.{axis}"}
         self.stated.add(f"lanes.{axis}")
+        if one.lanes_in == one.lanes_out and not (one.turns_in or one.twltl or back.turns_in) and rng.random() < 0.4:
+            return [self._alike(one, axis, ab, bb)]
         lists = {"alist": words.lane_phrase(rng, one), "blist": words.lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]
         return [self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)]
+
+    def _alike(self, leg: Leg, axis: int, ab: str, bb: str) -> str:
+        """A road with as many lanes the one way as the other."""
+        ways = {"w1": WORDS[leg.bearing], "w2": WORDS[(leg.bearing + 4) % 8], "b1": bb, "b2": ab}
+        return self.say(roads.EACH_WAY, each=words.lanes(leg.lanes_in), axis0=words.axis(self.rng, axis), **ways)
+
+    def _pair(self) -> list[str]:
+        """Both roads of a junction in one sentence."""
+        first, second = self.rng.sample((self.crash.main % 4, (self.crash.main + 2) % 4), 2)
+        one, other = self._road(first, bare=True), self._road(second, bare=True)
+        self.told |= {f"{AXIS}.{first}", f"{AXIS}.{second}"}
+        axes = {"a1": words.axis(self.rng, first), "a2": words.axis(self.rng, second)}
+        return [self.say(roads.PAIR, one=one, other=other, Ione=one[:1].upper() + one[1:], **axes)]
+
+    def _limits(self) -> list[str]:
+        """One limit of both roads, where they have one."""
+        found = {leg.limit for leg in self.crash.legs}
+        limit = found.pop() if len(found) == 1 else None
+        if not limit:
+            return []
+        self.told |= {f"limit.{leg.bearing % 4}" for leg in self.crash.legs}
+        return [self.say(roads.LIMITS, lim=words.limit(self.rng, limit, False))]
 
     def _access(self) -> str:
         access = self.crash.accesses[0]

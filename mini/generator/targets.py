@@ -16,7 +16,10 @@ GUESS = 0.25
 """Weight of a value that the evidence does not tell and that has no null."""
 SURE = 1.0
 RARE = 2.0
-"""Of a value that is told and seldom other than the usual one: a curve, a turn lane's use, a speed."""
+"""Of a value that is told and learned late: a curve, a turn lane's use, a speed or its limit, light and weather, kinds
+and maneuvers that are seldom seen."""
+USUAL = {"car", "suv", "pickup", "van", "straight", "stopped", "slowing", "turn_left", "turn_right",
+         "crossing_centerline"}  # fmt: skip
 CONTACT = 6.0
 
 
@@ -53,6 +56,8 @@ class Targets:
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
         self._unsure(path, *(("center_turn_lane",) if f"lanes.{axis}" not in self.sure else ()))
         self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
+        if f"limit.{axis}" in self.sure and leg.limit:
+            self.weights[(*path, "speed_limit_mph")] = RARE
         return {
             "bearing": COMPASS[leg.bearing],
             "lanes_in": leg.lanes_in,
@@ -97,6 +102,7 @@ class Targets:
         conditions = {
             key: getattr(crash, key) if key in self.known else None for key in ("light", "weather", "surface")
         }
+        self.weights |= {(key,): RARE for key, value in conditions.items() if value is not None}
         return {"actors": actors, "contacts": contacts, **conditions}
 
     def _actor(self, index: int, actor: Actor) -> Json:
@@ -106,6 +112,9 @@ class Targets:
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
+        for key, value, told in (("kind", actor.kind, f"kind.{actor.id}" in known), ("maneuver", actor.maneuver, sure)):
+            if told and value not in USUAL:
+                self.weights[(*path, key)] = RARE
         for key in ("direction", "length_m", "width_m"):
             self.weights[(*path, key)] = 0.1
         if actor.speed and f"speed.{actor.id}" in known:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from random import Random
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mini.generator import clauses_road, words
+from mini.generator import clauses_road, words, writer
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, ROAD
-from mini.generator.world import Leg
+from mini.generator.world import WORDS, Crash, Leg
 
 COUNTS = {word: n for n, word in enumerate(words.NUMBERS)} | {str(n): n for n in range(13)} | {"a": 1}
 seeds = st.integers(0, 2**31)
@@ -100,3 +101,44 @@ def test_roads_that_are_told_are_noted_and_axes_where_a_direction_stands() -> No
 def test_names_of_junctions_tell_how_many_legs(layout: str) -> None:
     other = {"four": r"\bthree|\b3|\btee\b|\bT\b", "t": r"\bfour|\b4|cross"}[layout]
     assert not [name for name in clauses_road.JUNCTION[layout] if re.search(other, name)]
+
+
+def _sentences(seeds: range) -> Iterator[tuple[str, frozenset[str], Crash]]:
+    for seed in seeds:
+        report = make_report(seed, False, 0.2, {"text": 1.0})
+        start = 0
+        for end, facts in report.sentences:
+            yield report.narrative[start:end].strip(), facts, report.crash
+            start = end
+
+
+def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_road, "LIMITS", ["Everywhere {lim}"])
+    found = 0
+    for text, facts, crash in _sentences(range(2500)):
+        if "Everywhere" in text:
+            found += 1
+            assert facts == {f"limit.{leg.bearing % 4}" for leg in crash.legs}
+            assert len({leg.limit for leg in crash.legs}) == 1, text
+    assert found >= 5
+
+
+def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_road, "PAIR", ["QQ {a1}={one}; RR {a2}={other}"])
+    monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
+    found = 0
+    for text, _, crash in _sentences(range(1500)):
+        parts = re.findall(r"(?:QQ|RR) ([a-z/ -]+)=(.*?)(?:;|\.$)", text)
+        for axis, road in parts:
+            way = next(leg for leg in crash.legs if _lies(leg.bearing, axis))
+            one_way = not way.lanes_in * way.lanes_out
+            found += one_way
+            assert ("one-way" in road or "one way" in road) >= (one_way and way.kind == "road" and "same" not in road)
+    assert found >= 5
+
+
+def _lies(bearing: int, axis: str) -> bool:
+    return set(re.findall(r"(?:north|south)?(?:east|west)?", axis)) - {""} == {
+        WORDS[bearing % 4],
+        WORDS[bearing % 4 + 4],
+    }
