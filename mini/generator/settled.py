@@ -22,7 +22,10 @@ BY_AXIS = ("lanes", "turns", "median", "limit")
 
 
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
-    """Facts that sentences tell and that lie on no known leg; "legs" where nobody could say which legs there are."""
+    """Facts that sentences tell and that lie on no known leg; "legs" where nobody could say which legs there are.
+
+    Then nothing about the leg that ends at the main road is known either, nor which legs a control stands at.
+    """
     sentences = list(sentences)
     told = {fact for facts in sentences for fact in facts}
     tied = _tied(crash, sentences, told)
@@ -32,7 +35,11 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
         for fact in facts
         if fact.partition(".")[0] in BY_AXIS and not _placed(crash, fact, facts, tied, sentences)
     }
-    return out if _legs(crash, told, tied) else out | {"legs"}
+    if _legs(crash, told, tied):
+        return out
+    stems = {str(leg.bearing % 4) for leg in crash.legs if not crash.is_main(leg.bearing)}
+    out |= {fact for fact in told if fact.partition(".")[0] in BY_AXIS and fact.partition(".")[2] in stems}
+    return out | {"legs", "control"}
 
 
 def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool:
