@@ -92,7 +92,7 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
         if leg.bearing not in used and not crash.is_main(leg.bearing):
             lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
     curved = any(leg.curve != "none" for leg in crash.legs)
-    ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0)
+    ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash))
     long = int(rng.uniform(400, 540))
     if plain and not curved:
         direction = math.radians(90 - 45 * crash.main) + turn
@@ -109,6 +109,14 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
         size = size if rng.random() < 0.75 else size[::-1]
     scale = max(size) / (2 * half) if plain else min(size) / (2 * half) * rng.uniform(1.0, 1.15)
     return Pen(rng, *size, scale, turn, (0.0, 0.0)), ground
+
+
+def _lane_widths(rng: Random, crash: Crash) -> dict[int, float]:
+    """Metres by axis: few drawings are to scale, and of two roads one may be drawn wider."""
+    if rng.random() < 0.25:
+        return {}
+    base = rng.uniform(3.0, 4.7)
+    return {axis: base * rng.uniform(0.85, 1.15) for axis in sorted({leg.bearing % 4 for leg in crash.legs})}
 
 
 def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:

@@ -7,6 +7,7 @@ towards the hub, so inbound lanes are positive. Knows no pixels.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,16 +28,17 @@ class Band:
     leg: Leg
     length: float
     radius: float
+    wide: float = LANE
 
     @property
     def lane(self) -> float:
         """Lane width."""
-        return 2.8 if self.leg.kind == "driveway" else LANE
+        return 2.8 if self.leg.kind == "driveway" else self.wide
 
     @property
     def middle(self) -> float:
         """Width between both directions: median or two-way left-turn lane."""
-        return LANE if self.leg.twltl else MEDIAN[self.leg.median]
+        return self.wide if self.leg.twltl else MEDIAN[self.leg.median]
 
     @property
     def right(self) -> float:
@@ -72,11 +74,15 @@ class Band:
 
 
 class Ground:
-    """All bands of a crash and how far the junction reaches."""
+    """All bands of a crash and how far the junction reaches; `lanes` has the width of lanes by axis."""
 
-    def __init__(self, crash: Crash, lengths: dict[int, float], radius: float) -> None:
-        self.crash = crash
-        self.bands = {leg.bearing: Band(leg, lengths[leg.bearing], radius) for leg in crash.legs}
+    def __init__(
+        self, crash: Crash, lengths: dict[int, float], radius: float, lanes: Mapping[int, float] | None = None
+    ) -> None:
+        self.crash, wide = crash, lanes or {}
+        self.bands = {
+            leg.bearing: Band(leg, lengths[leg.bearing], radius, wide.get(leg.bearing % 4, LANE)) for leg in crash.legs
+        }
         self.plain = len(crash.legs) == 2
 
     def setback(self, bearing: int, corner: float = 3.0) -> float:

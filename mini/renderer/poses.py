@@ -13,7 +13,7 @@ from random import Random
 import numpy as np
 
 from mini.generator.world import Actor, Crash
-from mini.renderer.lines import LANE, STEP, Ground, Points, headings, shift
+from mini.renderer.lines import STEP, Ground, Points, headings, shift
 
 SIZES = {
     "car": (4.8, 2.0),
@@ -133,10 +133,10 @@ class Stage:
             band = self.ground.bands[actor.leg]
             middle = int((band.length - self.ground.setback(actor.leg, 1.0)) / STEP)
             amount = {
-                "crossing_centerline": LANE + band.middle,
-                "overtaking": LANE + band.middle,
-                "lane_change_left": LANE,
-                "lane_change_right": -LANE,
+                "crossing_centerline": band.lane + band.middle,
+                "overtaking": band.lane + band.middle,
+                "lane_change_left": band.lane,
+                "lane_change_right": -band.lane,
                 "departing_road_right": -(band.right - band.lane_in(actor.lane) + 3.0),
                 "departing_road_left": band.lane_in(actor.lane) - band.left + 3.0,
             }.get(actor.maneuver)

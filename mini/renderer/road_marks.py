@@ -64,6 +64,10 @@ class RoadMarks:
         """Color of broad turn arrows with an outline; None: thin black ones."""
         self.every_lane = rng.random() < 0.6
         """Whether lanes that only go straight have arrows too."""
+        self.arrow_size = rng.uniform(0.55, 1.2)
+        self.turn_lane_gap = rng.uniform(0.0, 0.8)
+        """Metres from the solid to the dashed line of a two-way left-turn lane; small ones run into one."""
+        self.turn_lane_dashed = rng.random() < 0.15
         self.storage = rng.random() < 0.7
         """Whether the line beside a turn lane is solid."""
 
@@ -152,8 +156,10 @@ class RoadMarks:
             return
         if leg.twltl:
             for side in (1, -1):
-                pen.line(band.at(s, side * band.middle / 2), width=self.mark)
-                pen.line(band.at(s, side * (band.middle / 2 - 0.6)), width=self.mark, dash=self.dash, gap=self.gap)
+                if not self.turn_lane_dashed:
+                    pen.line(band.at(s, side * band.middle / 2), width=self.mark)
+                inner = side * (band.middle / 2 - self.turn_lane_gap)
+                pen.line(band.at(s, inner), width=self.mark + self.turn_lane_dashed, dash=self.dash, gap=self.gap)
         elif leg.median == "none":
             self._center_line(band, s)
         else:
@@ -237,19 +243,20 @@ class RoadMarks:
 
     def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> Points:
         """Tail, knee and tip in pixels."""
-        tail, knee = band.at(place + 4.2, lateral)[0], band.at(place + 1.2, lateral)[0]
-        side = {"left": -1.3, "right": 1.3, "through": 0.0}[turn]
-        tip = band.at(place - (1.5 if turn == "through" else 0.2), lateral + side)[0]
+        big = self.arrow_size
+        tail, knee = band.at(place + 4.2 * big, lateral)[0], band.at(place + 1.2 * big, lateral)[0]
+        side = {"left": -1.3, "right": 1.3, "through": 0.0}[turn] * big
+        tip = band.at(place - (1.5 if turn == "through" else 0.2) * big, lateral + side)[0]
         return self.pen.px(np.array([tail, knee, tip]))
 
     def _thin_arrow(self, points: Points) -> None:
         pen = self.pen
         pen.draw.line([tuple(p) for p in points], fill=(0, 0, 0), width=self.mark, joint="curve")
-        pen.head(points[-1], math.atan2(*(points[-1] - points[-2])[::-1]), max(6.0, 1.5 * pen.scale))
+        pen.head(points[-1], math.atan2(*(points[-1] - points[-2])[::-1]), max(5.0, 1.5 * pen.scale * self.arrow_size))
 
     def _broad_arrow(self, points: Points, fill: Color) -> None:
         """As painted on the road: a broad shaft and a head, outlined."""
-        pen, size = self.pen, max(6.0, 1.6 * self.pen.scale)
+        pen, size = self.pen, max(6.0, 1.6 * self.pen.scale * self.arrow_size)
         angle = math.atan2(*(points[-1] - points[-2])[::-1])
         neck = points[-1] - 0.7 * size * np.array([math.cos(angle), math.sin(angle)])
         shaft = [tuple(p) for p in (*points[:-1], neck)]
