@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import codecs
 import dataclasses
+import threading
+import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
+from weakref import WeakValueDictionary
 
 from plugins.backbone.fields import grounding, is_refusal
 from plugins.backbone.prompt import Parts
@@ -160,6 +163,25 @@ def options(dtype: str, attention: str, device_map: str | dict[str, int | str] |
     found: dict[str, Any] = {"dtype": dtype if dtype == "auto" else getattr(torch, dtype)}
     found["attn_implementation"] = attention
     return found | ({"device_map": device_map} if device_map is not None else {})
+
+
+_RUNNING: WeakValueDictionary[str, Running] = WeakValueDictionary()
+_STARTING = threading.Lock()
+
+
+def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **options: Any) -> Running:
+    """What runs already under the same options, or is started now (see `start`).
+
+    The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
+    prefix cache, and the last that lets go frees both. `stamp` tells a folder whose files were replaced.
+    """
+    key = repr((stamp, name, revision, sorted(settings.items()), sorted(options.items())))
+    with _STARTING:
+        running = _RUNNING.get(key)
+        if running is None or running.engine.ended:
+            running = _RUNNING[key] = start(name, revision, settings, **options)
+            weakref.finalize(running, running.engine.end)
+        return running
 
 
 def start(

@@ -99,9 +99,11 @@ class HfVision(Backbone):
         return parts(decoder.contrast_context(context), query)
 
     def _loaded(self) -> hf_run.Running:
+        stamp = self.stamp
         with self._lock:
             if self._running is None:
-                self._running = hf_run.start(
+                self._running = hf_run.shared(
+                    stamp,
                     self.model,
                     self.revision,
                     hf_run.options(self.dtype, self.attn_implementation, self.device_map),

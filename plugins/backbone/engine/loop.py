@@ -41,7 +41,7 @@ class Engine:
         self.jobs: list[Job] = []
         self.waiting: deque[Job] = deque()
         self.arrivals: queue.SimpleQueue[Job | None] = queue.SimpleQueue()
-        self.lock = threading.Lock()
+        self.lock = threading.RLock()  # a collector may call `end` wherever it runs
         self.thread: threading.Thread | None = None
         self.ended = False
         self.reason = ""
@@ -79,11 +79,15 @@ class Engine:
 
     def close(self) -> None:
         """Stop after the present token; what was not answered is cancelled."""
+        self.end()
+        if self.thread:
+            self.thread.join()
+
+    def end(self) -> None:
+        """Have the loop stop, without waiting for it (so that its own thread may ask for it too)."""
         with self.lock:
             self.ended = True
             self.arrivals.put(None)
-        if self.thread:
-            self.thread.join()
 
     # ------------------------------------------------------------------ the owner's thread
     def _own(self) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import json
 import math
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -270,6 +272,36 @@ def test_quantization_without_its_package_says_how_to_install_it(backbones: dict
 def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> None:
     with pytest.raises(ConfigError, match=r"backbone\.device 'gpu7' is unknown to torch"):
         HfVision(**{**backbones["llava"].model_dump(), "device": "gpu7"}).generate(folders.context(), QUERY, Cad())
+
+
+def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Path) -> None:
+    folder = str(folders.save("qwen2_5_vl", tmp_path))
+    first, second = (HfVision(model=folder, device="cpu", dtype="float32", max_new_tokens=n) for n in (200, 150))
+    other = HfVision(model=folder, device="cpu", dtype="bfloat16", max_new_tokens=200)
+    for backbone in (first, second, other):
+        valid(backbone.generate(folders.context(), QUERY, Greedy()))
+    engine = first._loaded().engine
+    assert engine is second._loaded().engine
+    assert engine is not other._loaded().engine
+    weights, thread = weakref.ref(engine.model), engine.thread
+    assert thread is not None
+    del first, engine, backbone
+    gc.collect()
+    assert weights() is not None
+    valid(second.generate(folders.context(), QUERY, Cad()))
+    del second
+    gc.collect()
+    thread.join(timeout=20)
+    assert not thread.is_alive()
+    gc.collect()
+    assert weights() is None
+
+
+def test_a_loop_that_has_ended_is_not_handed_on(tmp_path: Path) -> None:
+    folder = str(folders.save("qwen2_5_vl", tmp_path))
+    first, second = (HfVision(model=folder, device="cpu", dtype="float32", max_new_tokens=200) for _ in range(2))
+    first._loaded().engine.close()
+    valid(second.generate(folders.context(), QUERY, Greedy()))
 
 
 def test_other_weights_in_the_same_folder_are_another_stamp_and_other_notes_are_not(tmp_path: Path) -> None:
