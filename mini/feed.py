@@ -148,9 +148,22 @@ class Feed:
             self.jobs.put((self.asked, self._progress(progress)))
             self.asked += self.stride
         while self.next not in self.ready:
-            number, at, rows = self.done.get(timeout=900)
+            number, at, rows = self._made()
             self.ready[number] = (at, rows)
         return self.ready.pop(self.next)
+
+    def _made(self) -> tuple[int, float, list[Row]]:
+        """What a worker made. Raises RuntimeError as soon as one has died: its pool would never come."""
+        while True:
+            try:
+                return self.done.get(timeout=5)  # type: ignore[no-any-return]
+            except Empty:
+                ended = [worker.exitcode for worker in self.workers if not worker.is_alive()]
+                if ended:
+                    raise RuntimeError(
+                        f"a process that makes training rows has ended (exit code {ended[0]}), its error stands above; "
+                        "call again to go on from the last checkpoint"
+                    ) from None
 
     def _progress(self, progress: Callable[[], float]) -> float:
         """Now; for the first pool of a resumed run what it was then, so that its rows are the same."""

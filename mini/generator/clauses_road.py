@@ -87,18 +87,18 @@ The {stemdir} curb [is|was] [broken|interrupted|cut] by a driveway
 }
 
 PAIR = clauses("""
-The {a1} [road|street|roadway] [is|was] {one}, [and|while|whereas|but] the {a2} [road|street|roadway|one] [is|was] {other}
+The {a1} [road|street|roadway] [is|was] {one}, [and|while] the {a2} [road|street|roadway|one] [is|was] {other}
 [The road|The street|The roadway] [running|going|that runs] {a1} [is|was] {one}; [the one|that] [running|going|that runs] {a2} [is|was] {other}
-{Ione} [running|that runs|going|which ran] {a1} [crosses|meets|intersects|met|joined] {other} [running|that runs|going|which ran] {a2} [here|at this point|there|at this location]
+{Ione} [running|that runs|going|which ran] {a1} [meets|intersects|met|joined] {other} [running|that runs|going|which ran] {a2} [here|at this point|there|at this location]
 [Of the two roads|Of the two streets], the {a1} [one|road] [is|was] {one} and the {a2} [one|road] {other}
 [Running|Going] {a1} [is|was] {one}; [running|going] {a2} [is|was] {other}
-{a1}: {one}. {a2}: {other}
-[Traffic|A driver|Someone] [going|travelling|who travels] {a1} [uses|has|is on] {one}, [traffic|a driver|someone] [going|travelling|who travels] {a2} [uses|has|is on] {other}
+{a1}: {one}; {a2}: {other}
+[Traffic|A driver|Someone] [going|travelling] {a1} [uses|has|is on] {one}, [traffic|a driver|someone] [going|travelling] {a2} [uses|has|is on] {other}
 [The layout is|It is|This is] {one} that [goes|runs|leads] {a1} and {other} that [goes|runs|leads] {a2}
 The {a1} [road|street] consists of {one}, the {a2} [road|street] of {other}
-[Here|There|At this corner] {one} ({a1}) and {other} ({a2}) [cross|meet|come together]
+[Here|There|At this corner] {one} ({a1}) and {other} ({a2}) [meet|come together]
 The {a1} [approaches|legs] [belong to|are of|are part of] {one} and the {a2} [approaches|legs] [to|of] {other}
-[Unlike|In contrast to] the {a2} [road|street], which [is|was] {other}, the {a1} [road|street] [is|was] {one}
+[Besides|Next to] the {a2} [road|street], which [is|was] {other}, there [is|was] the {a1} [road|street], {one}
 """)
 LIMITS = clauses("""
 The [posted |]speed limit on both [roads|roadways|streets] [was|is] {lim}
@@ -116,15 +116,15 @@ No matter which [road|street] one [drove|drives] on, [no more than |]{lim} [was|
 [The whole area|The neighborhood|The entire intersection] [has|had] a {lim} [speed |]limit
 """)
 EACH_WAY = clauses("""
-[There is|There was|It has|It had] {each} in both the {w1} and [the |]{w2} direction[s|]
+[It has|It had] {each} in both the {w1} and [the |]{w2} directions
 The {axis0} [road|street|roadway] [had|has] {each} in both the {w1} and [the |]{w2} direction[s|]
 The {axis0} [road|street|roadway] [has|had|carries|carried] {each} [each way|either way|in each direction|in either direction|both ways]
 [Both|The] {b1} and {b2} [traffic|drivers|motorists] [had|have|are given|were given] {each}[ each| apiece| of their own|]
 {b1} and {b2} [traffic|drivers] [each have|each had|both have|both had] {each}
-[On|Along] the {axis0} [road|street|roadway] there [is|was] {each} for {b1} and {each} for {b2} [traffic|travel]
+The {axis0} [road|street|roadway] [has|had|offers] {each} for {b1} and {each} for {b2} [traffic|travel]
 The {axis0} [road|street|roadway] [offers|offered|provides|provided] {each} [to|for] [either|each] direction
-[For|In] [both|either] direction[s|] of the {axis0} [road|street|roadway] there [is|was] {each}
-{each} [run|runs|go|goes|lead|leads] {w1} and {each} {w2}
+In [either direction|both directions] the {axis0} [road|street|roadway] [has|had|provides] {each}
+[It has|It had|The {axis0} road has] {each} [running|going|leading] {w1} and {each} {w2}
 The {axis0} [road|street|roadway] [is|was] {each} wide [each way|in each direction|per direction]
 """)
 

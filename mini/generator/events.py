@@ -25,10 +25,10 @@ _BEFORE = {
 }
 _APART = {
     "stopped": r"\{W\} to a stop|when \{W\} did|\{W\} stop\b|stop made by \{W\}|just stopped in front"
-    r"|stops? (?:of|by) \{W\}|(?:for|not ready for) \{W\} to stop|Stopped dead ahead|its stop\b|a surprise$|to stop for \{W\}",
+    r"|stops? (?:of|by) \{W\}|for \{W\} to stop|Stopped dead ahead|its stop\b|a surprise$",
     "slowing": r"brake lights ahead|\{W\} began to brake|\{W\} first and|\{W\} and \{V\} were both braking"
     r"|slow speed of \{W\}|moving slowly, \{W\}|slower vehicle, \{W\}|while (?:braking|slowing)"
-    r"|(?:slow-moving|slower) \{W\}|slowing[^{]{0,14} of \{W\}|\[stopped\|slowing\] \{W\}",
+    r"|(?:slow-moving|slower) \{W\}|slowing[^{]{0,14} of \{W\}",
 }
 STATES = {
     word: re.compile(

@@ -118,7 +118,7 @@ def _prior(crash: Crash, rng: Random) -> Targets:
     facts = drawn_facts(crash, True, True, False) | {"light", "weather", "surface"}
     facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
     targets = Targets(crash, {fact for fact in sorted(facts) if rng.random() < 0.8})
-    targets.weights = dict.fromkeys(targets.weights, 0.5)
+    targets.flat = 0.7
     return targets
 
 

@@ -24,7 +24,7 @@ BY_AXIS = ("lanes", "turns", "median", "limit")
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     """Facts that sentences tell and that lie on no known leg; "legs" where nobody could say which legs there are.
 
-    Then nothing about the leg that ends at the main road is known either, nor which legs a control stands at.
+    Then nothing about the legs beside the main road is known either, nor which legs a control stands at.
     """
     sentences = list(sentences)
     told = {fact for facts in sentences for fact in facts}

@@ -30,12 +30,14 @@ class Targets:
         """`doubtful`: what is known and cannot be laid on a leg; it stands in the answer with the weight of a guess."""
         self.crash, self.known, self.sure = crash, known, known - doubtful
         self.weights: dict[tuple[Any, ...], float] = {}
+        self.flat: float | None = None
+        """One weight for every value, whatever it is: of rows that learn how answers are distributed."""
         self.road = self._road()
         self.behavior = self._behavior()
 
     def weight(self, path: tuple[Any, ...]) -> float:
         """Weight of a pick; paths not named are sure."""
-        return self.weights.get(path, SURE)
+        return self.weights.get(path, SURE) if self.flat is None else self.flat
 
     # -------------------------------------------------------------- road
     def _road(self) -> Json:
@@ -55,6 +57,7 @@ class Targets:
             self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
         self._unsure(path, *(("center_turn_lane",) if f"lanes.{axis}" not in self.sure else ()))
+        self._unsure(path, *(("turns_in",) if f"turns.{axis}" in self.known - self.sure else ()))
         self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
         if f"limit.{axis}" in self.sure and leg.limit:
             self.weights[(*path, "speed_limit_mph")] = RARE
@@ -72,10 +75,9 @@ class Targets:
         }
 
     def _control(self, leg: Leg, path: tuple[Any, ...]) -> str:
-        if "control" in self.known:
-            return leg.control
-        self._unsure(path, "control")
-        return "none"
+        if "control" not in self.sure:
+            self._unsure(path, "control")
+        return leg.control if "control" in self.known else "none"
 
     def _access(self) -> Json:
         access = self.crash.accesses[0]

@@ -93,6 +93,8 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
             lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
     curved = any(leg.curve != "none" for leg in crash.legs)
     ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash))
+    for bearing, band in ground.bands.items():
+        band.length = max(band.length, ground.setback(bearing, 1.0) + 12)  # seen beyond a wide junction
     long = int(rng.uniform(400, 540))
     if plain and not curved:
         direction = math.radians(90 - 45 * crash.main) + turn
@@ -131,7 +133,8 @@ def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
     near = (1.0, 0.8, 0.6, 0.4, 0.2)
     centers = [(k * (share * x + shift[0]), k * (share * y + shift[1])) for k in near]
     for origins in (before, before[:0]):
-        for pen.center in centers:
+        for center in centers:
+            pen.center = center
             if pen.shows(hub, 0.1) and pen.shows(origins, 0.03):
                 return
 

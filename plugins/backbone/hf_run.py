@@ -9,6 +9,7 @@ import codecs
 import dataclasses
 import threading
 import weakref
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
@@ -166,20 +167,23 @@ def options(dtype: str, attention: str, device_map: str | dict[str, int | str] |
 
 
 _RUNNING: WeakValueDictionary[str, Running] = WeakValueDictionary()
-_STARTING = threading.Lock()
+_LOCKS: defaultdict[str, threading.Lock] = defaultdict(threading.Lock)
+_LOOKING = threading.Lock()
 
 
-def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **options: Any) -> Running:
+def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> Running:
     """What runs already under the same options, or is started now (see `start`).
 
     The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
     prefix cache, and the last that lets go frees both. `stamp` tells a folder whose files were replaced.
     """
-    key = repr((stamp, name, revision, sorted(settings.items()), sorted(options.items())))
-    with _STARTING:
+    key = repr((stamp, name, revision, sorted(settings.items()), sorted(how.items())))
+    with _LOOKING:
+        lock = _LOCKS[key]
+    with lock:  # a model that takes minutes keeps nobody waiting who asks another
         running = _RUNNING.get(key)
         if running is None or running.engine.ended:
-            running = _RUNNING[key] = start(name, revision, settings, **options)
+            running = _RUNNING[key] = start(name, revision, settings, **how)
             weakref.finalize(running, running.engine.end)
         return running
 

@@ -101,7 +101,8 @@ class HfVision(Backbone):
     def _loaded(self) -> hf_run.Running:
         stamp = self.stamp
         with self._lock:
-            if self._running is None:
+            if self._running is None or self._running.engine.ended:
+                self._running = None  # a loop that has ended holds its model no longer
                 self._running = hf_run.shared(
                     stamp,
                     self.model,

@@ -102,7 +102,11 @@ def test_others_are_said_to_do_what_they_do(held_out: bool) -> None:
         ("{W}, [decelerating] ahead, was not noticed by the driver of {V}", {"slowing"}),
         ("The slowing of {W} was not perceived", {"slowing"}),
         ("The brake lights of {W} came on", {"slowing"}),
+        ("A sudden stop by {W} left {V} no room", {"stopped"}),
+        ("{V} was too near {W} to react to its stop", {"stopped"}),
+        ("{V} closed in on the slower {W}", {"slowing"}),
         ("{V} was unable to stop behind {W}", set()),
+        ("{V} was too fast to stop for {W} ahead", set()),
         ("{W} was ahead. {V} braked late", set()),
     ],
 )

@@ -12,8 +12,9 @@ from PIL import Image, ImageDraw
 from mini import picture
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
-from mini.renderer.draw import draw_report
+from mini.renderer.draw import _sheet, draw_report
 from mini.renderer.lines import Ground
+from mini.renderer.pen import Pen
 from mini.renderer.poses import SIDE, Pose, Stage, corners, overlap, wrap
 from mini.renderer.road_marks import RoadMarks
 
@@ -126,32 +127,59 @@ def test_nothing_that_came_later_hides_how_an_actor_came(seed: int) -> None:
             assert not any(overlap(a, track.size, b, other.size) for a in later for b in came)
 
 
+@settings(deadline=None)
 @given(x=st.floats(-20, 20), y=st.floats(-20, 20), one=st.floats(-3.2, 3.2), two=st.floats(-3.2, 3.2))
 def test_boxes_overlap_where_they_share_points(x: float, y: float, one: float, two: float) -> None:
     first, second, size, other = Pose(0, 0, one), Pose(x, y, two), (4.8, 2.0), (13.0, 2.7)
     found = overlap(first, size, second, other)
     assert found == overlap(second, other, first, size)
-    grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 25), np.linspace(-0.5, 0.5, 11)), -1).reshape(-1, 2) * size
-    c, s = math.cos(one), math.sin(one)
-    points = grid @ np.array([(c, s), (-s, c)]) - (x, y)
-    c, s = math.cos(two), math.sin(two)
-    inside = (np.abs(points @ np.array([(c, -s), (s, c)])) < np.array(other) / 2).all(axis=1).any()
-    assert found or not inside
-    if math.hypot(x, y) > math.hypot(*size) / 2 + math.hypot(*other) / 2:
-        assert not found
+    # The boxes share ground where a point of the one lies in the other, or where their sides cross.
+    shrunk = [(w - 0.2, h - 0.2) for w, h in (size, other)]
+    assert found or not _share(first, shrunk[0], second, shrunk[1])
+    grown = [(w + 0.3, h + 0.3) for w, h in (size, other)]
+    assert not found or _share(first, grown[0], second, grown[1])
 
 
-def test_a_one_way_street_shows_which_way() -> None:
-    """The same drawing turned the other way round differs in its arrows."""
-    report = next(
-        r
-        for r in (make_report(seed, modes={"image": 1.0}) for seed in range(400))
-        if r.crash.layout == "four" and any(not leg.lanes_in and leg.kind == "road" for leg in r.crash.legs)
-    )
-    pictures = []
-    for arrows in (True, False):
-        with pytest.MonkeyPatch.context() as patch:
-            if not arrows:
-                patch.setattr(RoadMarks, "_one_way", lambda *_: None)
-            pictures.append(np.asarray(draw_report(report), int))
-    assert (np.abs(pictures[0] - pictures[1]) > 60).any(axis=2).sum() > 60
+def _share(first: Pose, size: tuple[float, float], second: Pose, other: tuple[float, float]) -> bool:
+    """By a dense grid of points of the one box that are looked for in the other."""
+    grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 61), np.linspace(-0.5, 0.5, 31)), -1).reshape(-1, 2) * size
+    c, s = math.cos(first.heading), math.sin(first.heading)
+    points = grid @ np.array([(c, s), (-s, c)]) + (first.x - second.x, first.y - second.y)
+    c, s = math.cos(second.heading), math.sin(second.heading)
+    return bool((np.abs(points @ np.array([(c, -s), (s, c)])) <= np.array(other) / 2).all(axis=1).any())
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_arrows_of_one_way_streets_point_along_their_traffic(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    for leg in crash.legs:
+        leg.turns_in = []
+        if leg.bearing % 4 == crash.main % 4:
+            inward = leg.bearing == crash.main
+            leg.lanes_in, leg.lanes_out, leg.twltl, leg.kind = 2 * inward, 2 * (not inward), False, "road"
+    ground = Ground(crash, {leg.bearing: 60.0 for leg in crash.legs}, 100.0)
+    pen = Pen(Random(seed), 400, 400, 3.0, 0.0, (0.0, 0.0))
+    marks, arrows = RoadMarks(Random(seed), pen, crash, ground), []
+    marks._painted = arrows.append  # type: ignore[method-assign]
+    band = ground.bands[crash.main]
+    for _ in range(8 if ground.plain else 1):
+        marks._one_way(band, ground.setback(crash.main, 1.0), arrows=False)
+    hub = pen.px(np.array([(0.0, 0.0)]))[0]
+    assert len(arrows) >= 2
+    for tail, tip in arrows:
+        assert math.dist(tip, hub) < math.dist(tail, hub)
+    away = ground.bands.get((crash.main + 4) % 8)
+    if away is not None and not ground.plain:
+        arrows.clear()
+        marks._one_way(away, ground.setback(away.leg.bearing, 1.0), arrows=False)
+        assert all(math.dist(tip, hub) > math.dist(tail, hub) for tail, tip in arrows)
+        assert len(arrows) == 2
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_every_leg_is_seen_beyond_the_junction(seed: int) -> None:
+    report = make_report(seed, modes={"image": 1.0})
+    _, ground = _sheet(Random(seed), report.crash)
+    for bearing, band in ground.bands.items():
+        assert band.length >= ground.setback(bearing, 1.0) + 11.9

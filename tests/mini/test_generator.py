@@ -134,6 +134,15 @@ def test_untold_values_are_null_and_unweighted(seed: int) -> None:
     )
 
 
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_rows_without_context_weigh_every_value_alike(seed: int) -> None:
+    """They teach the distribution of answers, so no value may count more than another."""
+    report = make_report(seed, modes={"none": 1.0})
+    paths = [(), ("light",), *((f"{kind}s", 0, key) for kind, key in (("leg", "control"), ("actor", "maneuver")))]
+    assert len({report.weight(path) for path in paths}) == 1
+
+
 def test_held_out_families_never_train() -> None:
     marks = (
         "A wrecker removed",

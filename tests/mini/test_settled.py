@@ -107,4 +107,7 @@ def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> No
                 assert weight == GUESS
             elif limit in report.told:
                 assert weight == (RARE if leg.limit else SURE)
+            if "control" in report.doubtful:
+                assert report.road["legs"][index]["control"] == leg.control
+                assert report.weight(("legs", index, "control")) == GUESS
     assert found > 20

@@ -106,12 +106,17 @@ def test_many_threads_get_the_answers_they_would_get_alone(backbones: dict[str, 
     assert together == alone
 
 
+def _apart(backbone: HfVision) -> HfVision:
+    """The same model that shares neither loop nor kept prompts with the other."""
+    return HfVision(**{**backbone.model_dump(), "prefix_cache_mb": 0})
+
+
 def test_a_repair_reuses_the_prompt_and_the_answer_before(backbones: dict[str, HfVision]) -> None:
     backbone = backbones["qwen2_5_vl"]
     passages = (Passage(id="p1", kind="rule", text="Lanes are counted at the widest section. " * 5),)
     query = Query(task="Describe the road.", passages=passages, answer_schema=tiny.SCHEMA)
     first = backbone.generate(folders.context(9), query, Cad())
-    fresh = HfVision(**backbone.model_dump())
+    fresh = _apart(backbone)
     repair = query.model_copy(update={"repair": f"Mend this: {first.text}", "attempt": 2})
     second = backbone.generate(folders.context(9), repair, Cad())
     unaided = fresh.generate(folders.context(9), repair, Cad())
@@ -127,7 +132,7 @@ def test_a_further_sample_takes_the_one_before_as_a_draft_and_stays_the_sample_i
     backbone.generate(folders.context(9), QUERY, decoder, seed=1)
     further = QUERY.model_copy(update={"attempt": 2})
     drafted = backbone.generate(folders.context(9), further, decoder, seed=2)
-    unaided = HfVision(**backbone.model_dump()).generate(folders.context(9), further, decoder, seed=2)
+    unaided = _apart(backbone).generate(folders.context(9), further, decoder, seed=2)
     assert drafted.text == unaided.text
     assert drafted.model_calls < unaided.model_calls
 
@@ -301,7 +306,9 @@ def test_a_loop_that_has_ended_is_not_handed_on(tmp_path: Path) -> None:
     folder = str(folders.save("qwen2_5_vl", tmp_path))
     first, second = (HfVision(model=folder, device="cpu", dtype="float32", max_new_tokens=200) for _ in range(2))
     first._loaded().engine.close()
-    valid(second.generate(folders.context(), QUERY, Greedy()))
+    for backbone in (second, first):
+        valid(backbone.generate(folders.context(), QUERY, Greedy()))
+    assert first._loaded() is second._loaded()
 
 
 def test_other_weights_in_the_same_folder_are_another_stamp_and_other_notes_are_not(tmp_path: Path) -> None:
