@@ -8,7 +8,7 @@ import torch
 
 from mini.decode import Answerer
 from mini.eye import Eye
-from mini.feed import drawing
+from mini.feed import Feed, drawing
 from mini.generator.report import make_report
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
@@ -16,6 +16,7 @@ from mini.options import parse
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
 from mini.train import Trainer, schedule
+from sgcad_core import settings
 
 torch.set_num_threads(1)
 
@@ -138,3 +139,11 @@ def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
     first = torch.load(tmp_path / "first" / "state.pt", weights_only=True)["optimizer"]["master"]
     for key, value in first.items():
         assert torch.allclose(value, second.optimizer.master[key], atol=0.01 * float(value.abs().max()) + 1e-6), key
+
+
+def test_a_dead_worker_is_told_at_once() -> None:
+    feed = Feed(str(settings.ROOT / "mini" / "weights"), 1, 0)
+    for worker in feed.workers:
+        worker.kill()
+    with pytest.raises(RuntimeError, match=r"has ended \(exit code -9\).*call again"):
+        next(feed.pools(lambda: 0.0))
