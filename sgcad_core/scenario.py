@@ -54,7 +54,9 @@ def _check_ids(behavior: BehaviorSpec) -> None:
             if (name := getattr(contact, role)) not in ids:
                 findings.append(_finding(f"contacts[{i}].{role}", "no such actor", name, known, _in_place(name, ids)))
         if contact.striker == contact.struck:
-            findings.append(_finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known))
+            findings.append(
+                _finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known, _another(i, ids))
+            )
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
 
@@ -69,6 +71,16 @@ def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
     """One that a contact names and no actor is: a vehicle belongs where its number says, others behind the vehicles."""
     place = int(name[1:]) - 1 if name.startswith("V") else sum(other.startswith("V") for other in ids)
     return (_named(place, name),) if 0 <= place <= len(ids) else ()
+
+
+def _another(place: int, ids: list[str]) -> tuple[Hold, ...]:
+    """Whoever strikes, somebody else is struck."""
+    either = tuple({"striker": (name,), "struck": others} for name in ids if (others := _but(name, ids)))
+    return (Hold(items="contacts", at=place, either=either),) if either else ()
+
+
+def _but(name: str, ids: list[str]) -> tuple[str, ...]:
+    return tuple(other for other in dict.fromkeys(ids) if other != name)
 
 
 def _named(place: int, name: str) -> Hold:

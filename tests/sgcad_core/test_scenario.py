@@ -7,7 +7,7 @@ import pytest
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xosc_player import play
-from sgcad_core.records import RoadNetwork
+from sgcad_core.records import Hold, RoadNetwork
 from sgcad_core.scenario import compile_scenario
 from sgcad_core.specs import BehaviorSpec, Contact
 from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
@@ -82,3 +82,15 @@ def test_a_number_that_is_taken_gives_way_to_the_next():
     with pytest.raises(InvalidOutput) as fault:
         compile_scenario(CROSSING.model_copy(update={"actors": actors, "contacts": (contact,)}), crossroads())
     assert fault.value.findings[0].holds[0].line() == "actors[1]: id V2"
+
+
+def test_who_strikes_itself_strikes_another_in_the_next_answer():
+    contact = CROSSING.contacts[0].model_copy(update={"striker": "V2", "struck": "V2"})
+    behavior = CROSSING.model_copy(update={"contacts": (CROSSING.contacts[0], contact)})
+    with pytest.raises(InvalidOutput, match="cannot strike itself") as fault:
+        compile_scenario(behavior, crossroads())
+    (finding,) = fault.value.findings
+    names = {name: tuple(a.id for a in behavior.actors if a.id != name) for name in (a.id for a in behavior.actors)}
+    assert finding.holds == (
+        Hold(items="contacts", at=1, either=tuple({"striker": (k,), "struck": v} for k, v in names.items())),
+    )
