@@ -115,7 +115,7 @@ def _without_road(crash: Crash, sentences: Sentences) -> Sentences:
 
 def _prior(crash: Crash, rng: Random) -> Targets:
     """What would be answered to this crash had somebody told a part of it: the distribution without context."""
-    facts = drawn_facts(crash, True, True, False) | {"light", "weather", "surface"}
+    facts = drawn_facts(crash, True, True, bool(crash.accesses)) | {"light", "weather", "surface"}
     facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
     targets = Targets(crash, {fact for fact in sorted(facts) if rng.random() < 0.8})
     targets.flat = 0.7
