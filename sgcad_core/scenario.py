@@ -75,12 +75,9 @@ def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
 
 def _another(place: int, ids: list[str]) -> tuple[Hold, ...]:
     """Whoever strikes, somebody else is struck."""
-    either = tuple({"striker": (name,), "struck": others} for name in ids if (others := _but(name, ids)))
-    return (Hold(items="contacts", at=place, either=either),) if either else ()
-
-
-def _but(name: str, ids: list[str]) -> tuple[str, ...]:
-    return tuple(other for other in dict.fromkeys(ids) if other != name)
+    names = dict.fromkeys(ids)
+    either = tuple({"striker": (name,), "struck": tuple(other for other in names if other != name)} for name in names)
+    return (Hold(items="contacts", at=place, either=either),) if len(names) > 1 else ()
 
 
 def _named(place: int, name: str) -> Hold:

@@ -37,9 +37,8 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     }
     if _legs(crash, told, tied):
         return out
-    stems = {str(leg.bearing % 4) for leg in crash.legs if not crash.is_main(leg.bearing)}
-    out |= {fact for fact in told if fact.partition(".")[0] in BY_AXIS and fact.partition(".")[2] in stems}
-    return out | {"legs", "control"}
+    stems = {leg.bearing % 4 for leg in crash.legs if not crash.is_main(leg.bearing)}
+    return out | {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
 
 
 def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool:
