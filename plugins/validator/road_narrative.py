@@ -7,54 +7,27 @@ attempt. Reads the compiled network; compass is north up.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
+from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.lane_graph import LaneGraph, road_of
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of, turned
+from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
 from sgcad_core.narrative.junction import JunctionFacts
+from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.paths import legs_used
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Compass
 
-MPS_PER_MPH = 0.44704
 AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "northwest-southeast"}
 WORDS = {
     "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
     "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class _Drawn:
-    """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
-
-    id: str
-    forward: int
-    backward: int
-    headings: tuple[float, ...]
-    speeds_mph: tuple[float, ...]
-
-    @property
-    def total(self) -> int:
-        return self.forward + self.backward
-
-    def along(self, way: Compass, tolerance_deg: float, either: bool = False) -> bool:
-        """Whether the forward edge somewhere heads that way (or, with `either`, the other way)."""
-        return any(_near(h, angle_of(way), tolerance_deg, either) for h in self.headings)
-
-    def lanes_towards(self, way: Compass, tolerance_deg: float) -> int:
-        """Lanes of traffic that heads that way; 0 where the road runs otherwise."""
-        if self.along(way, tolerance_deg):
-            return self.forward
-        against = any(_near(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
-        return self.backward if against else 0
 
 
 class RoadNarrative(Validator):
@@ -74,16 +47,16 @@ class RoadNarrative(Validator):
         except InvalidOutput:
             return []
         facts = road_facts(evidence.report.narrative)
-        drawn = _drawn(graph)
+        drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
-            *self._legs(facts.junction, graph), *self._directions(facts, drawn), *self._one_way(facts, drawn),
-            *self._lanes(facts, drawn, bool(evidence.report.diagrams)), *self._limits(facts, drawn),
+            *self._legs(facts.junction, len(legs[0]) if legs else 0), *self._paths(facts, legs, pictured),
+            *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
+            *self._lanes_used(facts, drawn, pictured), *self._limits(facts, drawn),
         ]  # fmt: skip
         return sorted(found, key=lambda f: f.severity != "repair")
 
     # -------------------------------------------------------------- junction
-    def _legs(self, junction: JunctionFacts, graph: LaneGraph) -> Iterator[Finding]:
-        widest = max(_degrees(graph).values(), default=0)
+    def _legs(self, junction: JunctionFacts, widest: int) -> Iterator[Finding]:
         want = {"t": 3, "four_leg": 4}.get(junction.kind)
         if want and junction.stated and widest < want:
             said = "a T-intersection" if want == 3 else "a four-leg intersection"
@@ -98,8 +71,26 @@ class RoadNarrative(Validator):
             remedy = "draw a plain road, unless the diagram shows the junction"
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
 
+    def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
+        """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round."""
+        drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
+        if facts.junction.kind not in ("t", "four_leg", "driveway") or not drawn:
+            return
+        used = legs_used(facts)
+        missing = [leg for leg in used if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
+        if not missing:
+            return
+        legs = tuple(leg.bearing for leg in layout_of_facts(facts).legs)
+        known = set(used) <= set(legs) and (facts.junction.stated or not pictured)
+        holds = (Hold(items="legs", either=({"bearing": legs},), at_least=len(legs)),) if known else ()
+        sides = " and ".join(WORDS[leg] for leg in missing)
+        what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
+        seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
+        remedy = f"lay a leg {sides} of the junction"
+        yield _finding(what, "junction", f"legs {seen}", remedy, holds=holds)
+
     # -------------------------------------------------------------- directions of travel
-    def _directions(self, facts: RoadFacts, drawn: list[_Drawn]) -> Iterator[Finding]:
+    def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         divided = any(road.lanes.divided for road in facts.streets)
         for v in facts.crash.vehicles:
             if not v.heading or not v.heading_stated or v.maneuver == "parked":
@@ -111,13 +102,13 @@ class RoadNarrative(Validator):
             remedy = f"give a road lanes that head {word}; x is east, y is north"
             yield _finding(what, v.id, f"heading {word}", remedy, holds=_carrying(v.heading))
 
-    def _carries(self, road: _Drawn, way: Compass, divided: bool) -> bool:
+    def _carries(self, road: DrawnRoad, way: Compass, divided: bool) -> bool:
         """Whether traffic may head that way; of a divided road one carriageway may stand for both."""
         tolerance = self.tolerance_deg + 15
         return bool(road.lanes_towards(way, tolerance)) or (divided and road.along(way, tolerance, either=True))
 
     # -------------------------------------------------------------- one-way
-    def _one_way(self, facts: RoadFacts, drawn: list[_Drawn]) -> Iterator[Finding]:
+    def _one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         for road in facts.streets:
             here = self._on_axis(road, drawn)
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
@@ -127,12 +118,12 @@ class RoadNarrative(Validator):
                 holds = (Hold(items="legs", key="bearing", values=_ends(road), either=either),)
                 yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=holds)
 
-    def _on_axis(self, road: RoadFact, drawn: list[_Drawn]) -> list[_Drawn]:
+    def _on_axis(self, road: RoadFact, drawn: list[DrawnRoad]) -> list[DrawnRoad]:
         axis = road.axis
         return [d for d in drawn if axis and d.along(axis, self.tolerance_deg, either=True)]
 
     # -------------------------------------------------------------- lanes
-    def _lanes(self, facts: RoadFacts, drawn: list[_Drawn], pictured: bool) -> Iterator[Finding]:
+    def _lanes(self, facts: RoadFacts, drawn: list[DrawnRoad], pictured: bool) -> Iterator[Finding]:
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
@@ -146,8 +137,26 @@ class RoadNarrative(Validator):
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
             yield _finding(what, _ids(here), seen, remedy, holds=(_totals(road, allowed),))
 
+    def _lanes_used(self, facts: RoadFacts, drawn: list[DrawnRoad], pictured: bool) -> Iterator[Finding]:
+        """A lane that a vehicle drives in by its number; a diagram counts them for itself.
+
+        Where the text tells fewer lanes that way in other words, nobody knows which of them is wrong.
+        """
+        told = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
+        for v in facts.crash.vehicles if not pictured else ():
+            if not (v.heading and v.heading_stated and v.lane and v.lane <= told.get(turned(v.heading, 180), 0)):
+                continue
+            most = max((d.lanes_towards(v.heading, self.tolerance_deg) for d in drawn), default=0)
+            if 0 < most < v.lane:
+                what = f"{v.id} travels {WORDS[v.heading]} in lane {v.lane}, but the road has fewer lanes that way"
+                enough = tuple(n for n in SOME_LANES if n >= v.lane)
+                leg = (turned(v.heading, 180),)
+                holds = (Hold(items="legs", key="bearing", values=leg, either=({"lanes_in": enough},)),)
+                remedy = f"give the road at least {v.lane} lanes that head {WORDS[v.heading]}"
+                yield _finding(what, v.id, f"{most} lanes", remedy, holds=holds)
+
     # -------------------------------------------------------------- limits
-    def _limits(self, facts: RoadFacts, drawn: list[_Drawn]) -> Iterator[Finding]:
+    def _limits(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         for road in facts.streets:
             here = self._on_axis(road, drawn)
             limit = road.speed_limit_mph
@@ -206,43 +215,7 @@ def _ends(road: RoadFact) -> tuple[str, ...]:
     return axis, turned(axis, 180)
 
 
-def _near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool) -> bool:
-    turn = abs((heading_rad - way_rad + math.pi) % (2 * math.pi) - math.pi)
-    turn = min(turn, math.pi - turn) if either else turn
-    return math.degrees(turn) <= tolerance_deg
-
-
-def _drawn(graph: LaneGraph) -> list[_Drawn]:
-    """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
-    found = []
-    for road in dict.fromkeys(road_of(edge)[0] for edge in graph.edges):
-        forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
-        edge = forward or backward
-        if edge is None:
-            continue
-        flip = 0.0 if forward is not None else math.pi
-        shape = edge.lanes[0].shape
-        steps = shape[1:] - shape[:-1]
-        headings = {round(math.atan2(y, x) + flip, 3) for x, y in steps}
-        overall = shape[-1] - shape[0]
-        headings.add(round(math.atan2(overall[1], overall[0]) + flip, 3))
-        speeds = tuple(lane.speed_mps / MPS_PER_MPH for lane in edge.car_lanes[:1])
-        lanes = [len(e.car_lanes) if e else 0 for e in (forward, backward)]
-        found.append(_Drawn(road, lanes[0], lanes[1], tuple(sorted(headings)), speeds))
-    return [d for d in found if d.total and d.speeds_mph]
-
-
-def _degrees(graph: LaneGraph) -> dict[str, int]:
-    """Neighbors of every node, over edges that cars may use."""
-    near: dict[str, set[str]] = {}
-    for edge in graph.edges.values():
-        if edge.car_lanes and edge.from_node != edge.to_node:
-            near.setdefault(edge.from_node, set()).add(edge.to_node)
-            near.setdefault(edge.to_node, set()).add(edge.from_node)
-    return {node: len(others) for node, others in near.items()}
-
-
-def _ids(roads: list[_Drawn]) -> str:
+def _ids(roads: list[DrawnRoad]) -> str:
     return "roads " + ", ".join(d.id for d in roads[:6])
 
 

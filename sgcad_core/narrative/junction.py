@@ -26,13 +26,15 @@ JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
 @dataclass(frozen=True)
 class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
-    legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion)."""
+    legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
+    the text says by compass where the stem lies."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
     control: Control = "none"
     stopped: tuple[Compass, ...] = ()
     stated: bool = False
+    stem_stated: bool = False
     notes: tuple[str, ...] = field(default=())
 
 
@@ -63,8 +65,11 @@ def junction_of(
     halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
     if kind == "four_leg":
         return JunctionFacts(kind, None, control, halted, stated)
-    stem = _stem(kind, story, vehicles, roads, halted)
-    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated)
+    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _OFF_ROAD), None)
+    said = _stem_told(story, vehicles, lead, only_compass=True)
+    said = None if said and _contradicted(said, vehicles) else said
+    stem = said or _stem(kind, story, vehicles, roads, halted, lead)
+    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated, said is not None)
 
 
 # ------------------------------------------------------------------ kind
@@ -157,13 +162,10 @@ def _stem(
     vehicles: Sequence[VehicleFacts],
     roads: Sequence[GatheredRoad],
     halted: Sequence[Compass],
+    lead: Compass | None,
 ) -> Compass | None:
-    """Where the side leg lies: as told, else on the side that the vehicles' paths need, else right of V1."""
-    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _OFF_ROAD), None)
+    """Where a side leg lies that no compass word tells: on the side that the vehicles' paths need, else right of V1."""
     main = next((r.axis for r in roads if r.axis and r.kind not in ("driveway", "ramp") and not r.cross), None)
-    told = _stem_told(story, vehicles, lead, only_compass=True)
-    if told and not _contradicted(told, vehicles):
-        return told
     from_paths = _stem_of_paths(vehicles, halted, main if kind == "driveway" else None)
     if from_paths:
         return from_paths

@@ -6,11 +6,14 @@ from plugins.road_writer.template import Template
 from plugins.validator.road_narrative import RoadNarrative, allowed_totals
 from sgcad_core.formats.netconvert import compile_network
 from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.holds import narrowed
 from sgcad_core.layout import road_spec
 from sgcad_core.narrative.roads import road_facts
+from sgcad_core.prompts import answer_schema
 from sgcad_core.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.specs import Leg, RoadLayout
 
+ANSWER = answer_schema(RoadLayout)
 CROSSING = (
     "V1 was traveling north on a four-lane, two-way road with a posted speed limit of 45 mph and was approaching "
     "a four-leg intersection. V2 was traveling west on the intersecting two-lane road. "
@@ -74,6 +77,60 @@ def test_lanes_told_way_by_way_are_held_against_their_own_road_even_beside_a_dia
 
 def test_a_junction_without_the_named_legs_is_found() -> None:
     assert any("four-leg intersection" in what for what in repairs(CROSSING, leg("N", 2, 2), leg("S", 2, 2)))
+
+
+WAITING = (
+    "V1 was northbound on a two-lane road and stopped, waiting to make a left turn into a private driveway. V2 was "
+    "traveling north behind V1. The front of V2 struck the rear of V1."
+)
+FROM_THE_SIDE = (
+    "This crash occurred at a T-intersection. V1 was traveling eastbound on the two-lane main road. The side street "
+    "joins it from the north. The front of V1 struck the left side of V2."
+)
+
+
+@pytest.mark.parametrize(("text", "right", "wrong"), [
+    (T, "SNE", "SNW"), (WAITING, "SNW", "SNE"), (FROM_THE_SIDE, "WEN", "WES"), (CROSSING, "SNWE", "SNW"),
+])  # fmt: skip
+def test_a_junction_laid_the_wrong_way_round_is_found_and_held_to_the_legs_that_vehicles_use(
+    text: str, right: str, wrong: str
+) -> None:
+    def sides(bearings: str) -> list[Finding]:
+        legs = [leg(bearing, 2 - (bearing in "EW"), 2 - (bearing in "EW")) for bearing in bearings]
+        return [f for f in findings(text, network(*legs)) if "come from or turn into" in f.what]
+
+    assert sides(right) == []
+    (found,) = sides(wrong)
+    (hold,) = found.holds
+    assert set(hold.either[0]["bearing"]) == set(right)
+    assert hold.at_least == len(right)
+    legs = narrowed(ANSWER, [hold])["anyOf"][0]["properties"]["legs"]
+    assert legs["minItems"] == len(right)
+    assert set(legs["items"]["properties"]["bearing"]["enum"]) == set(right)
+
+
+def test_beside_a_diagram_an_unnamed_junction_is_not_held_to_legs_that_only_the_text_suggests() -> None:
+    text = T.replace(", approaching the T-intersection,", " at the intersection")
+    (found,) = findings(text, network(leg("S", 1, 1), leg("N", 1, 1), leg("W", 1, 1)), pictured=True)
+    assert found.holds == ()
+
+
+def test_a_plain_road_is_not_asked_for_the_legs_of_a_junction_that_nobody_names() -> None:
+    assert repairs(WAITING.replace(" into a private driveway", ""), leg("N", 1, 1), leg("S", 1, 1)) == []
+
+
+def test_a_lane_number_beyond_the_road_is_found_and_held_where_no_diagram_counts_lanes() -> None:
+    text = "V1 was traveling north in lane three. V2 was traveling north behind V1 and struck the rear of V1."
+    legs = (leg("N", 2, 2), leg("S", 2, 2))
+    assert repairs(text, *legs, pictured=True) == []
+    (found,) = [f for f in findings(text, network(*legs)) if f.severity == "repair"]
+    assert "lane 3" in found.what
+    assert repairs(text, *held([found], *legs), leg("E", 1, 1)) == []
+
+
+def test_a_lane_number_that_the_told_lanes_contradict_is_passed_over() -> None:
+    text = "V1 was traveling north in lane three on a two-lane, two-way road. V2 was traveling south."
+    assert repairs(text, leg("N", 1, 1), leg("S", 1, 1)) == []
 
 
 def test_a_vehicle_without_a_road_is_found() -> None:

@@ -1,0 +1,81 @@
+"""A compiled network as a reader of narratives sees it: roads with lanes each way, headings, limits, legs of junctions.
+
+Reads the lane graph; compass is north up. Knows no narrative.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sgcad_core.formats.lane_graph import LaneGraph, road_of
+from sgcad_core.narrative.compass import angle_of
+from sgcad_core.specs import Compass
+
+MPS_PER_MPH = 0.44704
+
+
+@dataclass(frozen=True)
+class DrawnRoad:
+    """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
+
+    id: str
+    forward: int
+    backward: int
+    headings: tuple[float, ...]
+    speeds_mph: tuple[float, ...]
+
+    @property
+    def total(self) -> int:
+        """Lanes of both directions."""
+        return self.forward + self.backward
+
+    def along(self, way: Compass, tolerance_deg: float, either: bool = False) -> bool:
+        """Whether the forward edge somewhere heads that way (or, with `either`, the other way)."""
+        return any(near(h, angle_of(way), tolerance_deg, either) for h in self.headings)
+
+    def lanes_towards(self, way: Compass, tolerance_deg: float) -> int:
+        """Lanes of traffic that heads that way; 0 where the road runs otherwise."""
+        if self.along(way, tolerance_deg):
+            return self.forward
+        against = any(near(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
+        return self.backward if against else 0
+
+
+def near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool = False) -> bool:
+    """Whether a heading lies within the tolerance of another or, with `either`, of the opposite."""
+    turn = abs((heading_rad - way_rad + math.pi) % (2 * math.pi) - math.pi)
+    turn = min(turn, math.pi - turn) if either else turn
+    return math.degrees(turn) <= tolerance_deg
+
+
+def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
+    """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
+    found = []
+    for road in dict.fromkeys(road_of(edge)[0] for edge in graph.edges):
+        forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
+        edge = forward or backward
+        if edge is None:
+            continue
+        flip = 0.0 if forward is not None else math.pi
+        shape = edge.lanes[0].shape
+        steps = shape[1:] - shape[:-1]
+        headings = {round(math.atan2(y, x) + flip, 3) for x, y in steps}
+        overall = shape[-1] - shape[0]
+        headings.add(round(math.atan2(overall[1], overall[0]) + flip, 3))
+        speeds = tuple(lane.speed_mps / MPS_PER_MPH for lane in edge.car_lanes[:1])
+        lanes = [len(e.car_lanes) if e else 0 for e in (forward, backward)]
+        found.append(DrawnRoad(road, lanes[0], lanes[1], tuple(sorted(headings)), speeds))
+    return [d for d in found if d.total and d.speeds_mph]
+
+
+def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
+    """Bearings of the legs of every node, seen from it (radians), over edges that cars may use; most legs first."""
+    legs: dict[str, dict[str, float]] = {}
+    for edge in graph.edges.values():
+        if edge.car_lanes and edge.from_node != edge.to_node:
+            shape = edge.lanes[0].shape
+            (dx, dy), (ex, ey) = shape[1] - shape[0], shape[-2] - shape[-1]
+            legs.setdefault(edge.from_node, {})[edge.to_node] = math.atan2(dy, dx)
+            legs.setdefault(edge.to_node, {})[edge.from_node] = math.atan2(ey, ex)
+    return sorted((tuple(found.values()) for found in legs.values()), key=len, reverse=True)

@@ -1,0 +1,44 @@
+"""The legs of a junction that the told paths of its vehicles use. Knows no road network format."""
+
+from __future__ import annotations
+
+from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.facts import VehicleFacts
+from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.roads import RoadFacts
+from sgcad_core.specs import Compass, Maneuver
+
+TURNED: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
+"""Clockwise turn of the heading, degrees."""
+OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
+
+
+def legs_used(facts: RoadFacts) -> tuple[Compass, ...]:
+    """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
+
+    One that goes straight on needs no leg ahead: it may have been struck before. The road that a driveway meets goes on
+    to both sides, and a stem lies where the text says.
+    """
+    junction = facts.junction
+    legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []
+    driving = [v for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "parked"]
+    ways = [(v.heading, _meant(v)) for v in driving if v.heading and not _joined(v, facts)]
+    for heading, maneuver in ways:
+        legs.append(turned(heading, 180))
+        legs += [turned(heading, TURNED[maneuver])] if maneuver in TURNED else []
+    if junction.kind == "driveway" and len({axis_of(heading) for heading, _ in ways}) == 1:
+        legs.append(ways[0][0])
+    return tuple(dict.fromkeys(legs))
+
+
+def _meant(v: VehicleFacts) -> Maneuver:
+    """The turn that a vehicle made or, standing or slowing, was about to make; else what it did."""
+    if v.meant and v.maneuver in ("stopped", "slowing"):
+        return v.meant
+    return v.maneuver if v.maneuver_stated else "straight"
+
+
+def _joined(v: VehicleFacts, facts: RoadFacts) -> bool:
+    """Whether the heading of one that came from off the road may be that of the road which it joined."""
+    streets = {road.axis for road in facts.streets}
+    return v.origin in OFF_ROAD and v.heading is not None and axis_of(v.heading) in streets
