@@ -28,6 +28,7 @@ from mini.export import export
 from mini.eye import Eye
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
+from mini.grow import deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
@@ -121,6 +122,7 @@ class Trainer:
             eyes = self._exported(self.options.eyes)
             found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture.", "eye."))}
         masters = self.optimizer.master
+        found = deepened(found, self.model.config.text_config.num_hidden_layers)
         fits = {k: v for k, v in found.items() if v.shape == masters[k].shape or not k.startswith("heads.")}
         with torch.no_grad():
             for key, value in fits.items():

@@ -17,7 +17,7 @@ from mini.generator.grammar import HINT, unmark
 from mini.generator.roads import carriageway, misdrawn
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
-from mini.generator.world import Crash
+from mini.generator.world import Crash, Leg
 from mini.generator.writer import Writer
 
 MODES = {"both": 42.0, "image": 17.0, "text": 25.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
@@ -25,6 +25,9 @@ TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
 CARELESS = 0.15
 """Share of drawings beside a narrative whose lanes are wrong: where both tell lanes, the narrative is to be believed,
 since real drawings differ from made ones and are misread more often than words are."""
+UNUSUAL = 0.2
+"""Share of narratives alone that keep back lanes although there are several."""
+SECOND_THOUGHTS = 4
 Json = dict[str, Any]
 Sentences = list[tuple[int, frozenset[str]]]
 
@@ -68,6 +71,8 @@ def make_report(
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())
+    if mode == "text" and not held_out:
+        crash, narrative, sentences = _worth_telling(rng, length, (crash, narrative, sentences))
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
@@ -97,6 +102,24 @@ def make_report(
         shown,
         doubtful,
     )
+
+
+def _worth_telling(rng: Random, length: float, found: tuple[Crash, str, Sentences]) -> tuple[Crash, str, Sentences]:
+    """A report in which a road that nobody describes is, most often, a plain one: writers mention what is unusual."""
+    for _ in range(SECOND_THOUGHTS):
+        crash, _, sentences = found
+        told = {fact for _, facts in sentences for fact in facts}
+        if rng.random() < UNUSUAL or all(_plain(leg) or f"lanes.{leg.bearing % 4}" in told for leg in crash.legs):
+            break
+        crash = sample_crash(rng)
+        writer = Writer(rng, crash, False, length)
+        found = (crash, *writer.finish(writer.write()))
+    return found
+
+
+def _plain(leg: Leg) -> bool:
+    """A lane each way, or one of a one-way street; or no street at all."""
+    return leg.kind != "road" or max(leg.lanes_in, leg.lanes_out) < 2
 
 
 def _told(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:

@@ -16,10 +16,9 @@ GUESS = 0.25
 """Weight of a value that the evidence does not tell and that has no null."""
 SURE = 1.0
 RARE = 2.0
-"""Of a value that is told and learned late: a curve, a turn lane's use, a speed or its limit, light and weather, kinds
-and maneuvers that are seldom seen."""
-USUAL = {"car", "suv", "pickup", "van", "straight", "stopped", "slowing", "turn_left", "turn_right",
-         "crossing_centerline"}  # fmt: skip
+"""Of a value that is told and learned late: a curve, a speed or its limit, light and weather, and kinds that are
+seldom seen. Not of maneuvers: a model that leans to the rare ones reads them into reports that tell the usual one."""
+USUAL = {"car", "suv", "pickup", "van"}
 CONTACT = 6.0
 
 
@@ -114,14 +113,13 @@ class Targets:
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
-        for key, value, told in (("kind", actor.kind, f"kind.{actor.id}" in known), ("maneuver", actor.maneuver, sure)):
-            if told and value not in USUAL:
-                self.weights[(*path, key)] = RARE
+        if f"kind.{actor.id}" in known and actor.kind not in USUAL:
+            self.weights[(*path, "kind")] = RARE
         for key in ("direction", "length_m", "width_m"):
             self.weights[(*path, key)] = 0.1
         if actor.speed and f"speed.{actor.id}" in known:
             self.weights[(*path, "speed_mph")] = RARE
-        leaves = actor.out is not None and sure and f"heading.{actor.id}" in known
+        leaves = actor.out is not None and actor.leaves(known) and f"heading.{actor.id}" in known
         return {
             "id": actor.id,
             "kind": actor.kind,

@@ -6,6 +6,7 @@ actor on leg b heads towards b + 4. Plain data; knows no text, no drawing and no
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass, field
 from random import Random
 
@@ -60,6 +61,16 @@ class Actor:
     def heading(self) -> int:
         """Where it drives, as a bearing index."""
         return (self.leg + 4) % 8
+
+    @property
+    def meant(self) -> bool:
+        """Whether it stands or slows for a turn, which its maneuver does not say."""
+        return self.purpose.startswith("turn_")
+
+    def leaves(self, told: Set[str]) -> bool:
+        """Whether it takes a leg and these facts say which."""
+        sure = f"man.{self.id}" in told or self.maneuver == "straight"
+        return self.out is not None and sure and (not self.meant or f"exit.{self.id}" in told)
 
 
 @dataclass

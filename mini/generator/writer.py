@@ -229,10 +229,11 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         }.get(actor.maneuver)
         presented = not self.ciren and index not in self.mentions.introduced and self.rng.random() < 0.22
         if options:
-            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            why = self._why(actor.purpose)
+            self.told |= {f"man.{actor.id}"} | ({f"exit.{actor.id}"} if why or not actor.meant else set())
             if presented and actor.maneuver in motion.PRESENTED:
                 options = motion.PRESENTED[actor.maneuver]
-            return self.say(options, index, ahead, why=self._why(actor.purpose))
+            return self.say(options, index, ahead, why=why)
         if self._waits(index):
             return self.say(motion.PRESENTED["waiting"] if presented else motion.APPROACH_WAITING, index, ahead,
                             why=self._why_waiting(actor))  # fmt: skip

@@ -235,3 +235,25 @@ def test_words_are_believed_where_a_drawing_is_careless() -> None:
             assert bool(leg.lanes_out) == bool(drawn.lanes_out)
             assert (told["lanes_in"], told["lanes_out"]) == (leg.lanes_in, leg.lanes_out)
     assert not any(make_report(s, held_out=True, modes={"both": 1.0}).shown for s in range(100))
+
+
+def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
+    plain = {False: 0, True: 0}
+    for report in (make_report(s, length=0.1, modes={"text": 1.0}) for s in range(300)):
+        silent = [leg for leg in report.crash.legs if leg.kind == "road"]
+        silent = [leg for leg in silent if not {f"lanes.{leg.bearing % 4}"} & (report.told | report.doubtful)]
+        for leg in silent:
+            plain[max(leg.lanes_in, leg.lanes_out) == 1] += 1
+    assert 0.65 < plain[True] / sum(plain.values()) < 0.9
+
+
+def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> None:
+    found = {False: 0, True: 0}
+    for report in (make_report(s, length=0.1, modes={"text": 1.0}) for s in range(2000)):
+        answers = report.behavior["actors"] if report.behavior else ()
+        for actor, answer in zip(report.crash.actors, answers, strict=False):
+            if actor.meant and f"man.{actor.id}" in report.told and f"heading.{actor.id}" in report.told:
+                said = f"exit.{actor.id}" in report.told
+                assert (answer["exit_road"] is not None) == said
+                found[said] += 1
+    assert min(found.values()) > 2
