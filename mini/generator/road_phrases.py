@@ -90,7 +90,7 @@ class RoadsMixin:
             ("-lane", "-lane", " lane")
         )
         if leg.lanes_in * leg.lanes_out == 0:
-            return self._one_way(leg, n, word), True
+            return self._one_way(leg, n, word), not turns
         divided = MEDIAN_WORDS.get(leg.median, "")
         divided += NAMED * bool(divided)
         if plain and not self.held_out and rng.random() < 0.3:
@@ -104,7 +104,7 @@ class RoadsMixin:
             else ("two-way", "two-way", "undivided", "two-way, undivided", "not physically divided")
         )
         text = self._counted(n, rng.choice(ways), word)
-        told = even or (leg.twltl and total in (3, 5))
+        told = (even and not turns) or (leg.twltl and total in (3, 5))
         if bracket:
             text, told = f"{text} {self._bracket(leg, legs)}", True
             text += NAMED * (leg.median in words.IN_BRACKETS)

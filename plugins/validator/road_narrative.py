@@ -7,7 +7,7 @@ attempt. Reads the compiled network; compass is north up.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
@@ -15,7 +15,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
+from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import legs_used
@@ -80,14 +80,13 @@ class RoadNarrative(Validator):
         missing = [leg for leg in used if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
         if not missing:
             return
-        legs = tuple(leg.bearing for leg in layout_of_facts(facts).legs)
-        known = set(used) <= set(legs) and (facts.junction.stated or not pictured)
-        holds = (Hold(items="legs", either=({"bearing": legs},), at_least=len(legs)),) if known else ()
+        legs = {leg.bearing for leg in layout_of_facts(facts).legs}
+        known = set(used) <= legs and (facts.junction.stated or not pictured)
         sides = " and ".join(WORDS[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
-        yield _finding(what, "junction", f"legs {seen}", remedy, holds=holds)
+        yield _finding(what, "junction", f"legs {seen}", remedy, holds=_laid(legs) if known else ())
 
     # -------------------------------------------------------------- directions of travel
     def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
@@ -192,6 +191,12 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 def _vague(road: RoadFact, pictured: bool) -> bool:
     """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
     return pictured and len(road.lanes.toward) < 2
+
+
+def _laid(legs: Set[Compass]) -> tuple[Hold, ...]:
+    """Each leg in its place, clockwise from north: a list of which any may be repeated would repeat some."""
+    ordered = sorted(legs, key=COMPASS.index)
+    return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
 
 
 def _carrying(way: Compass) -> tuple[Hold, ...]:
