@@ -171,6 +171,8 @@ class Scenario(Record):
     behavior: BehaviorSpec | None = None
     declared: Contact | None = None
     planned: tuple[Trajectory, ...] = Field((), repr=False)
+    oddity: float = 0.0
+    """How far from ordinary driving the actors must go to meet as declared (`Plan.oddity`)."""
     notes: tuple[str, ...] = ()
 
 
@@ -211,14 +213,18 @@ class Hold(Record):
         return "; ".join(parts)
 
 
+Severity = Literal["repair", "refuse", "doubt", "note"]
+
+
 class Finding(Record):
     """What is wrong, written so that a model (or a person) can act on it.
 
-    severity repair: asked again; refuse: ends the stage as refused; note: kept, nothing happens.
+    severity repair: asked again; refuse: ends the stage as refused; doubt: asked again a few times, then let pass;
+    note: kept, nothing happens.
     """
 
     source: str
-    severity: Literal["repair", "refuse", "note"] = "repair"
+    severity: Severity = "repair"
     what: str
     where: str = ""
     value: str = ""
@@ -265,5 +271,12 @@ class StageOutcome(Record):
     status: Literal["written", "refused", "exhausted"]
     artifact: RoadNetwork | Scenario | None = None
     attempts: tuple[Attempt, ...] = ()
+    kept: int = 0
+    """Number of the attempt that the artifact is from; 0: none is."""
     reason: str = ""
     missing: tuple[str, ...] = ()
+
+    @property
+    def told_by(self) -> Attempt | None:
+        """The attempt whose answer stands: the one kept, else the last."""
+        return self.attempts[self.kept - 1] if self.attempts else None

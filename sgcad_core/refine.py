@@ -31,6 +31,11 @@ from sgcad_core.records import (
 
 MAX_ATTEMPTS = 10
 """Limit of attempts a stage; configs may set fewer."""
+DOUBTFUL_ATTEMPTS = 3
+"""Attempts from the first usable artifact on, of which the least doubtful is taken."""
+
+_ASKING = ("repair", "doubt")
+"""Severities of findings that the writer is asked again for."""
 
 Artifact = RoadNetwork | Scenario
 Write = Callable[[tuple[Finding, ...], Ask, int], Artifact]
@@ -60,9 +65,19 @@ class Turn:
         return sum(f.severity == "repair" for f in self.attempt.findings)
 
     @property
+    def doubts(self) -> int:
+        """Number of findings that a further attempt may do without."""
+        return sum(f.severity == "doubt" for f in self.attempt.findings)
+
+    @property
+    def usable(self) -> bool:
+        """Whether nothing has to be repaired."""
+        return self.artifact is not None and self.refused is None and not self.repairs
+
+    @property
     def final(self) -> bool:
         """Whether the stage ends with it, however many attempts are left."""
-        return self.refused is not None or (self.artifact is not None and not self.repairs)
+        return self.refused is not None or (self.usable and not self.doubts)
 
 
 OnAttempt = Callable[[str, Callable[[], Turn]], Turn]
@@ -140,7 +155,15 @@ class Refinement:
 
     def ended(self, turns: Sequence[Turn]) -> bool:
         """Whether nothing comes after these turns."""
-        return bool(turns) and (len(turns) >= self.limit or turns[-1].final)
+        if not turns or len(turns) >= self.limit or turns[-1].final:
+            return bool(turns)
+        since = next((len(turns) - i for i, turn in enumerate(turns) if turn.usable), 0)
+        return since >= DOUBTFUL_ATTEMPTS or not self._helped(turns[-1])
+
+    def _helped(self, turn: Turn) -> bool:
+        """Whether the next attempt will be another one for its doubts: it is told them, or held to their remedy."""
+        doubts = [f for f in turn.attempt.findings if f.severity == "doubt"]
+        return not turn.usable or self.show_findings or (self.hold_findings and any(f.holds for f in doubts))
 
     def turns(self, earlier: Sequence[Turn] = ()) -> list[Turn]:
         """All turns to the stage's end, going on from earlier ones of the same stage. Raises MissingTool."""
@@ -152,7 +175,7 @@ class Refinement:
     def _next(self, turns: Sequence[Turn]) -> Turn:
         number = len(turns) + 1
         last = turns[-1].attempt if turns else None
-        findings = tuple(f for f in last.findings if f.severity == "repair") if last else ()
+        findings = tuple(f for f in last.findings if f.severity in _ASKING) if last else ()
         repair = repair_text(last.answer, findings) if last and findings and self.show_findings else ""
         holds = _holds(turns) if self.hold_findings else ()
         return self.on_attempt(f"{self.stage}[{number}]", lambda: self._turn(findings, number, repair, holds))
@@ -227,7 +250,8 @@ def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:
     """What all findings tell exactly, each once, newest first: of two that exclude each other the first is kept."""
     found: list[Hold] = []
     for turn in reversed(turns):
-        told = (hold for f in turn.attempt.findings if f.severity == "repair" for hold in f.holds)
+        heard = ("repair", "doubt") if turn.usable else ("repair",)  # a doubt may come of what is to be repaired
+        told = (hold for f in turn.attempt.findings if f.severity in heard for hold in f.holds)
         found += [hold for hold in told if hold not in found]
     return tuple(found)
 
@@ -251,17 +275,20 @@ def _faults(stage: Stage, fault: InvalidOutput) -> tuple[Finding, ...]:
 def outcome_of(stage: Stage, turns: Sequence[Turn]) -> StageOutcome:
     """How a stage with these turns ended."""
     attempts = tuple(turn.attempt for turn in turns)
+    best = min(turns, key=lambda turn: (turn.artifact is None, turn.repairs, turn.doubts))
+    if best.usable:
+        return StageOutcome(
+            stage=stage, status="written", artifact=best.artifact, attempts=attempts, kept=best.attempt.number
+        )
     last = turns[-1]
     if last.refused:
         return StageOutcome(
             stage=stage, status="refused", attempts=attempts, reason=last.refused.reason, missing=last.refused.missing
         )
-    if last.final:
-        return StageOutcome(stage=stage, status="written", artifact=last.artifact, attempts=attempts)
-    best = min(turns, key=lambda turn: (turn.artifact is None, turn.repairs))
     return StageOutcome(
-        stage=stage, status="exhausted", artifact=best.artifact, attempts=attempts, reason=_exhausted(best, len(turns))
-    )
+        stage=stage, status="exhausted", artifact=best.artifact, attempts=attempts,
+        kept=best.attempt.number if best.artifact else 0, reason=_exhausted(best, len(turns)),
+    )  # fmt: skip
 
 
 def _exhausted(best: Turn, count: int) -> str:

@@ -135,16 +135,16 @@ def _collision(scenario: Scenario | None, execution: Execution | None) -> dict[s
 
 
 def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
-    """Grounding of the last attempt's answer fields, nats; keys are "<stage>.<path>"."""
+    """Grounding of the answer fields that stand, nats; keys are "<stage>.<path>"."""
     found: dict[str, float] = {}
     for stage, outcome in outcomes.items():
-        generation = outcome.attempts[-1].generation if outcome.attempts else None
+        generation = outcome.told_by.generation if outcome.told_by else None
         found |= {f"{stage}.{path}": round(v, 4) for path, v in generation.grounding.items()} if generation else {}
     return found
 
 
 def _stage_notes(record: CaseRecord) -> list[str]:
-    last = [outcome.attempts[-1] for outcome in record.outcomes.values() if outcome.attempts]
-    notes = [f.line() for attempt in last for f in attempt.findings if f.severity == "note"]
-    notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in last for hold in attempt.held]
+    told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
+    notes = [f.line() for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")]
+    notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in told for hold in attempt.held]
     return notes + list(record.scenario.notes if record.scenario else ())

@@ -27,6 +27,7 @@ def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork) -> Scenario:
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
         planned=planned.trajectories,
+        oddity=planned.oddity,
         notes=planned.notes,
     )
 

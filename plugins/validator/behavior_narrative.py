@@ -10,22 +10,16 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
+from plugins.validator._courses import NEAR_RAD, UNNUMBERED, approaches, course, held
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
-from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
+from sgcad_core.narrative.ways import Way, apart, degree, ways_of
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
-_NEAR_RAD = math.radians(50)
-_TURN_RAD = math.radians(30)
-"""A change of heading that is a turn."""
-_NUMBERS = range(1, 10)
-_UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
-"""Road users and objects that reports do not number as vehicles."""
-_IDS = (*(f"V{n}" for n in _NUMBERS), *_UNNUMBERED)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 
@@ -92,8 +86,8 @@ def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
     """Behind the places of the numbered vehicles the invented one is something else; before, any that there is."""
     at = next(i for i, actor in enumerate(behavior.actors) if actor.id == name)
     if at >= len(told):
-        return Hold(items="actors", at=at, either=({"id": _UNNUMBERED},))
-    return Hold(items="actors", either=({"id": (*told, *_UNNUMBERED)},))
+        return Hold(items="actors", at=at, either=({"id": UNNUMBERED},))
+    return Hold(items="actors", either=({"id": (*told, *UNNUMBERED)},))
 
 
 # ------------------------------------------------------------------ headings
@@ -115,7 +109,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
 
 def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
     """Ways in that direction, approaches to a junction first."""
-    fitting = [w for w in ways if apart(w.heading_rad, wanted) < _NEAR_RAD]
+    fitting = [w for w in ways if apart(w.heading_rad, wanted) < NEAR_RAD]
     fitting.sort(key=lambda w: -degree(w.to_node, spec))
     named = [f"{w.road.id} {w.direction}" for w in fitting[:4]]
     return f"start it on {' or '.join(named)}" if named else "start it on the road nearest to that direction"
@@ -139,25 +133,15 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     every = ways_of(spec) if spec is not None else ()
     ways = every
     if fact.heading is not None and fact.heading_stated:
-        ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < _NEAR_RAD)
-    starts = [_course(way, every, fact.maneuver) | does for way in ways]
+        ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD)
+    ways = approaches(ways, spec) if spec is not None else ways
+    starts = [course(way, every, fact.maneuver) | does for way in ways]
     choices = [start for start in starts if start.get("exit_road") != ()]
     if not choices:  # the road as written has no such turn: what is left to hold is the start
         choices = [{k: v for k, v in start.items() if k != "exit_road"} for start in starts] or [does]
     if choices == [{}]:
         return ()
-    others = tuple(name for name in _IDS if name != fact.id)
-    return (Hold(items="actors", key="id", values=(fact.id,), others=others, either=tuple(choices)),)
-
-
-def _course(way: Way, ways: tuple[Way, ...], maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
-    """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
-    start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
-    side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
-    if side is None:
-        return start
-    onward = (w.road.id for w in exits(way, ways) if side * turn_of(way, w) > _TURN_RAD)
-    return start | {"exit_road": tuple(onward)}
+    return (held(fact.id, choices),)
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:

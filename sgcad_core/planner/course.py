@@ -52,6 +52,8 @@ class Course:
     roads: tuple[tuple[str, float, float], ...]
     """Road ids with the stations between which they are driven."""
     notes: tuple[str, ...] = ()
+    astray: bool = False
+    """Whether the way that was asked for does not exist: another was taken, or one off the road."""
 
     def on_road(self, road: str) -> tuple[float, float] | None:
         """Stations between which a road is driven."""
@@ -182,7 +184,7 @@ def _measured(graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], 
     return Course(
         path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
         lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
-        limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes,
+        limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, astray=route.astray,
     )  # fmt: skip
 
 

@@ -40,12 +40,16 @@ class Plan(Record):
 
     `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the
     declared areas (where no contact is declared: nobody touches). `notes` say what was changed.
+
+    `oddity` is what bringing the declared pair together cost (`Option.cost`): 0 for ordinary driving, less than 0.5 for
+    other lanes and speeds, more for swerves, skids and spins, and 1 for each of the two that goes where no road leads.
     """
 
     trajectories: tuple[Trajectory, ...]
     contact: ObservedContact | None
     realised: bool
     notes: tuple[str, ...] = ()
+    oddity: float = 0.0
 
 
 def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
@@ -64,7 +68,7 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
     return Plan(
         trajectories=scene.trajectories(order), contact=observed,
         realised=_is_declared(observed, behavior.contacts[0] if behavior.contacts else None),
-        notes=tuple(dict.fromkeys(cast.notes)),
+        notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3),
     )  # fmt: skip
 
 
@@ -95,6 +99,7 @@ class _Cast:
     courses: dict[str, Course]
     tractors: dict[str, str]
     notes: list[str] = field(default_factory=list)
+    oddity: float = 0.0
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
@@ -182,6 +187,7 @@ class _Cast:
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again())
         for option, motion, own in pair:
             self.notes += option.notes
+            self.oddity += option.cost + option.role.course.astray
             scene.add(option.role.actor.id, option.role.actor.kind, motion, own, brakes=False)
         for option, _, own in pair:
             self._couple(scene, option.role.actor.id, own)

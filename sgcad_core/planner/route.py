@@ -55,6 +55,8 @@ class Route(NamedTuple):
     made_up_turn_rad: float = 0.0
     """A turn behind the last way that the network does not have; 0: none."""
     notes: tuple[str, ...] = ()
+    astray: bool = False
+    """Whether the network has no such way: another was taken, or a made-up turn."""
 
 
 def find_route(graph: LaneGraph, actor: Actor) -> Route:
@@ -64,7 +66,9 @@ def find_route(graph: LaneGraph, actor: Actor) -> Route:
     ways, turn, made_up = _onward(graph, start, actor, notes)
     before = _upstream(graph, start)
     shifted = None if turn is None else turn + len(before)
-    return Route((*before, *ways), len(before), shifted, made_up, tuple(notes))
+    reached = actor.exit_road in (None, actor.road, *(way.road for way in ways))
+    astray = start.wrong_way or bool(made_up) or not reached
+    return Route((*before, *ways), len(before), shifted, made_up, tuple(notes), astray)
 
 
 def start_way(graph: LaneGraph, actor: Actor) -> Way:

@@ -1,0 +1,47 @@
+"""Where an actor may start and leave, as a validator's finding holds it. Reads ways of a road spec; knows no report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from sgcad_core.narrative.ways import Way, degree, exits, turn_of
+from sgcad_core.records import Hold
+from sgcad_core.specs import Maneuver, RoadSpec
+
+TURN_RAD = math.radians(30)
+"""A change of heading that is a turn."""
+NEAR_RAD = math.radians(50)
+"""A way within this of a told heading goes that way."""
+_NUMBERS = range(1, 10)
+UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
+"""Road users and objects that reports do not number as vehicles."""
+_IDS = (*(f"V{n}" for n in _NUMBERS), *UNNUMBERED)
+Course = Mapping[str, tuple[str, ...]]
+
+
+def course(way: Way, ways: Sequence[Way], maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
+    """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
+    start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
+    side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
+    if side is None:
+        return start
+    onward = (w.road.id for w in exits(way, tuple(ways)) if side * turn_of(way, w) > TURN_RAD)
+    return start | {"exit_road": tuple(onward)}
+
+
+def straight_on(way: Way, ways: Sequence[Way]) -> str | None:
+    """The road that goes on where a way ends; None on a stem, or where the road has no end."""
+    onward = min(exits(way, tuple(ways)), key=lambda w: abs(turn_of(way, w)), default=None)
+    return onward.road.id if onward and abs(turn_of(way, onward)) <= TURN_RAD else None
+
+
+def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:
+    """Those that lead to a junction, if any do: who is struck beyond it came through it."""
+    return tuple(w for w in ways if degree(w.to_node, spec) > 2) or tuple(ways)
+
+
+def held(name: str, either: Sequence[Course]) -> Hold:
+    """The actor of that name takes one of these courses."""
+    others = tuple(other for other in _IDS if other != name)
+    return Hold(items="actors", key="id", values=(name,), others=others, either=tuple(either))

@@ -1,0 +1,110 @@
+"""Whether the declared contact comes about in ordinary driving, and if not, what was most likely misread.
+
+A behavior whose vehicles must skid, spin or leave the road to meet as declared can be planned, yet a report that tells
+no loss of control seldom means it. What the narrative leaves open (a start, a maneuver) is tried in turn; the finding
+holds further answers to what meets in ordinary driving.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from plugins.validator._courses import NEAR_RAD, Course, approaches, course, held, straight_on
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.lane_graph import LaneGraph
+from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.interfaces import Validator
+from sgcad_core.narrative.compass import angle_of
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.ways import Way, apart, ways_of
+from sgcad_core.planner import plan
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
+
+_LOST = re.compile(
+    r"\b(?:los[et]|losing|loss of|regain\w*) (?:directional |vehicle |\w+ )?control|\bskid|\bslid|\bfishtail|\byaw|"
+    r"\bhydroplan|\bout of control|\bovercorrect", re.I)  # fmt: skip
+"""Somebody did not drive in the ordinary way."""
+
+
+class Meeting(Validator):
+    """Doubts on contacts that only skids, spins and made-up ways bring about."""
+
+    stage: ClassVar[str] = "scenario"
+    odd: Literal["doubt", "note"] = "doubt"
+    odd_from: float = 0.5
+    """Oddity (`Plan.oddity`) from which a contact is doubted."""
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """At most one; nothing where control was lost or the contact does not come about at all."""
+        if not isinstance(artifact, Scenario) or artifact.behavior is None or artifact.declared is None:
+            return []
+        network, text = evidence.network, evidence.report.narrative
+        if artifact.oddity < self.odd_from or _LOST.search(text) or network is None or network.net_xml is None:
+            return []
+        holds: tuple[Hold, ...] = ()
+        if self.odd == "doubt" and network.spec is not None:
+            graph = parse_net(network.net_xml)
+            trials = _Trials(artifact.behavior, artifact.declared, network.spec, graph, self.odd_from)
+            holds = trials.holds(crash_facts(text))
+        what = "the declared contact comes about only by what the report does not tell"
+        remedy = "choose roads, exit roads, maneuvers and sides that meet in ordinary driving"
+        seen = "; ".join(artifact.notes) or f"oddity {artifact.oddity:g}"
+        return [Finding(source="meeting", severity=self.odd, what=what, where="contacts[0]", value=seen, remedy=remedy,
+                        holds=holds)]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Trials:
+    """Other readings of a behavior, planned one by one."""
+
+    behavior: BehaviorSpec
+    contact: Contact
+    spec: RoadSpec
+    graph: LaneGraph
+    odd_from: float
+
+    def holds(self, facts: CrashFacts) -> tuple[Hold, ...]:
+        """What is open and, changed alone, meets in ordinary driving: starts before maneuvers."""
+        pair = [a for a in self.behavior.actors if a.id in (self.contact.striker, self.contact.struck)]
+        known = [(a, v) for a in pair if (v := facts.vehicle(a.id)) is not None]
+        starts = [(a, v, a.maneuver) for a, v in known if not (v.heading_stated and v.heading)]
+        deeds: list[tuple[Actor, VehicleFacts, Maneuver]]
+        deeds = [(a, v, "straight") for a, v in known if not v.maneuver_stated and a.maneuver != "straight"]
+        for actor, fact, maneuver in [*starts, *deeds]:
+            if either := list(self._courses(actor, fact, maneuver)):
+                return (held(actor.id, either),)
+        return ()
+
+    def _courses(self, actor: Actor, fact: VehicleFacts, maneuver: Maneuver) -> Iterator[Course]:
+        """Starts and exits of one actor that meet the other as declared."""
+        ways = ways_of(self.spec)
+        for way in self._starts(ways, fact):
+            found = course(way, ways, maneuver) | {"maneuver": (maneuver,)}
+            onward = straight_on(way, ways)
+            found |= {"exit_road": (onward,)} if maneuver == "straight" and onward else {}
+            if found.get("exit_road") == ():
+                continue
+            changed = actor.model_copy(update={
+                "road": way.road.id, "direction": way.direction, "maneuver": maneuver,
+                "exit_road": found.get("exit_road", (None,))[0], "lane": None,
+            })  # fmt: skip
+            actors = tuple(changed if a.id == actor.id else a for a in self.behavior.actors)
+            if self._ordinary(self.behavior.model_copy(update={"actors": actors})):
+                yield found
+
+    def _starts(self, ways: Sequence[Way], fact: VehicleFacts) -> tuple[Way, ...]:
+        """Ways on which a vehicle may come, as far as its heading is told."""
+        if fact.heading is not None and fact.heading_stated:
+            ways = [w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD]
+        return approaches(ways, self.spec)
+
+    def _ordinary(self, behavior: BehaviorSpec) -> bool:
+        try:
+            planned = plan(behavior, self.graph)
+        except InvalidOutput:
+            return False
+        return planned.realised and planned.oddity < self.odd_from
