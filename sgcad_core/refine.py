@@ -275,7 +275,7 @@ def _faults(stage: Stage, fault: InvalidOutput) -> tuple[Finding, ...]:
 def outcome_of(stage: Stage, turns: Sequence[Turn]) -> StageOutcome:
     """How a stage with these turns ended."""
     attempts = tuple(turn.attempt for turn in turns)
-    best = min(turns, key=lambda turn: (turn.artifact is None, turn.repairs, turn.doubts))
+    best = min(turns, key=lambda turn: (not turn.usable, turn.artifact is None, turn.repairs, turn.doubts))
     if best.usable:
         return StageOutcome(
             stage=stage, status="written", artifact=best.artifact, attempts=attempts, kept=best.attempt.number

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Attempt, Context, CrashReport, Evidence, Finding, Generation, Hold, Query, RoadNetwork
-from sgcad_core.refine import MAX_ATTEMPTS, Refinement, Turn, _holds, refine
+from sgcad_core.refine import DOUBTFUL_ATTEMPTS, MAX_ATTEMPTS, Refinement, Turn, _holds, refine
 
 CONTEXT = Context(narrative="V1 struck V2.")
 REPORT = CrashReport(case="c", narrative="V1 struck V2.")
@@ -183,19 +183,58 @@ def test_every_attempt_runs_through_on_attempt_by_name():
     assert names == ["road[1]", "road[2]", "road[3]"]
 
 
-WORDS = st.lists(st.sampled_from(["repair", "note", "refuse"]), max_size=4)
+def test_doubts_ask_again_and_the_least_doubtful_is_kept():
+    outcome = refine("road", by_log("doubt doubt", "doubt", "doubt doubt", ""), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", DOUBTFUL_ATTEMPTS, 2)
+    assert outcome.artifact == RoadNetwork(log="doubt")
+    assert outcome.told_by is outcome.attempts[1]
+    assert "1. [judge] a doubt (found lanes)" in outcome.attempts[2].prompt
+
+
+@pytest.mark.parametrize(("logs", "attempts", "kept"), [
+    (("doubt", ""), 2, 2), (("repair", "doubt", "repair", "repair", ""), 4, 2), (("doubt", "refuse"), 2, 1),
+    (("doubt", "repair", "doubt doubt", ""), 3, 1),
+])  # fmt: skip
+def test_a_doubted_artifact_stands_where_nothing_better_comes(logs, attempts, kept):
+    outcome = refine("road", by_log(*logs), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", attempts, kept)
+
+
+def test_nobody_asks_again_for_a_doubt_that_the_next_attempt_would_not_hear_of():
+    outcome, _ = Refinement("road", by_log("doubt", ""), [Judge()], evidence, answer, show_findings=False).run()
+    assert (outcome.status, len(outcome.attempts)) == ("written", 1)
+
+
+def test_a_doubt_about_what_is_to_be_repaired_holds_nothing():
+    def turn(*severities):
+        holds = (Hold(items="actors", at=1, either=({"id": ("V1",)},)),)
+        findings = tuple(Finding(source="judge", severity=s, what=s, holds=holds) for s in severities)
+        return Turn(Attempt(stage="scenario", number=1, findings=findings), RoadNetwork())
+
+    assert len(_holds([turn("doubt")])) == 1
+    doubted = turn("doubt").attempt.findings
+    repaired = turn("repair").attempt.findings[0].model_copy(update={"holds": ()})
+    assert _holds([Turn(Attempt(stage="scenario", number=1, findings=(*doubted, repaired)), RoadNetwork())]) == ()
+
+
+WORDS = st.lists(st.sampled_from(["repair", "note", "refuse", "doubt"]), max_size=4)
 
 
 @given(st.lists(WORDS, min_size=1, max_size=12), st.integers(1, 10))
 @hypothesis_settings(max_examples=60, deadline=None)
 def test_the_loop_always_ends_in_one_of_three_ways(words, limit):
     outcome = refine("road", by_log(*map(" ".join, words)), [Judge()], evidence, ask=answer, max_attempts=limit)
-    last = [f.severity for f in outcome.attempts[-1].findings]
+    every = [[f.severity for f in a.findings] for a in outcome.attempts]
+    usable = [i for i, found in enumerate(every, 1) if not {"repair", "refuse"} & set(found)]
+    last = every[-1]
     assert 1 <= len(outcome.attempts) <= limit
     assert [a.number for a in outcome.attempts] == list(range(1, len(outcome.attempts) + 1))
-    expected = "refused" if "refuse" in last else "exhausted" if "repair" in last else "written"
+    expected = "written" if usable else "refused" if "refuse" in last else "exhausted"
     assert outcome.status == expected
-    assert all({"repair"} <= {f.severity for f in a.findings} for a in outcome.attempts[:-1])
+    assert all({"repair", "doubt"} & set(found) for found in every[:-1])
+    if usable:
+        assert outcome.kept == min(usable, key=lambda i: every[i - 1].count("doubt"))
+        assert len(every) < usable[0] + DOUBTFUL_ATTEMPTS
 
 
 class Exact(Validator):

@@ -54,6 +54,32 @@ def bearing(t: Trajectory, k: int) -> float:
     return math.degrees(t.heading_rad[k]) % 360
 
 
+# ------------------------------------------------------------------ oddity
+def test_ordinary_driving_is_not_odd() -> None:
+    _, made = planned(
+        "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "E"), contacts=("V1 front V2 left",)
+    )
+    assert made.oddity == 0
+
+
+def test_sides_that_only_a_skid_can_offer_are_odd() -> None:
+    _, made = planned(
+        "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "N"), contacts=("V1 front V2 left",)
+    )
+    assert made.realised
+    assert made.oddity > 0.5
+
+
+@pytest.mark.parametrize("first", [
+    actor("V1", "turn_left", "S"), actor("V1", "straight", "N", "E", direction="backward"),
+])  # fmt: skip
+def test_a_way_that_does_not_exist_costs_one(first: Actor) -> None:
+    _, made = planned("tee_wide", first, actor("V2", "straight", "S"), contacts=("V2 front V1 back",))
+    there = first.model_copy(update={"maneuver": "straight", "exit_road": None})
+    _, other = planned("tee_wide", there, actor("V2", "straight", "S"), contacts=("V2 front V1 back",))
+    assert made.oddity >= 1 > other.oddity
+
+
 # ------------------------------------------------------------------ areas
 PAIRS = [
     ("four_leg", ("straight", "S"), ("straight", "E"), "V1 front V2 left"),
