@@ -14,7 +14,7 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
-from mini.generator.roads import carriageway, misdrawn
+from mini.generator.roads import beside, carriageway, misdrawn
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash, Leg
@@ -25,6 +25,8 @@ TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
 CARELESS = 0.15
 """Share of drawings beside a narrative whose lanes are wrong: where both tell lanes, the narrative is to be believed,
 since real drawings differ from made ones and are misread more often than words are."""
+UNMENTIONED = 0.4
+"""Share of junctions in drawings that the narrative passes over, of those that the crash has nothing to do with."""
 UNUSUAL = 0.2
 """Share of narratives alone that keep back lanes although there are several."""
 SECOND_THOUGHTS = 4
@@ -66,7 +68,8 @@ def make_report(
     weights = modes or MODES
     mode = rng.choices(list(weights), list(weights.values()))[0]
     crash = sample_crash(rng)
-    writer = Writer(rng, crash, held_out, length)
+    aside = beside(crash) if mode == "both" and not held_out and rng.random() < UNMENTIONED else None
+    writer = Writer(rng, aside or crash, held_out, length)
     control, arrows, access = rng.random() < 0.6, rng.random() < 0.6, bool(crash.accesses)
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)

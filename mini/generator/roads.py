@@ -175,6 +175,17 @@ def carriageway(crash: Crash) -> Crash | None:
     return replace(crash, legs=legs if found == 0 else legs[::-1], one_way=True)
 
 
+def beside(crash: Crash) -> Crash | None:
+    """The same crash on a plain road, as one tells it who passes over the junction beside it; None where it matters."""
+    main = [replace(leg, control="none") for leg in crash.legs if crash.is_main(leg.bearing)]
+    ways = {leg.bearing for leg in main}
+    used = {way for a in crash.actors for way in (a.leg, a.out) if way is not None}
+    told = {a.purpose for a in crash.actors} & {"light", "sign"}
+    if crash.layout not in ("t", "four") or len(main) != 2 or not used <= ways or told:
+        return None
+    return replace(crash, layout="plain", legs=main)
+
+
 def misdrawn(rng: Random, crash: Crash) -> Crash:
     """The crash as a careless hand draws it: other numbers of lanes, no turn lanes, no medians."""
     lanes = [(rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for _ in range(4)]

@@ -13,6 +13,7 @@ from mini.generator import clauses_contact, clauses_motion, clauses_noise, claus
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import families
 from mini.generator.report import MODES, make_report
+from mini.generator.roads import beside
 from mini.generator.world import Crash
 from mini.rows import road_ids
 from sgcad_core.layout import road_spec
@@ -208,7 +209,7 @@ def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
 
 def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:
     found = 0
-    for seed in range(1500):
+    for seed in range(2500):
         report = make_report(seed, length=0.1, modes={"both": 1.0})
         if not report.crash.one_way or "divided" not in report.narrative or len(report.road["legs"]) != 2:
             continue
@@ -257,3 +258,19 @@ def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> No
                 assert (answer["exit_road"] is not None) == said
                 found[said] += 1
     assert min(found.values()) > 2
+
+
+def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over() -> None:
+    found = 0
+    for report in (make_report(s, length=0.1, modes={"both": 1.0}) for s in range(400)):
+        plain = beside(report.crash)
+        if plain is None:
+            continue
+        ways = {leg.bearing for leg in plain.legs}
+        assert len(ways) == 2
+        assert all(way in ways for a in report.crash.actors for way in (a.leg, a.out) if way is not None)
+        silent = not {"layout", "legs"} & report.told and "intersection" not in report.narrative
+        if silent:
+            assert len(report.road["legs"]) > 2
+            found += 1
+    assert found > 5
