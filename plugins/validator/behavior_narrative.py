@@ -16,7 +16,7 @@ from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.ways import Way, apart, degree, ways_of
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
-from sgcad_core.specs import BehaviorSpec, Contact, Maneuver, RoadSpec
+from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
@@ -28,9 +28,10 @@ class BehaviorNarrative(Validator):
     """Compares a behavior spec with the narrative's stated facts."""
 
     stage: ClassVar[str] = "scenario"
+    version: ClassVar[str] = "2"
 
     areas: Literal["repair", "note"] = "repair"
-    """Severity where the declared sides differ from both told sides."""
+    """Severity where a declared side is none that the text allows."""
     maneuvers: Literal["repair", "note"] = "repair"
     """Severity where a told turn, stop or straight course is missed."""
 
@@ -166,15 +167,20 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
         yield _finding(f"the report's first contact is between {told.striker} and {told.struck}", "contacts[0]",
                        f"{said.striker} and {said.struck}", _declare(told), holds=_first(told))  # fmt: skip
     elif _sides(said) != _sides(told):
-        sure = severity if told.areas_stated and _both_differ(said, told) else "note"
+        sure = severity if any(side not in _allowed(told)[name] for name, side in _sides(said).items()) else "note"
         yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
                        _declare(told), sure, _first(told))  # fmt: skip
 
 
 def _first(told: ContactFacts) -> tuple[Hold, ...]:
-    sides = {"striker_area": (told.striker_area,), "struck_area": (told.struck_area,)} if told.areas_stated else {}
+    sides = {"striker_area": told.striker_may, "struck_area": told.struck_may}
     pair = {"striker": (told.striker,), "struck": (told.struck,)}
     return (Hold(items="contacts", at=0, either=(pair | sides,)),)
+
+
+def _allowed(told: ContactFacts) -> dict[str, tuple[Area, ...]]:
+    """Sides of each that the words allow: "left front" may be either."""
+    return {told.striker: told.striker_may, told.struck: told.struck_may}
 
 
 def _acted(told: ContactFacts, behavior: BehaviorSpec) -> bool:
@@ -183,14 +189,6 @@ def _acted(told: ContactFacts, behavior: BehaviorSpec) -> bool:
 
 def _sides(contact: Contact | ContactFacts) -> dict[str, str]:
     return {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
-
-
-def _both_differ(said: Contact, told: ContactFacts) -> bool:
-    """A side that is simply another one; front against a corner's flank is no contradiction."""
-    mine, theirs = _sides(said), _sides(told)
-    opposite = {"left": "right", "right": "left", "front": "back", "back": "front"}
-    wrong = [v for v in mine if mine[v] != theirs.get(v)]
-    return len(wrong) == 2 or any(theirs.get(v) == opposite[mine[v]] for v in wrong)
 
 
 def _described(contact: Contact | ContactFacts) -> str:

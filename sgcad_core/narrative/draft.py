@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.motion import Motion
@@ -31,6 +31,9 @@ class Draft:
     blows: tuple[Blow, ...]
 
 
+AREAS: tuple[Area, ...] = get_args(Area)
+
+
 class Joined(NamedTuple):
     """A contact with all areas; whether both areas (and no corner), and whether the contact itself was told."""
 
@@ -40,6 +43,9 @@ class Joined(NamedTuple):
     struck_area: Area
     areas_told: bool
     told: bool
+    striker_may: tuple[Area, ...] = AREAS
+    """Sides that the words allow: both of a corner, all where none is told."""
+    struck_may: tuple[Area, ...] = AREAS
 
 
 @dataclass

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from sgcad_core.narrative.clauses import segments, tell
 from sgcad_core.narrative.conditions import conditions
 from sgcad_core.narrative.contact import blows
-from sgcad_core.narrative.draft import Draft, Settled, end_of
+from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
@@ -72,6 +72,9 @@ class ContactFacts:
     """Whether the text names both sides, and no corner."""
     stated: bool = True
     """False: the pair is inferred, the text tells no contact."""
+    striker_may: tuple[Area, ...] = AREAS
+    """Sides that the text allows: both of a corner, all four where it names none."""
+    struck_may: tuple[Area, ...] = AREAS
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from sgcad_core.narrative.compass import between
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.draft import TURN_DEG, Draft, Joined, Settled, apart, end_of, side_hit
+from sgcad_core.narrative.draft import AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, side_hit
+from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area
 
 _SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
@@ -30,7 +31,13 @@ def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
     area_a, area_b = complete_areas(out, a, b, area_a, area_b)
     if area_b == "front" and area_a != "front":
         a, b, area_a, area_b = b, a, area_b, area_a
-    return Joined(a, b, area_a, area_b, told, True)
+    may = {blow.actor: _allowed(blow.actor_area), blow.other: _allowed(blow.other_area)}
+    return Joined(a, b, area_a, area_b, told, True, may[a], may[b])
+
+
+def _allowed(zone: Zone | None) -> tuple[Area, ...]:
+    """Sides that a phrase may mean."""
+    return tuple(area for area in AREAS if area in zone.split("/")) if zone else AREAS
 
 
 def _less_of_a_striker(out: Settled, a: str, b: str) -> bool:

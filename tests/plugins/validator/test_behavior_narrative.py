@@ -166,3 +166,26 @@ def test_an_invented_vehicle_behind_the_numbered_ones_becomes_something_else() -
     (hold,) = invented.holds
     assert hold.at == 2
     assert not {name for name in hold.either[0]["id"] if str(name).startswith("V")}
+
+
+CORNER = TEXT.replace("the right side of V2", "the right front of V2")
+
+
+@pytest.mark.parametrize(("side", "severity"), [
+    ("right", None), ("front", "note"), ("left", "repair"), ("back", "repair"),
+])  # fmt: skip
+def test_a_corner_may_be_either_of_its_sides_and_no_other(side: str, severity: str | None) -> None:
+    found = [f for f in _found(_contact(struck_area=side), CORNER) if "sides" in f.what]
+    assert [f.severity for f in found] == ([severity] if severity else [])
+    for finding in found:
+        (hold,) = finding.holds
+        assert set(hold.either[0]["struck_area"]) == {"right", "front"}
+        assert hold.either[0]["striker_area"] == ("front",)
+
+
+@pytest.mark.parametrize(("said", "may"), [
+    ("the left rear of V2", {"left", "back"}), ("the rear of V2", {"back"}), ("V2", {"front", "left", "right", "back"}),
+])  # fmt: skip
+def test_facts_keep_which_sides_the_words_allow(said: str, may: set[str]) -> None:
+    (contact,) = crash_facts(TEXT.replace("the right side of V2", said)).contacts
+    assert set(contact.struck_may if contact.struck == "V2" else contact.striker_may) == may
