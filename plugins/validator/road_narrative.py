@@ -52,7 +52,7 @@ class RoadNarrative(Validator):
         found = [
             *self._legs(facts.junction, len(legs[0]) if legs else 0), *self._paths(facts, legs, pictured),
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
-            *self._lanes_used(facts, drawn, pictured), *self._limits(facts, drawn),
+            *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
         ]  # fmt: skip
         return sorted(found, key=lambda f: f.severity != "repair")
 
@@ -137,23 +137,26 @@ class RoadNarrative(Validator):
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
             yield _finding(what, _ids(here), seen, remedy, holds=(_totals(road, allowed),))
 
-    def _lanes_used(self, facts: RoadFacts, drawn: list[DrawnRoad], pictured: bool) -> Iterator[Finding]:
-        """A lane that a vehicle drives in by its number; a diagram counts them for itself.
+    def _lanes_one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+        """Lanes of one direction: those that the text counts, and at least as many as the lane that one drives in.
 
-        Where the text tells fewer lanes that way in other words, nobody knows which of them is wrong.
+        Where the layout that the rules read has other lanes there, the text tells two things, and nobody knows which of
+        them is wrong.
         """
-        told = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
-        for v in facts.crash.vehicles if not pictured else ():
-            if not (v.heading and v.heading_stated and v.lane and v.lane <= told.get(turned(v.heading, 180), 0)):
-                continue
-            most = max((d.lanes_towards(v.heading, self.tolerance_deg) for d in drawn), default=0)
-            if 0 < most < v.lane:
-                what = f"{v.id} travels {WORDS[v.heading]} in lane {v.lane}, but the road has fewer lanes that way"
-                enough = tuple(n for n in SOME_LANES if n >= v.lane)
-                leg = (turned(v.heading, 180),)
-                holds = (Hold(items="legs", key="bearing", values=leg, either=({"lanes_in": enough},)),)
-                remedy = f"give the road at least {v.lane} lanes that head {WORDS[v.heading]}"
-                yield _finding(what, v.id, f"{most} lanes", remedy, holds=holds)
+        read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
+        told = [(way, n, n) for road in facts.streets if _adds_up(road) for way, n in road.ways]
+        driven = [v for v in facts.crash.vehicles if v.heading_stated]
+        told += [(v.heading, v.lane, max(SOME_LANES)) for v in driven if v.heading and v.lane]
+        for way, least, most in told:
+            approach = turned(way, 180)
+            there = max((d.lanes_towards(way, self.tolerance_deg) for d in drawn), default=0)
+            if there and not least <= there <= most and least <= read.get(approach, 0) <= most:
+                said = f"{least}" if least == most else f"at least {least}"
+                what = f"the road has {said} lanes that head {WORDS[way]} in the report"
+                enough = tuple(n for n in SOME_LANES if least <= n <= most)
+                holds = (Hold(items="legs", key="bearing", values=(approach,), either=({"lanes_in": enough},)),)
+                remedy = f"give it {said} lanes towards the crash on the leg {WORDS[approach]} of it"
+                yield _finding(what, f"leg {approach}", f"{there} lanes", remedy, holds=holds)
 
     # -------------------------------------------------------------- limits
     def _limits(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
@@ -187,6 +190,12 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
     fewer = lanes.center_turn_lane or (_vague(road, pictured) and named % 2)
     return set(range(max(1, named - fewer), named + extra + 1))
+
+
+def _adds_up(road: RoadFact) -> bool:
+    """Whether lanes told way by way are those of the told total, a center lane counted or not."""
+    named, total = sum(road.lanes.toward.values()), road.lanes.total
+    return total is None or (total - named in (0, 1) if len(road.lanes.toward) > 1 else named < total)
 
 
 def _vague(road: RoadFact, pictured: bool) -> bool:

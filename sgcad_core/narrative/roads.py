@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.narrative.clauses import Told, tell
-from sgcad_core.narrative.compass import between, compass_of, turned
+from sgcad_core.narrative.compass import COMPASS, between, compass_of, turned
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.junction import JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import BOUND, LaneFacts
@@ -37,6 +37,11 @@ class RoadFact:
     curve: tuple[tuple[Compass, Literal["left", "right"]], ...] = ()
     """(travel direction, side) of each bend told."""
     rural: bool = False
+
+    @property
+    def ways(self) -> tuple[tuple[Compass, int], ...]:
+        """Lanes told of one direction, by the direction of travel."""
+        return tuple((way, self.lanes.toward[way]) for way in COMPASS if way in self.lanes.toward)
 
 
 @dataclass(frozen=True)

@@ -122,8 +122,26 @@ def test_a_lane_number_beyond_the_road_is_found_and_held_where_no_diagram_counts
     legs = (leg("N", 2, 2), leg("S", 2, 2))
     assert repairs(text, *legs, pictured=True) == []
     (found,) = [f for f in findings(text, network(*legs)) if f.severity == "repair"]
-    assert "lane 3" in found.what
+    assert "at least 3 lanes that head north" in found.what
     assert repairs(text, *held([found], *legs), leg("E", 1, 1)) == []
+
+
+def test_lanes_told_of_one_direction_are_held_on_its_approach() -> None:
+    text = (
+        "This crash occurred at a T-intersection. The southbound lanes consisted of a right-turn lane, two through "
+        "lanes and a left-turn lane. V1 was traveling east and turned right. V2 was traveling south."
+    )
+    legs = (leg("N", 2, 2), leg("S", 2, 2), leg("W", 1, 1))
+    found = [f for f in findings(text, network(*legs)) if "4 lanes that head south" in f.what]
+    assert [hold.values for f in found for hold in f.holds] == [("N",)]
+    assert held(found, *legs)[0].lanes_in == 4
+    assert [f for f in findings(text, network(*held(found, *legs))) if "that head south" in f.what] == []
+
+
+def test_lanes_of_one_direction_that_do_not_add_up_are_passed_over() -> None:
+    text = "V1 was traveling north on a five-lane road with two southbound lanes and one northbound lane. V2 followed V1."
+    found = findings(text, network(leg("N", 2, 3), leg("S", 3, 2)))
+    assert not [f for f in found if "that head" in f.what]
 
 
 def test_a_lane_number_that_the_told_lanes_contradict_is_passed_over() -> None:
