@@ -139,7 +139,7 @@ def test_lanes_told_of_one_direction_are_held_on_its_approach() -> None:
 
 
 def test_lanes_of_one_direction_that_do_not_add_up_are_passed_over() -> None:
-    text = "V1 was traveling north on a five-lane road with two southbound lanes and one northbound lane. V2 followed V1."
+    text = "V1 was traveling north on a five-lane road with two southbound lanes and one northbound lane."
     found = findings(text, network(leg("N", 2, 3), leg("S", 3, 2)))
     assert not [f for f in found if "that head" in f.what]
 
