@@ -42,20 +42,21 @@ def attempt_task(work: Callable[[], Turn], box: list[Turn]) -> State[Any]:
 
 
 @task(name="attempt", cache_policy=NO_CACHE, persist_result=False)
-def reported_attempt(findings: int, seconds: float, message: str) -> State[Any]:
+def reported_attempt(name: str, seconds: float, message: str) -> State[Any]:
     """An attempt that ran in a worker process, shown afterwards."""
-    return Completed(name="Repair" if findings else "Accepted", message=f"{seconds:.2f} s. {message}")
+    return Completed(name=name, message=f"{seconds:.2f} s. {message}")
 
 
 def attempt_state(attempt: Attempt) -> State[Any]:
     """Completed either way: to be sent back is an attempt's ordinary end."""
-    findings, message = _told(attempt)
-    return Completed(name="Repair" if findings else "Accepted", message=message)
+    name, message = _told(attempt)
+    return Completed(name=name, message=message)
 
 
-def _told(attempt: Attempt) -> tuple[int, str]:
-    lines = [f.line() for f in attempt.findings if f.severity != "note"]
-    return len(lines), "; ".join(lines)[:500]
+def _told(attempt: Attempt) -> tuple[str, str]:
+    found = [f for f in attempt.findings if f.severity != "note"]
+    name = "Repair" if any(f.severity != "doubt" for f in found) else "Doubted" if found else "Accepted"
+    return name, "; ".join(f.line() for f in found)[:500]
 
 
 def as_task(name: str, work: Callable[[], Turn]) -> Turn:
@@ -103,9 +104,9 @@ def case_task(board: Board) -> Any:
 
 def _report_attempts(ending: Ending) -> None:
     for attempt in ending.attempts:
-        findings, message = _told(attempt)
+        state, message = _told(attempt)
         name = f"{attempt.stage}[{attempt.number}]"
-        reported_attempt.with_options(task_run_name=name)(findings, attempt.seconds, message)
+        reported_attempt.with_options(task_run_name=name)(state, attempt.seconds, message)
 
 
 def _state(ending: Ending) -> State[Any]:

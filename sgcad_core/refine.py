@@ -142,7 +142,8 @@ class Refinement:
     def run(self) -> tuple[StageOutcome, tuple[Call, ...]]:
         """Refine until written, refused or exhausted; also every model call, in order.
 
-        An exhausted stage's artifact is that of the attempt with the fewest repair findings (the first of
+        Of usable attempts the least doubtful is written, though a later one asked for repair or refused. An exhausted
+        stage's artifact is that of the attempt with the fewest repair findings (the first of
         equals), None if no attempt gave one. Raises MissingTool from a validator.
         """
         turns = self.turns()

@@ -37,8 +37,8 @@ def straight_on(way: Way, ways: Sequence[Way]) -> str | None:
 
 
 def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:
-    """Those that lead to a junction, if any do: who is struck beyond it came through it."""
-    return tuple(w for w in ways if degree(w.to_node, spec) > 2) or tuple(ways)
+    """Without those that begin at a junction and lead away, if there are others: who drives there came through it."""
+    return tuple(w for w in ways if degree(w.from_node, spec) <= 2 or degree(w.to_node, spec) > 2) or tuple(ways)
 
 
 def held(name: str, either: Sequence[Course]) -> Hold:

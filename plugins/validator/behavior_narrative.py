@@ -135,7 +135,7 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     ways = every
     if fact.heading is not None and fact.heading_stated:
         ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD)
-    ways = approaches(ways, spec) if spec is not None else ways
+    ways = approaches(ways, spec) if spec is not None and fact.maneuver != "parked" else ways
     starts = [course(way, every, fact.maneuver) | does for way in ways]
     choices = [start for start in starts if start.get("exit_road") != ()]
     if not choices:  # the road as written has no such turn: what is left to hold is the start

@@ -25,8 +25,9 @@ from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _LOST = re.compile(
-    r"\b(?:los[et]|losing|loss of|regain\w*) (?:directional |vehicle |\w+ )?control|\bskid|\bslid|\bfishtail|\byaw|"
-    r"\bhydroplan|\bout of control|\bovercorrect", re.I)  # fmt: skip
+    r"\b(?:los[et]|losing|loss of|regain\w*) (?:\w+ ){0,3}(?:control|traction)|(?<!no )\bskid(?! mark)|"
+    r"\bslid(?:e|ing)?\b(?! door)|\bfishtail|\byaw|\bhydroplan|\bout of control|\bovercorrect|\bjackknif|"
+    r"\bspun out", re.I)  # fmt: skip
 """Somebody did not drive in the ordinary way."""
 
 
@@ -37,16 +38,20 @@ class Meeting(Validator):
     odd: Literal["doubt", "note"] = "doubt"
     odd_from: float = 0.5
     """Oddity (`Plan.oddity`) from which a contact is doubted."""
+    try_others: bool = False
+    """Plan what the narrative leaves open and hold what meets in ordinary driving; of use with `hold_findings` only."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """At most one; nothing where control was lost or the contact does not come about at all."""
+        """At most one; nothing where control was lost, or unless two vehicles meet as declared."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or artifact.declared is None:
+            return []
+        if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
             return []
         network, text = evidence.network, evidence.report.narrative
         if artifact.oddity < self.odd_from or _LOST.search(text) or network is None or network.net_xml is None:
             return []
         holds: tuple[Hold, ...] = ()
-        if self.odd == "doubt" and network.spec is not None:
+        if self.try_others and network.spec is not None:
             graph = parse_net(network.net_xml)
             trials = _Trials(artifact.behavior, artifact.declared, network.spec, graph, self.odd_from)
             holds = trials.holds(crash_facts(text))
@@ -85,26 +90,26 @@ class _Trials:
         for way in self._starts(ways, fact):
             found = course(way, ways, maneuver) | {"maneuver": (maneuver,)}
             onward = straight_on(way, ways)
-            found |= {"exit_road": (onward,)} if maneuver == "straight" and onward else {}
-            if found.get("exit_road") == ():
-                continue
-            changed = actor.model_copy(update={
-                "road": way.road.id, "direction": way.direction, "maneuver": maneuver,
-                "exit_road": found.get("exit_road", (None,))[0], "lane": None,
-            })  # fmt: skip
-            actors = tuple(changed if a.id == actor.id else a for a in self.behavior.actors)
-            if self._ordinary(self.behavior.model_copy(update={"actors": actors})):
-                yield found
+            exits: tuple[str | None, ...] = found.get("exit_road", (onward,))
+            same = (actor.road, actor.direction, actor.maneuver) == (way.road.id, way.direction, maneuver)
+            met = [] if same else [road for road in exits if self._meet(actor, way, maneuver, road)]
+            if met:
+                yield found | ({"exit_road": tuple(road for road in met if road)} if all(met) else {})
+
+    def _meet(self, actor: Actor, way: Way, maneuver: Maneuver, exit_road: str | None) -> bool:
+        """Whether the pair meets in ordinary driving with one actor on another course."""
+        changed = actor.model_copy(update={
+            "road": way.road.id, "direction": way.direction, "maneuver": maneuver, "exit_road": exit_road, "lane": None,
+        })  # fmt: skip
+        actors = tuple(changed if a.id == actor.id else a for a in self.behavior.actors)
+        try:
+            planned = plan(self.behavior.model_copy(update={"actors": actors}), self.graph)
+        except InvalidOutput:
+            return False
+        return planned.realised and planned.oddity < self.odd_from
 
     def _starts(self, ways: Sequence[Way], fact: VehicleFacts) -> tuple[Way, ...]:
         """Ways on which a vehicle may come, as far as its heading is told."""
         if fact.heading is not None and fact.heading_stated:
             ways = [w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD]
         return approaches(ways, self.spec)
-
-    def _ordinary(self, behavior: BehaviorSpec) -> bool:
-        try:
-            planned = plan(behavior, self.graph)
-        except InvalidOutput:
-            return False
-        return planned.realised and planned.oddity < self.odd_from

@@ -82,7 +82,8 @@ class RoadNarrative(Validator):
         if not missing:
             return
         legs = {leg.bearing for leg in layout_of_facts(facts).legs}
-        known = set(used) <= legs and (facts.junction.stated or not pictured)
+        sure = set(used) if pictured else {*used, *(turned(leg, 180) for leg in used)}  # roads go on, stems are told
+        known = set(used) <= legs <= sure
         sides = " and ".join(WORDS[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
@@ -149,14 +150,15 @@ class RoadNarrative(Validator):
         told += [(v.heading, v.lane, max(SOME_LANES)) for v in driven if v.heading and v.lane]
         for way, least, most in told:
             approach = turned(way, 180)
-            there = max((d.lanes_towards(way, self.tolerance_deg) for d in drawn), default=0)
-            if there and not least <= there <= most and least <= read.get(approach, 0) <= most:
+            there = {d.lanes_towards(way, self.tolerance_deg) for d in drawn} - {0}
+            fits = any(least <= n <= most for n in there)  # on whichever side of the junction
+            if there and not fits and least <= read.get(approach, 0) <= most:
                 said = f"{least}" if least == most else f"at least {least}"
                 what = f"the road has {said} lanes that head {WORDS[way]} in the report"
                 enough = tuple(n for n in SOME_LANES if least <= n <= most)
                 holds = (Hold(items="legs", key="bearing", values=(approach,), either=({"lanes_in": enough},)),)
                 remedy = f"give it {said} lanes towards the crash on the leg {WORDS[approach]} of it"
-                yield _finding(what, f"leg {approach}", f"{there} lanes", remedy, holds=holds)
+                yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds)
 
     # -------------------------------------------------------------- limits
     def _limits(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:

@@ -55,6 +55,16 @@ class AttemptSeen:
         return any(f.severity == "refuse" for f in self.findings)
 
     @property
+    def usable(self) -> bool:
+        """Whether nothing had to be repaired or refused; it may be doubted."""
+        return not any(f.severity in ("repair", "refuse") for f in self.findings)
+
+    @property
+    def doubts(self) -> int:
+        """Number of findings that an attempt may do without."""
+        return sum(f.severity == "doubt" for f in self.findings)
+
+    @property
     def layer(self) -> Layer | None:
         """The layer in which it failed; None if nothing has to be repaired."""
         found = {layer_of(f) for f in self.findings if f.severity == "repair"}
@@ -71,6 +81,11 @@ class CaseSeen:
     def of(self, stage: Stage) -> tuple[AttemptSeen, ...]:
         """A stage's attempts."""
         return tuple(a for a in self.attempts if a.stage == stage)
+
+    def standing(self, stage: Stage) -> AttemptSeen | None:
+        """The attempt of a stage that stands: the least doubtful usable one (`refine.outcome_of`), else the last."""
+        seen = self.of(stage)
+        return min((a for a in seen if a.usable), key=lambda a: a.doubts, default=seen[-1] if seen else None)
 
 
 @dataclass(frozen=True)
@@ -128,7 +143,7 @@ def layer_of(finding: Finding) -> Layer:
 # ------------------------------------------------------------------ a batch
 def quality(cases: Sequence[CaseSeen]) -> Quality:
     """Figures of one config's cases."""
-    first, last = [_files(c, 0) for c in cases], [_files(c, -1) for c in cases]
+    first, last = [_files(c, first=True) for c in cases], [_files(c) for c in cases]
     count = max(len(cases), 1)
     return Quality(
         cases=len(cases),
@@ -147,29 +162,29 @@ def quality(cases: Sequence[CaseSeen]) -> Quality:
 
 def written_files(case: CaseSeen) -> FileCounts:
     """Files of a case after refinement: written, and those with an error."""
-    return _files(case, -1)[0]
+    return _files(case)[0]
 
 
 def _at_once(case: CaseSeen) -> bool:
-    """Whether it was generated without any refinement."""
-    return case.status == "generated" and len(case.of("road")) <= 1 and len(case.of("scenario")) <= 1
+    """Whether it was generated, and would have been without any refinement."""
+    return case.status == "generated" and all(a.usable for stage in FILES for a in case.of(stage)[:1])
 
 
-def _files(case: CaseSeen, which: int) -> tuple[FileCounts, Counter[Layer]]:
-    """Files of each stage's first (0) or last (-1) attempt, and the layers in which the faulty ones failed.
+def _files(case: CaseSeen, first: bool = False) -> tuple[FileCounts, Counter[Layer]]:
+    """Files of each stage's attempt that stands, or of its first, and the layers in which the faulty ones failed.
 
     A refused attempt writes no file. A stage that was never reached has none either. Of a road attempt both
     files fail together, but where OpenDRIVE alone is at fault.
     """
     written, layers = 0, Counter[Layer]()
     for stage, files in FILES.items():
-        seen = case.of(stage)
-        if not seen or seen[which].refused:
+        seen = next(iter(case.of(stage)), None) if first else case.standing(stage)
+        if seen is None or seen.refused:
             continue
         written += files
-        if (layer := seen[which].layer) is not None and layer != "content":
-            layers[layer] += 1 if _only_opendrive(seen[which]) else files
-    if which == -1 and _died_running(case) and not layers:
+        if (layer := seen.layer) is not None and layer != "content":
+            layers[layer] += 1 if _only_opendrive(seen) else files
+    if not first and _died_running(case) and not layers:
         layers["execution"] += FILES["scenario"]
     return FileCounts(written, layers.total()), layers
 

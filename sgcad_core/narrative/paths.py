@@ -26,9 +26,18 @@ def legs_used(facts: RoadFacts) -> tuple[Compass, ...]:
     for heading, maneuver in ways:
         legs.append(turned(heading, 180))
         legs += [turned(heading, TURNED[maneuver])] if maneuver in TURNED else []
-    if junction.kind == "driveway" and len({axis_of(heading) for heading, _ in ways}) == 1:
-        legs.append(ways[0][0])
+    if junction.kind == "driveway":
+        legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
     return tuple(dict.fromkeys(legs))
+
+
+def _along(driving: list[VehicleFacts], facts: RoadFacts) -> list[Compass]:
+    """Headings of those that surely drive on a street, not on what joins it."""
+    streets = {road.axis for road in facts.streets}
+    beside = {name for road in facts.roads if road not in facts.streets for name in road.vehicles}
+    known = [v for v in driving if v.heading and axis_of(v.heading) in streets and v.id not in beside]
+    found = [v.heading for v in known if v.heading and v.origin not in OFF_ROAD]
+    return found if len({axis_of(heading) for heading in found}) == 1 else []
 
 
 def _meant(v: VehicleFacts) -> Maneuver:

@@ -27,6 +27,8 @@ from sgcad_core.planner.role import (
 HARD_MPS2 = 6.0
 """Lateral acceleration of an evasive swerve on a dry road."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
+OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
+OTHER_LANE_COST = 0.45
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
@@ -129,7 +131,7 @@ def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
 def _other_lanes(role: Role) -> list[Drift]:
     """The lanes beside its own, driven from the start: nearly free where no lane is stated."""
     course, stated = role.course, role.actor.lane is not None
-    cost, note = (0.45, "takes another lane than stated") if stated else (0.03, "")
+    cost, note = (OTHER_LANE_COST, OTHER_LANE) if stated else (0.03, "")
     rooms = ((1, course.left_edge_m), (-1, course.right_edge_m))
     return [
         Drift(cost, sign * course.lane_width_m, 1.0, -1e4, note=note)
@@ -158,7 +160,7 @@ def _from_beside(role: Role) -> list[Drift]:
         return []
     beside = ways[0] * role.course.lane_width_m
     before = role.place.aside_m + beside
-    cost, note = (0.25, "") if abs(before) < 0.5 else (0.35, "starts from another lane")
+    cost, note = (0.25, "") if abs(before) < 0.5 else (0.35, FROM_OTHER_LANE)
     cost += _beside_the_road(role, before)
     easy = [_drift(role, -beside, cost + more, ease, note) for ease, more in ((1.7, 0.0), (0.8, 0.15), (0.5, 0.3))]
     return [_halfway(drift)._replace(before_m=before) for drift in easy]

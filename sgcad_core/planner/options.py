@@ -16,6 +16,9 @@ import numpy as np
 
 from sgcad_core.geometry import Floats
 from sgcad_core.planner.choices import (
+    FROM_OTHER_LANE,
+    OTHER_LANE,
+    OTHER_LANE_COST,
     aiming,
     any_angle,
     askew,
@@ -55,6 +58,12 @@ class Option:
     def cost(self) -> float:
         """The oddity of this way."""
         return self.drift.cost + self.pacing.cost + self.twist.cost + self.extra_cost
+
+    @property
+    def oddity(self) -> float:
+        """The cost without that of another lane: lanes are often told otherwise than they were driven."""
+        elsewhere = self.drift.note in (OTHER_LANE, FROM_OTHER_LANE)
+        return self.cost - (min(self.drift.cost, OTHER_LANE_COST) if elsewhere else 0.0)
 
     @property
     def notes(self) -> tuple[str, ...]:

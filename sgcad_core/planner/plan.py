@@ -41,8 +41,9 @@ class Plan(Record):
     `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the
     declared areas (where no contact is declared: nobody touches). `notes` say what was changed.
 
-    `oddity` is what bringing the declared pair together cost (`Option.cost`): 0 for ordinary driving, less than 0.5 for
-    other lanes and speeds, more for swerves, skids and spins, and 1 for each of the two that goes where no road leads.
+    `oddity` says how far from ordinary driving the declared pair meets: the sum of both actors' `Option.oddity`, 0 for
+    ordinary lines in any lane, up to 0.4 for other speeds and swerves, more for skids, spins and driving off the road, and
+    1 more for each that goes where no road leads. 0 as well where they do not meet as declared.
     """
 
     trajectories: tuple[Trajectory, ...]
@@ -64,11 +65,11 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
         cast.later(scene, contact)
     cast.rest(scene)
     observed = scene.first_contact()
+    realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     order = tuple(a.id for a in behavior.actors)
     return Plan(
         trajectories=scene.trajectories(order), contact=observed,
-        realised=_is_declared(observed, behavior.contacts[0] if behavior.contacts else None),
-        notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3),
+        realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
     )  # fmt: skip
 
 
@@ -187,7 +188,7 @@ class _Cast:
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again())
         for option, motion, own in pair:
             self.notes += option.notes
-            self.oddity += option.cost + option.role.course.astray
+            self.oddity += option.oddity + option.role.course.astray
             scene.add(option.role.actor.id, option.role.actor.kind, motion, own, brakes=False)
         for option, _, own in pair:
             self._couple(scene, option.role.actor.id, own)

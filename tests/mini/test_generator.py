@@ -245,7 +245,7 @@ def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
         silent = [leg for leg in silent if not {f"lanes.{leg.bearing % 4}"} & (report.told | report.doubtful)]
         for leg in silent:
             plain[max(leg.lanes_in, leg.lanes_out) == 1] += 1
-    assert 0.65 < plain[True] / sum(plain.values()) < 0.9
+    assert 0.55 < plain[True] / sum(plain.values()) < 0.9
 
 
 def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> None:
@@ -260,17 +260,21 @@ def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> No
     assert min(found.values()) > 2
 
 
-def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over() -> None:
-    found = 0
-    for report in (make_report(s, length=0.1, modes={"both": 1.0}) for s in range(400)):
-        plain = beside(report.crash)
-        if plain is None:
-            continue
-        ways = {leg.bearing for leg in plain.legs}
-        assert len(ways) == 2
-        assert all(way in ways for a in report.crash.actors for way in (a.leg, a.out) if way is not None)
-        silent = not {"layout", "legs"} & report.told and "intersection" not in report.narrative
-        if silent:
-            assert len(report.road["legs"]) > 2
-            found += 1
-    assert found > 5
+def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    def silent() -> int:
+        found = 0
+        for report in (make_report(s, length=0.1, modes={"both": 1.0}) for s in range(400)):
+            plain = beside(report.crash)
+            if plain is None:
+                continue
+            ways = {leg.bearing for leg in plain.legs}
+            assert len(ways) == 2
+            assert all(way in ways for a in report.crash.actors for way in (a.leg, a.out) if way is not None)
+            if not {"layout", "legs"} & report.told and "intersection" not in report.narrative:
+                assert len(report.road["legs"]) > 2
+                found += 1
+        return found
+
+    some = silent()
+    monkeypatch.setattr("mini.generator.report.UNMENTIONED", 0.0)
+    assert some > silent() + 4

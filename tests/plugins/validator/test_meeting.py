@@ -43,7 +43,14 @@ def found(text: str, roads: RoadNetwork, actors: tuple[Actor, ...], contact: str
         {"striker": striker, "struck": struck, "striker_area": striker_area, "struck_area": struck_area}
     )
     scenario = compile_scenario(BehaviorSpec(actors=actors, contacts=(said,)), roads)
-    return Meeting(**fields).findings(scenario, Evidence(report=CrashReport(case="c", narrative=text), network=roads))
+    evidence = Evidence(report=CrashReport(case="c", narrative=text), network=roads)
+    return Meeting(**{"try_others": True} | fields).findings(scenario, evidence)
+
+
+def compile_wide() -> RoadNetwork:
+    legs = tuple(Leg.model_validate({"bearing": b, "lanes_in": 3, "lanes_out": 3}) for b in "NS")
+    spec = road_spec(RoadLayout(legs=legs))
+    return compile_network(plain_xml(spec), spec)
 
 
 FROM_BEHIND = (actor("V1", "S", "straight", "N"), actor("V2", "S", "turn_right", "E"))
@@ -83,13 +90,28 @@ def test_a_way_that_the_network_does_not_have_is_doubted() -> None:
     assert doubt.holds == ()
 
 
-@pytest.mark.parametrize("lost", ["V2 lost control.", "V2 skidded on the ice.", "V2 was out of control.", "V2 slid."])
+@pytest.mark.parametrize("denied", ["There were no skid marks.", "The sliding door of V2 was open."])
+def test_words_that_tell_no_loss_of_control_excuse_nothing(denied: str) -> None:
+    assert len(found(f"{PULLED_OUT} {denied}", TEE, FROM_BEHIND, "V1 front V2 left")) == 1
+
+
+def test_another_lane_than_told_is_not_doubted() -> None:
+    told = "V1 and V2 were traveling north. The front of V1 struck the rear of V2."
+    lanes = {"V1": 1, "V2": 2}
+    actors = tuple(actor(v, "S", "straight", "N").model_copy(update={"lane": n}) for v, n in lanes.items())
+    assert found(told, compile_wide(), actors, "V1 front V2 back") == []
+
+
+@pytest.mark.parametrize("lost", [
+    "V2 lost control.", "V2 skidded on the ice.", "V2 was out of control.", "V2 slid.",
+    "V2 lost all directional control.",
+])  # fmt: skip
 def test_lost_control_explains_what_is_odd(lost: str) -> None:
     assert found(f"{PULLED_OUT} {lost}", TEE, FROM_BEHIND, "V1 front V2 left") == []
 
 
 def test_doubts_can_be_notes_and_come_later() -> None:
-    (note,) = found(PULLED_OUT, TEE, FROM_BEHIND, "V1 front V2 left", odd="note")
+    (note,) = found(PULLED_OUT, TEE, FROM_BEHIND, "V1 front V2 left", odd="note", try_others=False)
     assert (note.severity, note.holds) == ("note", ())
     assert found(PULLED_OUT, TEE, FROM_BEHIND, "V1 front V2 left", odd_from=9.0) == []
 

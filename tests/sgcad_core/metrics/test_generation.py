@@ -64,6 +64,17 @@ def test_the_first_attempt_and_the_last_are_counted_apart():
     assert found.layers == {"netconvert": 2}
 
 
+def test_a_doubted_attempt_may_be_the_one_that_stands():
+    doubted = AttemptSeen("scenario", (finding("meeting", "contacts[0]", severity="doubt"),))
+    case = CaseSeen("generated", (road(), doubted, scenario("openscenario"), scenario("openscenario")))
+    assert case.standing("scenario") is doubted
+    found = quality([case, CaseSeen("generated", (road(), doubted))])
+    assert (found.first_success, found.success, found.file_errors) == (1.0, 1.0, 0.0)
+    assert not found.layers
+    assert CaseSeen("exhausted", (road("netconvert"), road("topology"))).standing("road") == road("topology")
+    assert case.standing("road") == road()
+
+
 def test_opendrive_alone_at_fault_is_one_file_and_content_is_none():
     found = quality([CaseSeen("exhausted", (road("opendrive"),)), CaseSeen("exhausted", (road("road_narrative"),))])
     assert found.layers == {"references": 1}
