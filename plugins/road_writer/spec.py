@@ -16,16 +16,17 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.netconvert import compile_network
 from sgcad_core.formats.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.layout import road_spec
+from sgcad_core.layout import COMPASS, road_spec
 from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
-from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
-from sgcad_core.specs import RoadLayout, RoadSpec
+from sgcad_core.records import Context, Finding, Hold, Passage, Query, RoadNetwork
+from sgcad_core.specs import Compass, RoadLayout, RoadSpec
 
 
 class SpecRoad(RoadWriter):
     """Asks for a `RoadSpec` (any network), or for a `RoadLayout` (one hub and its legs: for small models)."""
 
     asks_model: ClassVar[bool] = True
+    version: ClassVar[str] = "2"
     form: Literal["road", "layout"] = "road"
     prompt: str = Field("", pattern=r"^[\w-]*$")
     """configs/prompts/<prompt>.md; empty: the one named like the form."""
@@ -60,7 +61,8 @@ def _layout_faults(layout: RoadLayout) -> Iterator[Finding]:
     """What a layout's own fields contradict: legs of one bearing, legs without lanes, accesses of no leg."""
     for bearing, count in Counter(leg.bearing for leg in layout.legs).items():
         if count > 1:
-            yield _finding("legs", f"{count} legs have one bearing", bearing, "merge them, or turn one by 45 degrees")
+            remedy = "merge them, or turn one by 45 degrees"
+            yield _finding("legs", f"{count} legs have one bearing", bearing, remedy, _elsewhere(layout, bearing))
     for i, leg in enumerate(layout.legs):
         if not leg.lanes_in and not leg.lanes_out:
             yield _finding(f"legs[{i}]", "the leg has no lanes", "0 and 0", "give one direction a lane")
@@ -77,5 +79,12 @@ def _layout_faults(layout: RoadLayout) -> Iterator[Finding]:
             yield _finding(f"accesses[{i}]", "the access has no lanes", "0 and 0", "give one direction a lane")
 
 
-def _finding(where: str, what: str, value: str, remedy: str) -> Finding:
-    return Finding(source="layout", what=what, where=where, value=value, remedy=remedy)
+def _elsewhere(layout: RoadLayout, bearing: Compass) -> tuple[Hold, ...]:
+    """The legs that repeat a bearing lie where no other does."""
+    free = tuple(way for way in COMPASS if way not in {leg.bearing for leg in layout.legs})
+    places = [i for i, leg in enumerate(layout.legs) if leg.bearing == bearing]
+    return tuple(Hold(items="legs", at=i, either=({"bearing": free},)) for i in places[1:] if free)
+
+
+def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
+    return Finding(source="layout", what=what, where=where, value=value, remedy=remedy, holds=holds)

@@ -7,7 +7,7 @@ attempt. Reads the compiled network; compass is north up.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator
 from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
@@ -16,7 +16,6 @@ from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle, turned
-from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import legs_used
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
@@ -50,19 +49,21 @@ class RoadNarrative(Validator):
         facts = road_facts(evidence.report.narrative)
         drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
-            *self._legs(facts.junction, len(legs[0]) if legs else 0), *self._paths(facts, legs, pictured),
+            *self._legs(facts, len(legs[0]) if legs else 0, pictured), *self._paths(facts, legs, pictured),
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
             *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
         ]  # fmt: skip
         return sorted(found, key=lambda f: f.severity != "repair")
 
     # -------------------------------------------------------------- junction
-    def _legs(self, junction: JunctionFacts, widest: int) -> Iterator[Finding]:
+    def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
+        junction = facts.junction
         want = {"t": 3, "four_leg": 4}.get(junction.kind)
         if want and junction.stated and widest < want:
             said = "a T-intersection" if want == 3 else "a four-leg intersection"
             what = f"the report says {said}, but no junction of the network has {want} legs"
-            remedy, holds = f"let {want} roads meet at one node", (Hold(items="legs", at_least=want),)
+            remedy, some = f"let {want} roads meet at one node", Hold(items="legs", at_least=want)
+            holds = (some, *_laid(facts, pictured))
             yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"
@@ -81,14 +82,11 @@ class RoadNarrative(Validator):
         missing = [leg for leg in used if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
         if not missing:
             return
-        legs = {leg.bearing for leg in layout_of_facts(facts).legs}
-        sure = set(used) if pictured else {*used, *(turned(leg, 180) for leg in used)}  # roads go on, stems are told
-        known = set(used) <= legs <= sure
         sides = " and ".join(WORDS[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
-        yield _finding(what, "junction", f"legs {seen}", remedy, holds=_laid(legs) if known else ())
+        yield _finding(what, "junction", f"legs {seen}", remedy, holds=_laid(facts, pictured))
 
     # -------------------------------------------------------------- directions of travel
     def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
@@ -205,9 +203,14 @@ def _vague(road: RoadFact, pictured: bool) -> bool:
     return pictured and len(road.lanes.toward) < 2
 
 
-def _laid(legs: Set[Compass]) -> tuple[Hold, ...]:
-    """Each leg in its place, clockwise from north: a list of which any may be repeated would repeat some."""
-    ordered = sorted(legs, key=COMPASS.index)
+def _laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
+    """Each leg in its place, clockwise from north (of a list of which any may be repeated some would be).
+
+    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides.
+    """
+    used, legs = set(legs_used(facts)), {leg.bearing for leg in layout_of_facts(facts).legs}
+    sure = used if pictured else {*used, *(turned(leg, 180) for leg in used)}
+    ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
     return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
 
 

@@ -42,8 +42,8 @@ class Plan(Record):
     declared areas (where no contact is declared: nobody touches). `notes` say what was changed.
 
     `oddity` says how far from ordinary driving the declared pair meets: the sum of both actors' `Option.oddity`, 0 for
-    ordinary lines in any lane, up to 0.4 for other speeds and swerves, more for skids, spins and driving off the road, and
-    1 more for each that goes where no road leads. 0 as well where they do not meet as declared.
+    ordinary lines in any lane, up to 0.4 for other speeds and swerves, more for skids, spins and driving off the road,
+    and 1 more for each that goes where no road leads. 0 as well where they do not meet as declared.
     """
 
     trajectories: tuple[Trajectory, ...]

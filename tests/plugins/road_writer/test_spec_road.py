@@ -117,3 +117,13 @@ def test_layouts_that_contradict_themselves_are_findings(change, message):
     change(answer)
     with pytest.raises(InvalidOutput, match=message):
         write(answer, form="layout")
+
+
+def test_a_leg_that_repeats_a_bearing_is_held_to_another():
+    answer = json.loads(json.dumps(LAYOUT))
+    answer["legs"].append(answer["legs"][0])
+    with pytest.raises(InvalidOutput, match="one bearing") as fault:
+        write(json.dumps(answer), form="layout")
+    (hold,) = fault.value.findings[0].holds
+    assert hold.at == len(answer["legs"]) - 1
+    assert not {leg["bearing"] for leg in answer["legs"]} & set(hold.either[0]["bearing"])

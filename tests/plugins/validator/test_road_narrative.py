@@ -228,3 +228,12 @@ def test_a_direction_that_no_road_carries_is_held_on_both_legs() -> None:
     assert [tuple(hold.either[0]) for hold in found[0].holds] == [("lanes_in",), ("lanes_out",)]
     changed = held(found, *legs)
     assert not any("no road carries" in what for what in repairs(T.replace("northbound", "southbound"), *changed))
+
+
+def test_a_missing_junction_gets_its_legs_where_the_told_paths_use_every_one() -> None:
+    (found,) = [f for f in findings(FROM_THE_SIDE, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "repair"]
+    told = {hold.at: hold.either[0]["bearing"] for hold in found.holds if hold.either}
+    assert told == {0: ("N",), 1: ("E",), 2: ("W",)}
+    guessed = FROM_THE_SIDE.replace("The side street joins it from the north. ", "")
+    (found,) = [f for f in findings(guessed, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "repair"]
+    assert [hold.at_least for hold in found.holds] == [3]
