@@ -21,6 +21,9 @@ from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Hold, Passage, Query, RoadNetwork
 from sgcad_core.specs import Compass, RoadLayout, RoadSpec
 
+USUAL_LEGS = 4
+"""Junctions of more legs are rare enough to doubt the count first."""
+
 
 class SpecRoad(RoadWriter):
     """Asks for a `RoadSpec` (any network), or for a `RoadLayout` (one hub and its legs: for small models)."""
@@ -80,7 +83,9 @@ def _layout_faults(layout: RoadLayout) -> Iterator[Finding]:
 
 
 def _elsewhere(layout: RoadLayout, bearing: Compass) -> tuple[Hold, ...]:
-    """The legs that repeat a bearing lie where no other does."""
+    """Legs that repeat a bearing lie where no other does; of more than four some are too many, not misplaced."""
+    if len(layout.legs) > USUAL_LEGS:
+        return ()
     free = tuple(way for way in COMPASS if way not in {leg.bearing for leg in layout.legs})
     places = [i for i, leg in enumerate(layout.legs) if leg.bearing == bearing]
     return tuple(Hold(items="legs", at=i, either=({"bearing": free},)) for i in places[1:] if free)

@@ -127,3 +127,7 @@ def test_a_leg_that_repeats_a_bearing_is_held_to_another():
     (hold,) = fault.value.findings[0].holds
     assert hold.at == len(answer["legs"]) - 1
     assert not {leg["bearing"] for leg in answer["legs"]} & set(hold.either[0]["bearing"])
+    answer["legs"] += answer["legs"][:2]
+    with pytest.raises(InvalidOutput) as fault:
+        write(json.dumps(answer), form="layout")
+    assert not any(finding.holds for finding in fault.value.findings)
