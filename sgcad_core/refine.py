@@ -143,8 +143,8 @@ class Refinement:
         """Refine until written, refused or exhausted; also every model call, in order.
 
         Of usable attempts the least doubtful is written, though a later one asked for repair or refused. An exhausted
-        stage's artifact is that of the attempt with the fewest repair findings (the first of
-        equals), None if no attempt gave one. Raises MissingTool from a validator.
+        stage's artifact is that of the attempt with the fewest repair findings (the first of equals), None if there is
+        none. Raises MissingTool from a validator.
         """
         turns = self.turns()
         return outcome_of(self.stage, turns), tuple(call for turn in turns for call in turn.calls)
@@ -251,7 +251,7 @@ def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:
     """What all findings tell exactly, each once, newest first: of two that exclude each other the first is kept."""
     found: list[Hold] = []
     for turn in reversed(turns):
-        heard = ("repair", "doubt") if turn.usable else ("repair",)  # a doubt may come of what is to be repaired
+        heard = _ASKING if turn.usable else ("repair",)  # a doubt may come of what is to be repaired
         told = (hold for f in turn.attempt.findings if f.severity in heard for hold in f.holds)
         found += [hold for hold in told if hold not in found]
     return tuple(found)

@@ -90,8 +90,8 @@ def _headed(crash: Crash, told: set[str]) -> list[Actor]:
 
 def _driven(actor: Actor, told: set[str]) -> list[int]:
     """Legs that an actor with a known heading uses, as bearings."""
-    leaves = f"man.{actor.id}" in told and actor.leaves(told)
-    return [actor.leg, *([actor.out] if leaves and actor.out is not None else [])]
+    out = actor.exit_of(told) if f"man.{actor.id}" in told else None
+    return [actor.leg, *([] if out is None else [out])]
 
 
 def _led_to(leg: Leg) -> list[int]:

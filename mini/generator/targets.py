@@ -119,14 +119,14 @@ class Targets:
             self.weights[(*path, key)] = 0.1
         if actor.speed and f"speed.{actor.id}" in known:
             self.weights[(*path, "speed_mph")] = RARE
-        leaves = actor.out is not None and actor.leaves(known) and f"heading.{actor.id}" in known
+        out = actor.exit_of(known) if f"heading.{actor.id}" in known else None
         return {
             "id": actor.id,
             "kind": actor.kind,
             "road": COMPASS[actor.leg],
             "direction": "forward",
             "lane": self._lane(actor) if wheels else None,
-            "exit_road": COMPASS[actor.out] if leaves else None,
+            "exit_road": COMPASS[out] if out is not None else None,
             "maneuver": actor.maneuver,
             "speed_mph": self._speed(actor, sure),  # type: ignore[index]
             "length_m": None,

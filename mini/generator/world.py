@@ -67,10 +67,10 @@ class Actor:
         """Whether it stands or slows for a turn, which its maneuver does not say."""
         return self.purpose.startswith("turn_")
 
-    def leaves(self, told: Set[str]) -> bool:
-        """Whether it takes a leg and these facts say which."""
+    def exit_of(self, told: Set[str]) -> int | None:
+        """The leg that it takes, if these facts say which."""
         sure = f"man.{self.id}" in told or self.maneuver == "straight"
-        return self.out is not None and sure and (not self.meant or f"exit.{self.id}" in told)
+        return self.out if sure and (not self.meant or f"exit.{self.id}" in told) else None
 
 
 @dataclass

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from sgcad_core.narrative.ways import Way, degree, exits, turn_of
+from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of
 from sgcad_core.records import Hold
 from sgcad_core.specs import Maneuver, RoadSpec
 
-TURN_RAD = math.radians(30)
+_TURN_RAD = math.radians(30)
 """A change of heading that is a turn."""
-NEAR_RAD = math.radians(50)
+_NEAR_RAD = math.radians(50)
 """A way within this of a told heading goes that way."""
 _NUMBERS = range(1, 10)
 UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
@@ -26,14 +26,19 @@ def course(way: Way, ways: Sequence[Way], maneuver: Maneuver) -> dict[str, tuple
     side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
     if side is None:
         return start
-    onward = (w.road.id for w in exits(way, tuple(ways)) if side * turn_of(way, w) > TURN_RAD)
+    onward = (w.road.id for w in exits(way, ways) if side * turn_of(way, w) > _TURN_RAD)
     return start | {"exit_road": tuple(onward)}
 
 
 def straight_on(way: Way, ways: Sequence[Way]) -> str | None:
     """The road that goes on where a way ends; None on a stem, or where the road has no end."""
-    onward = min(exits(way, tuple(ways)), key=lambda w: abs(turn_of(way, w)), default=None)
-    return onward.road.id if onward and abs(turn_of(way, onward)) <= TURN_RAD else None
+    onward = min(exits(way, ways), key=lambda w: abs(turn_of(way, w)), default=None)
+    return onward.road.id if onward and abs(turn_of(way, onward)) <= _TURN_RAD else None
+
+
+def heading(ways: Sequence[Way], wanted_rad: float) -> tuple[Way, ...]:
+    """Those that go that way, by what a report calls their direction of travel."""
+    return tuple(w for w in ways if apart(w.heading_rad, wanted_rad) < _NEAR_RAD)
 
 
 def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
-from plugins.validator._courses import NEAR_RAD, UNNUMBERED, approaches, course, held
+from plugins.validator._courses import UNNUMBERED, approaches, course, heading, held
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
@@ -110,8 +110,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
 
 def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
     """Ways in that direction, approaches to a junction first."""
-    fitting = [w for w in ways if apart(w.heading_rad, wanted) < NEAR_RAD]
-    fitting.sort(key=lambda w: -degree(w.to_node, spec))
+    fitting = sorted(heading(ways, wanted), key=lambda w: -degree(w.to_node, spec))
     named = [f"{w.road.id} {w.direction}" for w in fitting[:4]]
     return f"start it on {' or '.join(named)}" if named else "start it on the road nearest to that direction"
 
@@ -134,7 +133,7 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     every = ways_of(spec) if spec is not None else ()
     ways = every
     if fact.heading is not None and fact.heading_stated:
-        ways = tuple(w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD)
+        ways = heading(ways, angle_of(fact.heading))
     ways = approaches(ways, spec) if spec is not None and fact.maneuver != "parked" else ways
     starts = [course(way, every, fact.maneuver) | does for way in ways]
     choices = [start for start in starts if start.get("exit_road") != ()]

@@ -12,14 +12,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from plugins.validator._courses import NEAR_RAD, Course, approaches, course, held, straight_on
+from plugins.validator._courses import Course, approaches, course, heading, held, straight_on
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.lane_graph import LaneGraph
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
-from sgcad_core.narrative.ways import Way, apart, ways_of
+from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
@@ -111,5 +111,5 @@ class _Trials:
     def _starts(self, ways: Sequence[Way], fact: VehicleFacts) -> tuple[Way, ...]:
         """Ways on which a vehicle may come, as far as its heading is told."""
         if fact.heading is not None and fact.heading_stated:
-            ways = [w for w in ways if apart(w.heading_rad, angle_of(fact.heading)) < NEAR_RAD]
+            ways = heading(ways, angle_of(fact.heading))
         return approaches(ways, self.spec)

@@ -62,8 +62,8 @@ class RoadNarrative(Validator):
         if want and junction.stated and widest < want:
             said = "a T-intersection" if want == 3 else "a four-leg intersection"
             what = f"the report says {said}, but no junction of the network has {want} legs"
-            remedy, some = f"let {want} roads meet at one node", Hold(items="legs", at_least=want)
-            holds = (some, *_laid(facts, pictured))
+            remedy = f"let {want} roads meet at one node"
+            holds = (Hold(items="legs", at_least=want), *_laid(facts, pictured))
             yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"

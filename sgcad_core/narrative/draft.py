@@ -18,6 +18,8 @@ TURN_DEG: dict[Maneuver, float] = {
     "crossing_centerline": -10.0,
 }
 """Heading change of a vehicle at the moment of contact, clockwise degrees: turns are seldom complete then."""
+QUARTER_DEG: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
+"""Heading change of a turn from one leg to another, clockwise degrees."""
 HIT_FROM: dict[Area, float] = {"left": 90.0, "right": 270.0, "back": 0.0, "front": 180.0}
 """Heading of a striking vehicle relative to the one whose side it hits with its front, clockwise degrees."""
 

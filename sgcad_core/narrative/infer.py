@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
-from sgcad_core.narrative.draft import Draft, Settled, end_of
+from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
 from sgcad_core.narrative.maneuvers import changed_lanes_after_turn, decide
 from sgcad_core.narrative.motion import Motion
 from sgcad_core.narrative.relative import contact_prefers, relative
@@ -96,7 +96,7 @@ def _complete_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
 def _mend_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
     """A told heading that both the told exit and the sides that touched contradict was a slip: the opposite one."""
     for v in sorted(out.stated):
-        side = {"turn_left": -90, "turn_right": 90}.get(out.maneuvers[v])
+        side = QUARTER_DEG.get(out.maneuvers[v])
         exits = draft.motions[v].exits
         partner = _partner(v, out.headings, pairs, draft.who.ids)
         if side is None or not exits or partner not in out.stated or partner is None:

@@ -14,11 +14,12 @@ from typing import Literal
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import DIRECTION, between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
+from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
-from sgcad_core.specs import Compass, Maneuver
+from sgcad_core.specs import Compass
 
 JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
 
@@ -192,7 +193,7 @@ def _stem_of_paths(
     if len(axes) > 1:
         return turned(_on_stem(known, halted).heading or "N", 180)
     for v in known:
-        side = _TURNS.get(v.maneuver)
+        side = QUARTER_DEG.get(v.maneuver)
         if side and v.heading:
             return turned(v.heading, side)
         if v.exit_heading and v.heading and between(v.heading, v.exit_heading) in (90, 270):
@@ -226,15 +227,12 @@ def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> Vehicl
     return max(known, key=likely)
 
 
-_TURNS: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
-
-
 def _contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
     """Whether a vehicle is told to come from where, with that stem, there is no road."""
     told = [v for v in vehicles if v.heading and v.heading_stated]
     if any(v.heading == stem and v.maneuver not in ("turn_left", "turn_right") for v in told):
         return True
-    leaving = [turned(v.heading, _TURNS[v.maneuver]) for v in told if v.heading and v.maneuver in _TURNS]
+    leaving = [turned(v.heading, QUARTER_DEG[v.maneuver]) for v in told if v.heading and v.maneuver in QUARTER_DEG]
     if turned(stem, 180) in leaving:
         return True
     turning = [axis_of(v.heading) for v in told if v.heading and v.maneuver in ("turn_left", "turn_right")]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.specs import Compass, Maneuver
 
-TURNED: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
-"""Clockwise turn of the heading, degrees."""
 OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
 
 
@@ -25,7 +24,7 @@ def legs_used(facts: RoadFacts) -> tuple[Compass, ...]:
     ways = [(v.heading, _meant(v)) for v in driving if v.heading and not _joined(v, facts)]
     for heading, maneuver in ways:
         legs.append(turned(heading, 180))
-        legs += [turned(heading, TURNED[maneuver])] if maneuver in TURNED else []
+        legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
     if junction.kind == "driveway":
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
     return tuple(dict.fromkeys(legs))

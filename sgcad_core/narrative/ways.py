@@ -6,6 +6,7 @@ Plain geometry on node positions and inner points; headings counter-clockwise fr
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 from sgcad_core.specs import Road, RoadSpec, Turn
@@ -61,7 +62,7 @@ def _heading(a: tuple[float, float], b: tuple[float, float]) -> float:
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
-def exits(way: Way, ways: tuple[Way, ...]) -> tuple[Way, ...]:
+def exits(way: Way, ways: Sequence[Way]) -> tuple[Way, ...]:
     """Ways out of the node at the end, the way's own road left out."""
     return tuple(w for w in ways if w.from_node == way.to_node and w.road.id != way.road.id)
 
