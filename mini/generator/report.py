@@ -14,7 +14,7 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
-from mini.generator.roads import beside, carriageway, misdrawn
+from mini.generator.roads import beside, carriageway, misdrawn, mouths
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash, Leg
@@ -70,7 +70,7 @@ def make_report(
     crash = sample_crash(rng)
     aside = beside(crash) if mode == "both" and not held_out and rng.random() < UNMENTIONED else None
     writer = Writer(rng, aside or crash, held_out, length)
-    control, arrows, access = rng.random() < 0.6, rng.random() < 0.6, bool(crash.accesses)
+    control, arrows = rng.random() < 0.6, rng.random() < 0.6
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())
@@ -79,7 +79,9 @@ def make_report(
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
-    drawn, shown = drawn_facts(crash, control, arrows, access), None
+    if mode in ("both", "image") and not held_out:
+        crash = mouths(Random(f"{seed} mouths"), crash)
+    drawn, shown = drawn_facts(crash, control, arrows, bool(crash.accesses)), None
     if mode == "both" and not held_out and half is None and rng.random() < CARELESS:
         shown = misdrawn(rng, crash)
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from random import Random
 
+from mini.answers import MAX_ACCESSES
 from mini.generator.world import Access, Crash, Leg, pick
 
 LIMITS = {
@@ -157,6 +158,27 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
             rng.choice(("driveway", "driveway", "road")),
         )
     ]
+
+
+def mouths(rng: Random, crash: Crash) -> Crash:
+    """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth."""
+    if crash.area_word == "highway":
+        return crash
+    found = [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
+    free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
+    stem = next((leg.bearing for leg in crash.legs if leg.kind == "driveway"), None)
+    odds = 0.35 if found or stem is not None else 0.06
+    while free and len(found) < MAX_ACCESSES and rng.random() < odds:
+        leg = free.pop(rng.randrange(len(free)))
+        side = rng.choice(("left", "right"))
+        if stem is not None and rng.random() < 0.6:
+            side = "right" if (leg.bearing - 2) % 8 == stem else "left"
+        kind = rng.choice(("driveway", "driveway", "driveway", "road"))
+        found.append(Access(leg.bearing, side, rng.choice((20, 20, 30, 30, 40)), kind, rng.uniform(1.5, 14.0)))
+    came = {actor.leg for actor in crash.actors}
+    short = {leg.bearing for leg in crash.legs if leg.kind == "driveway" and rng.random() < 0.5} - came
+    legs = [replace(leg, mouth=rng.uniform(2.0, 6.0)) if leg.bearing in short else leg for leg in crash.legs]
+    return replace(crash, legs=legs, accesses=found)
 
 
 def carriageway(crash: Crash) -> Crash | None:

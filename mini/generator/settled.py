@@ -57,6 +57,9 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
     if any(other.startswith((AXIS, "heading.")) for other in facts):
         return True
     same = len({_value(key, leg) for leg in crash.legs}) == 1
+    if key == "limit":  # may stay open, so that a limit of either road has to be laid on one of them
+        told = {fact for some in sentences for fact in some}
+        same = same and all(f"limit.{leg.bearing % 4}" in told for leg in crash.legs)
     if same or crash.layout not in ("four", "t"):
         return tied
     return tied and any(fact in some and f"{ROAD}.{axis}" in some for some in sentences)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Set
 from typing import Any
 
-from mini.generator.world import COMPASS, Actor, Crash, Leg
+from mini.generator.world import COMPASS, Access, Actor, Crash, Leg
 
 Json = dict[str, Any]
 GUESS = 0.25
@@ -42,7 +42,8 @@ class Targets:
     def _road(self) -> Json:
         legs = [self._leg(i, leg) for i, leg in enumerate(self.crash.legs)]
         told = "access" in self.known
-        return {"legs": legs, "accesses": [self._access()] if told and self.crash.accesses else []}
+        found = sorted(self.crash.accesses, key=lambda access: access.leg) if told else []
+        return {"legs": legs, "accesses": [self._access(i, access) for i, access in enumerate(found)]}
 
     def _leg(self, index: int, leg: Leg) -> Json:
         axis, path = leg.bearing % 4, ("legs", index)
@@ -78,9 +79,10 @@ class Targets:
             self._unsure(path, "control")
         return leg.control if "control" in self.known else "none"
 
-    def _access(self) -> Json:
-        access = self.crash.accesses[0]
+    def _access(self, index: int, access: Access) -> Json:
         wide = 1
+        if access.mouth is not None:
+            self._unsure(("accesses", index), "distance_m")
         return {
             "leg": COMPASS[access.leg],
             "side": access.side,

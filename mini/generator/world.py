@@ -30,6 +30,8 @@ class Leg:
     control: str = "none"
     curve: str = "none"
     limit: int | None = None
+    mouth: float | None = None
+    """Metres of a driveway that a drawing shows beyond the junction; None: as of any leg."""
 
 
 @dataclass
@@ -40,6 +42,8 @@ class Access:
     side: str
     distance_m: int
     kind: str = "driveway"
+    mouth: float | None = None
+    """Metres of it that a drawing shows beyond the curb, open at its end; None: a closed stub."""
 
 
 @dataclass

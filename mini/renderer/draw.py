@@ -16,6 +16,7 @@ from PIL import Image
 from mini import tags
 from mini.generator.report import Report
 from mini.generator.world import Crash
+from mini.renderer import accesses
 from mini.renderer.around import Shape, captions, north_arrow, scan
 from mini.renderer.lines import Ground, Points
 from mini.renderer.pen import BLACK, Color, Pen
@@ -64,12 +65,15 @@ def draw_labeled(report: Report) -> Drawing:
 
 def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrows: bool) -> list[Shape]:
     """The legs and the vehicles at their poses."""
-    found = []
+    found, crash = [], report.shown or report.crash
     for band in ground.bands.values():
         s = np.arange(ground.setback(band.leg.bearing, 1.0), band.length, 2.0)
         outline = np.concatenate((band.at(s, band.right), band.at(s, band.left)[::-1]))
         shows = tags.drawn_leg(band.leg, "control" in report.drawn, arrows)
         found.append(Shape(pen.px(outline), shows, 0.3))
+    for access in crash.accesses:
+        mouth = accesses.box(pen, ground, access, 0.5, access.mouth or accesses.REACH)
+        found.append(Shape(pen.px(mouth), [tags.PICTURE["access"]], 0.2))
     for track in tracks:
         for i, pose in enumerate(track.poses):
             when = "contact" if i == track.contact else "before" if i < track.contact else "after"
@@ -94,7 +98,8 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
     curved = any(leg.curve != "none" for leg in crash.legs)
     ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash))
     for bearing, band in ground.bands.items():
-        band.length = max(band.length, ground.setback(bearing, 1.0) + 12)  # seen beyond a wide junction
+        clear = ground.setback(bearing, 1.0)
+        band.length = max(band.length, clear + 12) if band.leg.mouth is None else clear + band.leg.mouth
     long = int(rng.uniform(400, 540))
     if plain and not curved:
         direction = math.radians(90 - 45 * crash.main) + turn

@@ -12,6 +12,8 @@ from PIL import Image, ImageDraw
 from mini import picture
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
+from mini.generator.world import Access, Crash, Leg
+from mini.renderer import accesses
 from mini.renderer.draw import _sheet, draw_report
 from mini.renderer.lines import Ground
 from mini.renderer.pen import Pen
@@ -182,4 +184,27 @@ def test_every_leg_is_seen_beyond_the_junction(seed: int) -> None:
     report = make_report(seed, modes={"image": 1.0})
     _, ground = _sheet(Random(seed), report.crash)
     for bearing, band in ground.bands.items():
-        assert band.length >= ground.setback(bearing, 1.0) + 11.9
+        assert band.length >= ground.setback(bearing, 1.0) + (11.9 if band.leg.mouth is None else band.leg.mouth)
+
+
+def _ink(shape: np.ndarray, pen: Pen) -> np.ndarray:
+    """Dark pixels within a shape of world points, as a mask of the sheet."""
+    inside = Image.new("1", pen.image.size)
+    ImageDraw.Draw(inside).polygon([tuple(p) for p in pen.px(shape)], fill=1)
+    return np.asarray(inside) & (np.asarray(pen.image.convert("L")) < 128)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds, leg=st.sampled_from((0, 4)), side=st.sampled_from(("left", "right")), mouth=st.floats(1.5, 14.0))
+def test_a_driveway_opens_the_curb_and_its_mouth_is_open(seed: int, leg: int, side: str, mouth: float) -> None:
+    access = Access(leg, side, 40, "driveway", mouth)
+    crash = Crash("rear_end", "plain", 0, [Leg(0, 1, 1), Leg(4, 1, 1)], [], [], "day", "clear", "dry", [access])
+    ground = Ground(crash, {0: 30.0, 4: 30.0}, 100.0)
+    pen = Pen(Random(seed), 500, 500, 8.0, 0.0, (0.0, 0.0))
+    marks = RoadMarks(Random(seed), pen, crash, ground)
+    marks.shoulders = 0
+    marks.draw(arrows=False, signs=False)
+    assert pen.shows(accesses.box(pen, ground, access, 0.5, 1.0), 0.0)
+    assert _ink(accesses.box(pen, ground, access, 0.3, mouth, wider=-1.9), pen).sum() == 0
+    assert _ink(accesses.box(pen, ground, access, 0.1, mouth, wider=1.2), pen).any()
+    assert _ink(accesses.box(pen, ground, access, mouth + 0.5, mouth + 9.0, wider=1.0), pen).sum() == 0

@@ -14,7 +14,8 @@ from mini.generator.crash import sample_crash
 from mini.generator.grammar import families
 from mini.generator.report import MODES, make_report
 from mini.generator.roads import beside
-from mini.generator.world import Crash
+from mini.generator.targets import GUESS
+from mini.generator.world import COMPASS, Crash
 from mini.rows import road_ids
 from sgcad_core.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, Refusal, RoadLayout
@@ -278,3 +279,20 @@ def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over(monkeypatc
     some = silent()
     monkeypatch.setattr("mini.generator.report.UNMENTIONED", 0.0)
     assert some > silent() + 4
+
+
+def test_drawings_show_driveways_that_the_narrative_passes_over() -> None:
+    reports = [make_report(s, length=0.1, modes={"both": 1.0}) for s in range(600)]
+    several = [r for r in reports if len(r.crash.accesses) > 1]
+    assert 10 < len(several) < 100
+    for report in several:
+        drawn = [(COMPASS[a.leg], a.side, a.kind) for a in report.crash.accesses]
+        told = [(a["leg"], a["side"], a["kind"]) for a in report.road["accesses"]]
+        assert sorted(told) == sorted(drawn)
+        assert len({leg for leg, _, _ in drawn}) == len(drawn)
+        assert all(report.weight(("accesses", i, "distance_m")) == GUESS for i in range(len(told)))
+    short = [leg.bearing for r in reports for leg in r.crash.legs if leg.mouth is not None]
+    assert len(short) > 10
+    assert not any(a.leg == leg.bearing and leg.mouth for r in reports for a in r.crash.actors for leg in r.crash.legs)
+    for report in (make_report(s, held_out=True, modes={"both": 1.0}) for s in range(200)):
+        assert not any(access.mouth for access in report.crash.accesses)

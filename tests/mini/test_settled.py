@@ -78,6 +78,9 @@ def test_a_limit_of_this_road_is_of_no_road() -> None:
     assert unsettled(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
     assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{AXIS}.0"})])
     assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{ROAD}.0"})])
+    crash.legs[1].limit = crash.legs[3].limit = 35
+    assert unsettled(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
+    assert not unsettled(crash, [*tied, frozenset({"limit.0", "limit.2"})])
 
 
 @settings(max_examples=100, deadline=None)
