@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.draft import QUARTER_DEG
-from sgcad_core.narrative.facts import VehicleFacts
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFacts
-from sgcad_core.specs import Compass, Maneuver
+from sgcad_core.specs import Area, Compass, Maneuver
 
+_FACING_DEG: dict[Area, int] = {"left": -90, "right": 90}
+"""Clockwise degrees from the heading of a striker to that of the vehicle whose side it meets squarely."""
 OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
 
 
@@ -16,12 +18,13 @@ def legs_used(facts: RoadFacts) -> tuple[Compass, ...]:
     """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
 
     One that goes straight on needs no leg ahead: it may have been struck before. The road that a driveway meets goes on
-    to both sides, and a stem lies where the text says.
+    to both sides, and a stem lies where the text says. Where a turn is told, a heading may follow that is not.
     """
-    junction = facts.junction
+    junction, crash = facts.junction, facts.crash
     legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []
-    driving = [v for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "parked"]
-    ways = [(v.heading, _meant(v)) for v in driving if v.heading and not _joined(v, facts)]
+    known = [v for v in crash.vehicles if v.heading_stated or _led(v) or _faced(v, crash)]
+    driving = [v for v in known if v.heading and v.maneuver != "parked"]
+    ways = [(v.heading, _meant(v)) for v in driving if v.heading and not (v.heading_stated and _joined(v, facts))]
     for heading, maneuver in ways:
         legs.append(turned(heading, 180))
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
@@ -37,6 +40,24 @@ def _along(driving: list[VehicleFacts], facts: RoadFacts) -> list[Compass]:
     known = [v for v in driving if v.heading and axis_of(v.heading) in streets and v.id not in beside]
     found = [v.heading for v in known if v.heading and v.origin not in OFF_ROAD]
     return found if len({axis_of(heading) for heading in found}) == 1 else []
+
+
+def _led(v: VehicleFacts) -> bool:
+    """Whether a vehicle's heading follows from its turn and from where that led, both told."""
+    if not v.heading or not v.maneuver_stated or v.maneuver not in QUARTER_DEG:
+        return False
+    return v.exit_heading == turned(v.heading, QUARTER_DEG[v.maneuver])
+
+
+def _faced(v: VehicleFacts, crash: CrashFacts) -> bool:
+    """Whether a vehicle that turned was struck squarely on the side that faced one that drove on, all of it told."""
+    first = crash.contacts[0] if crash.contacts else None
+    by = crash.vehicle(first.striker) if first and first.struck == v.id and first.areas_stated else None
+    if not (first and by and by.heading and by.heading_stated and v.maneuver_stated and v.maneuver in QUARTER_DEG):
+        return False
+    side = _FACING_DEG.get(first.struck_area)
+    aligned = side is not None and first.striker_area == "front" and by.maneuver not in QUARTER_DEG
+    return aligned and v.heading == turned(by.heading, side or 0)
 
 
 def _meant(v: VehicleFacts) -> Maneuver:
