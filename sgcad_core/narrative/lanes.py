@@ -127,6 +127,10 @@ _EACH_TURN = re.compile(
     r"\b(left|right)[ -]turn lanes? (?:in|for|on) (?:(?:each|both|either|all|opposite|opposing) "
     r"(?:direction|side|way|approach|of)|"
     rf"(?:the )?(?:{BOUND}) and (?:the )?(?:{BOUND}))", re.I)  # fmt: skip
+_ORDINALS = {"second": "two", "third": "three", "fourth": "four", "fifth": "five"}
+_COUNTED_TURN = re.compile(
+    rf"\bthe ({'|'.join(_ORDINALS)}) ({BOUND}) lane,? (?:which|that) (?:was|is) an? (left|right)[ -]turn(?:[ -]only)?"
+    r"[ -]lane", re.I)  # fmt: skip
 _EACH_WITH_TURN = re.compile(
     rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
     r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
@@ -149,7 +153,7 @@ class _Item:
 
 def lane_facts(text: str) -> LaneFacts:
     """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
-    marked = _CENTER_TURN.sub(" CENTERLANE ", _each_spelled_out(text))
+    marked = _CENTER_TURN.sub(" CENTERLANE ", _spelled_out(text))
     each = _EACH.search(marked)
     own = _OWN.search(marked)
     marked = _OWN.sub(" ", marked)
@@ -171,9 +175,11 @@ def lane_facts(text: str) -> LaneFacts:
     )  # fmt: skip
 
 
-def _each_spelled_out(text: str) -> str:
-    """ "two lanes and a left turn lane in each direction": both are told for each direction."""
-    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)
+def _spelled_out(text: str) -> str:
+    """ "two lanes and a left turn lane in each direction": both are told for each direction; "the third northbound
+    lane, which was a left-turn lane": there are three, and that is one of them."""
+    counted = _COUNTED_TURN.sub(lambda m: f"{_ORDINALS[m[1].lower()]} {m[2]} lanes including a {m[3]}-turn lane", text)
+    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", counted)
 
 
 def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None]) -> int | None:
