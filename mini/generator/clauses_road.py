@@ -8,7 +8,7 @@ Slots: {noun} "urban road", {n} all its lanes ("four"), {each} lanes each way ("
 here is held out.
 
 Sentences: PAIR tells both roads of a junction at once ({one} and {other} with their articles, {a1} and {a2} their axes),
-LIMITS one {lim} that holds on both, EACH_WAY the lanes of a road ({axis0}) that has {each} either way ({w1}, {w2}).
+LIMITS one {lim} that holds on both, ALIKE {each} direction's lanes of both ({total} together), EACH_WAY the lanes of a road ({axis0}) that has {each} either way ({w1}, {w2}).
 """
 
 from __future__ import annotations
@@ -127,6 +127,24 @@ In [either direction|both directions] the {axis0} [road|street|roadway] [has|had
 [It has|It had|The {axis0} road has] {each} [running|going|leading] {w1} and {each} {w2}
 The {axis0} [road|street|roadway] [is|was] {each} wide [each way|in each direction|per direction]
 """)
+ALIKE = {
+    "two_way": clauses("""
+Both [roads|roadways|streets] [had|have|were posted as having] {each} [in each direction|each way|in either direction|per direction]
+The two [roads|roadways|streets] [each |]had {each} [in each direction|each way|in either direction]
+[Both|The two|The intersecting] [roads|roadways|streets] [were|are] {total}-lane [roads|roadways|streets]
+[Each|Either] of the [roads|roadways|streets] [is|was] {each} wide [in each direction|each way]
+[Both|The two] [roads|roadways|streets] [consist|consisted] of {total} lanes, {each} [in each direction|each way]
+[All|Both] [approaches|roads] [had|have] {total} lanes [in all|together|counting both directions]
+"""),
+    "one_way": clauses("""
+Both [roads|roadways|streets] [were|are] one-way [with|and had] {each}[ of travel| of traffic|]
+Both one-way [roads|roadways|streets] [had|have] {each}[ of travel| of traffic|]
+Each one-way [road|roadway|street] [had|has|carried|consisted of] {each}[ of travel| of traffic|]
+The two [roads|roadways|streets], both one-way, had {each}[ each| apiece|]
+This is where two one-way [roads|roadways|streets] of {each}[ each|] [cross|meet|intersect]
+[Both|The two] [were|are] one-way streets, {each} wide
+"""),
+}
 
 enlarge("road", globals())
 

@@ -168,3 +168,58 @@ The driver of {V} was backing and [did not see|failed to yield to|never saw] {W}
 ~{V} reversed into the [road|street] ahead of {W}
 """),
 }
+
+PROCEEDS = {
+    "turn": clauses("""
+{V} then [proceeded|started|began|attempted] to turn {turn}
+{V} then [started|began|initiated|made] [its|the] {turn} turn
+{V} [started|began|commenced] [its|the] {turn} turn and [entered|crossed] the [path|lane] of {W}
+{V} [started|began|commenced] [its|the] {turn} turn[ in front of {W}|]
+[As|When] the [light|signal] [changed|turned green], {V} [began|started] to turn {turn}
+[When|Once|As] [traffic|the way] [cleared|had cleared|seemed clear], {V} [turned|began to turn|started turning] {turn}
+After [waiting|a short wait|a pause|several seconds|looking both ways], {V} [pulled out|moved forward|proceeded] to turn {turn}
+After [waiting|a short wait|a pause|several seconds|looking both ways], {V} [turned|began to turn|made the turn to the] {turn}
+{V} then [pulled out|pulled forward|moved out|accelerated] to turn {turn}
+{V} [proceeded|moved|rolled] into the [intersection|roadway], turning {turn}
+{V} [proceeded|moved|pulled] into the [intersection|roadway|road] and turned {turn}
+Seeing no [traffic|vehicles|one coming], the driver of {V} [proceeded|started|began] to turn {turn}
+The driver of {V} [thought|believed|assumed] [it was clear|there was time|there was room] and [turned|began turning|made the turn to the] {turn}
+{V} let [several vehicles|a group of cars|other traffic] [pass|go by] and then turned {turn}
+{V} waited for [several vehicles|a group of cars|other traffic] to [pass|clear] and then turned {turn}
+A [vehicle|car] in the next lane [stopped|made room|waited] to let {V} through, and {V} turned {turn}
+Another [driver|motorist] [motioned|waved] {V} on, and it [turned|began to turn] {turn}
+{V} had [started|begun] [its|the] {turn} turn when {W} [arrived|came into the intersection|came along]
+As {V} [began|started|was making] [its|the] {turn} turn, {W} [was going straight|came through the intersection|was passing|arrived]
+{V} left the [stop line|stop sign|stop bar|turn lane] [to make|making] [a|its] {turn} turn
+The driver of {V} released the brake and turned {turn}
+From [its stop|a standstill|this position], {V} [began|started|made] a {turn} turn
+{V} [edged|inched|crept|rolled] forward and then [turned|began to turn] {turn}
+{V} [accelerated|moved off|started up] from the stop, turning {turn}[ in front of {W}|]
+{V}, after its stop, [turned|was turning] {turn} [across|into] the path of {W}
+[The|A] {turn} turn was then [begun|started|attempted] by {V}
+{V} [resumed moving|moved again|started again], turning {turn}
+{V} then turned {turn}[ in front of {W}| into the path of {W}| and {W} was there|]
+The driver of {V} saw a gap and [took it|went], turning {turn}
+{V} [proceeded|went on] to [turn {turn}|make the {turn} turn|make its {turn} turn] [as|while] {W} [approached|came near|was approaching]
+At that [point|time|moment], {V} [turned|began to turn|started to turn] {turn}
+"""),
+    "cross": clauses("""
+{V} then [proceeded|started|continued|drove] [into|across|through] the intersection
+{V} then [pulled out|moved forward|accelerated] [into|across] the intersection[ in front of {W}|]
+After [stopping|waiting|looking both ways|a pause], {V} [proceeded|started|went] [straight |]across
+Seeing no [traffic|vehicles|one coming], the driver of {V} [proceeded|started|drove] [straight |]across[ the intersection| the road|]
+When the [light|signal] turned green, {V} [proceeded|drove|went] straight ahead
+{V} left the stop [line|sign|bar] and went straight [across|through|ahead]
+{V} [started|tried|began] to cross and {W} [arrived|came along|was there]
+As {V} [started across|was crossing|proceeded], {W} [entered|came into|was passing through] the intersection
+{V} [inched|edged|crept|rolled] forward and then [crossed|drove across]
+The driver of {V} [thought|believed|assumed] [it was clear|there was time|the road was clear] and drove straight [across|on|through]
+[Once|When|As] [traffic|the way] [cleared|had cleared|seemed clear], {V} [went|drove|proceeded] straight across
+Another [driver|motorist] [motioned|waved] {V} on, and it [crossed|went straight across]
+{V} [resumed moving|moved again|started again] and [crossed|went straight through] the [intersection|road]
+From [its stop|a standstill|this position], {V} [crossed|drove straight across|went straight on]
+At that [point|time|moment], {V} [started|drove|went] straight across[ the path of {W}|]
+{V} then crossed [in front of|into the path of] {W}
+"""),
+}
+"""What one does that has waited: it goes. Trains only."""

@@ -11,9 +11,12 @@ from random import Random
 from typing import Any
 
 from mini.generator import clauses_contact as told
+from mini.generator import clauses_motion as motion
+from mini.generator import turnoffs
 from mini.generator.clauses_critical import CRITICAL
+from mini.generator.clauses_turning import PROCEEDS
 from mini.generator.grammar import Told, choose, clause_of, clauses, families
-from mini.generator.world import Contact, Crash
+from mini.generator.world import Actor, Contact, Crash
 
 _BEHIND = {
     "stopped": "stopped|stand|stood|sitting|sat|stationary|halted|motionless|not moving|at rest|to a [a-z ]*stop|waiting|last vehicle",
@@ -89,7 +92,7 @@ class EventsMixin:
             }
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
             self.told |= {f"man.{self.id_of(w)}"} if goes_on else set()
-            out.append(self.say(self._true_of(w, CRITICAL[key]), v, w, turn=self._turn(v)))
+            out.append(self.say(self._true_of(w, self._error(key)), v, w, turn=self._turn(v)))
         if rng.random() < (0.12 if self.ciren else 0.4):
             alone = not self.id_of(w).startswith("V")
             out.append(self.say([c for c in told.AVOID if not alone or "{W}" not in c], v, w))
@@ -99,6 +102,16 @@ class EventsMixin:
             out = out[1:]
         return out + [self.say(told.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
+    def _error(self, key: str) -> list[str]:
+        """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
+        if self.held_out:
+            return CRITICAL[key]
+        if self.crash.layout == "driveway" and key == "left_opposite" and self.rng.random() < 0.5:
+            return turnoffs.INTO
+        if self.waited and self.rng.random() < 0.5:
+            return PROCEEDS["cross" if key == "crossing" else "turn"]
+        return CRITICAL[key]
+
     def _true_of(self, index: int, options: list[str]) -> list[str]:
         """One clause that says of the other vehicle only what it does: that it slowed, that it had stopped.
 
@@ -106,10 +119,32 @@ class EventsMixin:
         """
         does = self.crash.actors[index].maneuver
         for _ in range(TRIES):
-            clause = clause_of(self.rng, options, self.held_out)
+            clause = self.fitting(options)
             if not any(word != does and found.search(clause) for word, found in STATES.items()):
                 return [clause]
         return options
+
+    def reason(self, key: str, actor: Actor) -> str:
+        """What one stands or slows for; of those who turn off a road into a driveway half say so."""
+        leaves = self.crash.layout == "driveway" and not self.crash.is_main(actor.leg)
+        if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
+            return self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key])
+        return self.fitting(motion.WHY[key], into=not leaves)
+
+    def fitting(self, options: list[str], into: bool = True) -> str:
+        """A clause or phrase, its choices made, that suits the roads: of a driveway only where there is one.
+
+        `into`: whether it may be one that somebody turns into.
+        """
+        clause = clause_of(self.rng, options, self.held_out)
+        if self.held_out:
+            return clause
+        for _ in range(TRIES):
+            if turnoffs.suits(clause, self.crash) and (into or not turnoffs.DRIVEWAY.search(clause)):
+                break
+            clause = clause_of(self.rng, options, self.held_out)
+        self.told |= {"layout"} if turnoffs.tells_driveway(clause, self.crash) else set()
+        return clause
 
     def _turn(self, index: int) -> str:
         maneuver = self.crash.actors[index].maneuver

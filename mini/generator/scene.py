@@ -10,11 +10,13 @@ from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
-from mini.generator.settled import AXIS, STEM
+from mini.generator.settled import AXIS, ROAD, STEM
 from mini.generator.world import WORDS, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
 TIMES = ("morning", "early morning", "afternoon", "late afternoon", "evening", "early evening", "mid-morning", "night")
+PASSED_OVER = 0.35
+"""Share of openings that name the road and leave the driveway to those who turn there."""
 
 
 class SceneMixin(RoadsMixin):
@@ -80,13 +82,17 @@ class SceneMixin(RoadsMixin):
             if control == "none" and self.ciren and self.rng.random() < 0.2:
                 self.told.add("control")
                 text = text.replace("a ", "an uncontrolled ", 1)
-            elif not self.ciren and not self.held_out and self.rng.random() < 0.06:
+            elif not self.ciren and not self.held_out and self.rng.random() < 0.1:
                 text = self._wide(text)
             return text
         if control == "signal" and self.rng.random() < 0.25:
             self.told.add("control")
             return "a signalized intersection"
-        return self.rng.choice(("an intersection", "the intersection"))
+        text = self.rng.choice(("an intersection", "the intersection"))
+        if self.sentences or self.ciren or self.held_out or text.startswith("the") or self.rng.random() > 0.15:
+            return text
+        self.told |= {f"{ROAD}.{self.crash.main % 4}"}
+        return self._wide(text)
 
     def _wide(self, junction: str) -> str:
         """`a five-lane T-intersection`, which counts the lanes of the main road."""
@@ -96,7 +102,7 @@ class SceneMixin(RoadsMixin):
             return junction
         self.told |= {f"lanes.{axis}"}
         self.stated.add(f"lanes.{axis}")
-        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.removeprefix('a ')}"
+        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.partition(' ')[2]}"
 
     # -------------------------------------------------------------- control
     def _control_kind(self) -> str:
@@ -136,9 +142,11 @@ class SceneMixin(RoadsMixin):
             "driveway": scene.OPENING_DRIVEWAY,
             "merge": scene.OPENING_MERGE,
         }
+        main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
+        if self.crash.layout == "driveway" and not self.held_out and self.rng.random() < PASSED_OVER:
+            return [self.say(scene.OPENING_PLAIN, main)]
         if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
-        main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
@@ -155,6 +163,8 @@ class SceneMixin(RoadsMixin):
             out += self._each_way()
         if not self.held_out and self.crash.layout in ("four", "t") and rng.random() < 0.3:
             out += rng.choice((self._pair, self._limits))()
+        if not self.held_out and self.roads_left and rng.random() < 0.15:
+            out += self._alike_roads()
         if not self.held_out and self.crash.layout in roads.STEM and rng.random() < 0.3:
             out.append(self.say(roads.STEM[self.crash.layout], main))
         curved = self._leg_of(main).curve != "none"
@@ -195,6 +205,20 @@ class SceneMixin(RoadsMixin):
         self.told |= {f"{AXIS}.{first}", f"{AXIS}.{second}"}
         axes = {"a1": words.axis(self.rng, first), "a2": words.axis(self.rng, second)}
         return [self.say(roads.PAIR, one=one, other=other, Ione=one[:1].upper() + one[1:], **axes)]
+
+    def _alike_roads(self) -> list[str]:
+        """Lanes of both roads of a junction at once, where they have the same and no others."""
+        legs = self.crash.legs
+        found = {frozenset((leg.lanes_in, leg.lanes_out)) for leg in legs}
+        odd = any(leg.turns_in or leg.twltl or leg.kind != "road" for leg in legs)
+        if self.crash.layout not in ("four", "t") or len(found) > 1 or odd:
+            return []
+        ways = found.pop()
+        if len(ways - {0}) != 1:
+            return []
+        lanes, kind = max(ways), "one_way" if 0 in ways else "two_way"
+        self.told |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD)}
+        return [self.say(roads.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
 
     def _limits(self) -> list[str]:
         """One limit of both roads, where they have one."""
