@@ -222,4 +222,4 @@ At that [point|time|moment], {V} [started|drove|went] straight across[ the path 
 {V} then crossed [in front of|into the path of] {W}
 """),
 }
-"""What one does that has waited: it goes. Trains only."""
+"""What one does that has stood or slowed: it goes. Trains only."""

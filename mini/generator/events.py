@@ -48,6 +48,8 @@ MUTUAL = re.compile(
     re.IGNORECASE,
 )
 """Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
+OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
+"""Clauses of rest that need a second vehicle."""
 TRIES = 40
 
 
@@ -93,14 +95,16 @@ class EventsMixin:
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
             self.told |= {f"man.{self.id_of(w)}"} if goes_on else set()
             out.append(self.say(self._true_of(w, self._error(key)), v, w, turn=self._turn(v)))
+        alone, rest = not self.id_of(w).startswith("V"), told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
-            alone = not self.id_of(w).startswith("V")
             out.append(self.say([c for c in told.AVOID if not alone or "{W}" not in c], v, w))
         for number, contact in enumerate(self.crash.contacts):
             out.append(self._impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        return out + [self.say(told.REST, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+        if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
+            rest = [clause for clause in rest if not OF_TWO.search(clause)]
+        return out + [self.say(rest, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _error(self, key: str) -> list[str]:
         """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
@@ -129,12 +133,14 @@ class EventsMixin:
         leaves = self.crash.layout == "driveway" and not self.crash.is_main(actor.leg)
         if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
             return self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key])
+        if key in ("sign", "light"):
+            return clause_of(self.rng, motion.WHY[key], self.held_out)
         return self.fitting(motion.WHY[key], into=not leaves)
 
     def fitting(self, options: list[str], into: bool = True) -> str:
-        """A clause or phrase, its choices made, that suits the roads: of a driveway only where there is one.
+        """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one.
 
-        `into`: whether it may be one that somebody turns into.
+        `into`: whether it may be a driveway that somebody turns into.
         """
         clause = clause_of(self.rng, options, self.held_out)
         if self.held_out:
@@ -143,7 +149,7 @@ class EventsMixin:
             if turnoffs.suits(clause, self.crash) and (into or not turnoffs.DRIVEWAY.search(clause)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
-        self.told |= {"layout"} if turnoffs.tells_driveway(clause, self.crash) else set()
+        self.told |= turnoffs.told(clause, self.crash)
         return clause
 
     def _turn(self, index: int) -> str:

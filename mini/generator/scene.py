@@ -91,7 +91,6 @@ class SceneMixin(RoadsMixin):
         text = self.rng.choice(("an intersection", "the intersection"))
         if self.sentences or self.ciren or self.held_out or text.startswith("the") or self.rng.random() > 0.15:
             return text
-        self.told |= {f"{ROAD}.{self.crash.main % 4}"}
         return self._wide(text)
 
     def _wide(self, junction: str) -> str:

@@ -1,5 +1,5 @@
 # ruff: noqa: E501 - one clause a line
-"""What turning vehicles leave or enter, a street or a driveway: words that suit a crash's roads, and what they tell."""
+"""What turning vehicles leave, enter or obey, a street, a driveway, a signal: words that suit a crash's roads."""
 
 from __future__ import annotations
 
@@ -8,28 +8,48 @@ import re
 from mini.generator.grammar import clauses, tables
 from mini.generator.world import Crash
 
-DRIVEWAY = re.compile(
-    r"driveway|\bdrive\b(?= of| out|,|$)|private drive|drive-through|parking|\blots?\b|\bstation\b|\bstore\b|shopping"
-    r"|\bbusiness\b|restaurant|\bschool\b|church|\bbank\b|\bmarket\b|\bmall\b|motel|apartment|car wash|\balley\b|farm lane",
+_BUSINESS = (
+    r"lot|lots|gas station|station|store|stores|shopping center|business|restaurant|school|church|bank|market|mall|motel"
+    r"|apartment complex|car wash|drive-through|alley|farm lane|private drive|drive"
+)
+DRIVEWAY = re.compile(rf"driveway|parking|shopping|business|\b(?:{_BUSINESS})\b", re.IGNORECASE)
+"""Words that may be of a driveway."""
+_TOLD = re.compile(
+    rf"driveway|private drive|parking lot|\b(?:into|out of|from|left|leaving|enter|exit\w*|reach) (?:a|an|the|its|his|her)"
+    rf" (?:\w+ )?(?:{_BUSINESS})\b",
     re.IGNORECASE,
 )
 STREET = re.compile(
     r"intersection|(?:side|cross|crossing|intersecting|minor|main) (?:street|road)|\b(?:a|the) (?:street|road) on"
-    r"|onto a street|stop (?:sign|line|bar)|\bsignal\b(?! left| right)|\blight\b",
+    r"|onto a street|stop (?:sign|line|bar)",
     re.IGNORECASE,
 )
+SIGNAL = re.compile(
+    r"\b(?:green|red|yellow|amber|traffic|stop) ?(?:light|signal|arrow)|\b(?:on|against|ran|through|for) (?:a |the )?"
+    r"(?:green|red|yellow|light|signal)\b(?! turn)|\b(?:light|signal) (?:changed|turned|favored|cycle|phase)"
+    r"|on green\b|on red\b|disregarded the .*signal",
+    re.IGNORECASE,
+)
+STOP = re.compile(r"stop (?:sign|line|bar)", re.IGNORECASE)
 
 
 def suits(text: str, crash: Crash) -> bool:
-    """Whether the words for what one turns into or comes out of may be said of these roads."""
+    """Whether what the words say of driveways, streets, signs and signals may be said of these roads."""
+    controls = {leg.control for leg in crash.legs}
+    if SIGNAL.search(text) and "signal" not in controls:
+        return False
     if crash.layout == "driveway":
         return not STREET.search(text)
-    return crash.layout not in ("four", "t") or not DRIVEWAY.search(text)
+    if crash.layout not in ("four", "t"):
+        return True
+    return not DRIVEWAY.search(text) and (not STOP.search(text) or bool(controls & {"stop", "flashing", "signal"}))
 
 
-def tells_driveway(text: str, crash: Crash) -> bool:
-    """Whether the words tell that there is a driveway, of a crash that has one."""
-    return crash.layout == "driveway" and DRIVEWAY.search(text) is not None
+def told(text: str, crash: Crash) -> set[str]:
+    """Facts of the roads that the words tell beside their own: that there is a driveway, or a signal."""
+    found = {"layout"} if crash.layout == "driveway" and _TOLD.search(text) else set()
+    signal = SIGNAL.search(text) and all(leg.control == "signal" for leg in crash.legs)
+    return found | ({"control"} if signal else set())
 
 
 INTO = clauses("""
@@ -37,7 +57,7 @@ INTO = clauses("""
 {V} [attempted|began|started] [a left turn|to turn left|a left-hand turn] into [a|the] [driveway|parking lot|business driveway][ in front of {W}|]
 The driver of {V} [attempted|wanted|tried] to turn left into [a|the] [driveway|gas station|shopping center|restaurant lot|school driveway][ and did not see {W}|]
 {V} was turning left into [a|the] [driveway|parking lot|business entrance|private drive] when {W} [approached|came along|arrived]
-{V} was [partially|partly|half way] into the driveway when {W} [arrived|came along|reached it]
+{V} was [partially|partly|half way] into the driveway, turning left, when {W} [arrived|came along|reached it]
 While turning left into [a|the] [driveway|parking lot|church lot|gas station], {V} [entered|crossed|blocked] the [path|lane] of {W}
 As {V} [turned|was turning|made a turn] left into [a|the] [driveway|lot|shopping center], {W} was [going straight|approaching from the opposite direction]
 {V} made a left turn [toward|into|to enter] a [driveway|parking lot|business|motel driveway] and [failed to yield|did not yield] to {W}

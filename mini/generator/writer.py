@@ -47,7 +47,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         self.people: dict[int, dict[str, str]] = {}
         """Age, sex and pronouns of the drivers, by actor."""
         self.waited = False
-        """Whether the one who errs stood before it crossed or turned."""
+        """Whether the one who errs stood or slowed before it crossed or turned."""
         self.roads_left = rng.random() < 0.85
         """Whether the report tells lanes at all."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image, ImageChops, ImageDraw
 
 from mini.generator.world import Access
-from mini.renderer.lines import Ground, Points
+from mini.renderer.lines import Band, Ground, Points
 from mini.renderer.masks import rounded
 from mini.renderer.pen import Pen
 
@@ -54,6 +54,17 @@ def opened(pen: Pen, ground: Ground, found: Sequence[Access], area: Image.Image,
         radius = min(0.6 * corner, 0.8 * HALF[access.kind]) * pen.scale
         area = ImageChops.lighter(area, rounded(with_it, radius))
     return area
+
+
+def beside(pen: Pen, ground: Ground, found: Sequence[Access], band: Band, side: str, s: Points) -> list[Points]:
+    """Runs of places `s` (metres from the hub) along one side of a leg, without those at open mouths."""
+    clear = np.full(len(s), True)
+    for access in found:
+        if access.mouth is not None and (access.leg, access.side) == (band.leg.bearing, side):
+            clear &= np.abs(s - place(pen, ground, access)) > HALF[access.kind] + 1.0
+    runs = np.split(s, np.flatnonzero(np.diff(clear.astype(int))) + 1)
+    kept = [clear[i] for i in np.cumsum([0, *map(len, runs[:-1])])]
+    return [run for run, is_kept in zip(runs, kept, strict=True) if is_kept and len(run) > 1]
 
 
 def cut(pen: Pen, ground: Ground, found: Sequence[Access], wider: float) -> None:

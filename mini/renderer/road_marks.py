@@ -113,9 +113,10 @@ class RoadMarks:
             s = np.arange(self.ground.setback(band.leg.bearing, self.corner + 1.5), band.length, 1.0)
             if len(s) < 3 or band.leg.kind != "road":
                 continue
-            for wide in places:
-                self.pen.line(band.at(s, band.right + wide), width=self.mark)
-                self.pen.line(band.at(s, band.left - wide), width=self.mark)
+            for side, curb, sign in (("right", band.right, 1), ("left", band.left, -1)):
+                for run in accesses.beside(self.pen, self.ground, self.crash.accesses, band, side, s):
+                    for wide in places:
+                        self.pen.line(band.at(run, curb + sign * wide), width=self.mark)
 
     # -------------------------------------------------------------- lines
     def _center(self, band: Band, start: float) -> None:

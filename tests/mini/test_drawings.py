@@ -202,7 +202,6 @@ def test_a_driveway_opens_the_curb_and_its_mouth_is_open(seed: int, leg: int, si
     ground = Ground(crash, {0: 30.0, 4: 30.0}, 100.0)
     pen = Pen(Random(seed), 500, 500, 8.0, 0.0, (0.0, 0.0))
     marks = RoadMarks(Random(seed), pen, crash, ground)
-    marks.shoulders = 0
     marks.draw(arrows=False, signs=False)
     assert pen.shows(accesses.box(pen, ground, access, 0.5, 1.0), 0.0)
     assert _ink(accesses.box(pen, ground, access, 0.3, mouth, wider=-1.9), pen).sum() == 0
