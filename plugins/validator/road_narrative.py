@@ -7,7 +7,7 @@ attempt. Reads the compiled network; compass is north up.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
@@ -19,7 +19,7 @@ from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle, tu
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import legs_used
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
 
 AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "northwest-southeast"}
@@ -27,6 +27,9 @@ WORDS = {
     "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
     "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
 }  # fmt: skip
+
+
+_ORDER = ("repair", "doubt", "note")
 
 
 class RoadNarrative(Validator):
@@ -53,7 +56,7 @@ class RoadNarrative(Validator):
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
             *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
         ]  # fmt: skip
-        return sorted(found, key=lambda f: f.severity != "repair")
+        return sorted(found, key=lambda f: _ORDER.index(f.severity))
 
     # -------------------------------------------------------------- junction
     def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
@@ -74,19 +77,26 @@ class RoadNarrative(Validator):
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
 
     def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
-        """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round."""
+        """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round.
+
+        Where only the sides that touched tell a leg, that is a doubt.
+        """
         drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
         if facts.junction.kind not in ("t", "four_leg", "driveway") or not drawn:
             return
-        used = legs_used(facts)
-        missing = [leg for leg in used if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
+        stated, missing = legs_used(facts), self._without(legs_used(facts, faced=True), drawn)
         if not missing:
             return
+        severity: Severity = "repair" if self._without(stated, drawn) else "doubt"
         sides = " and ".join(WORDS[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
-        yield _finding(what, "junction", f"legs {seen}", remedy, holds=_laid(facts, pictured))
+        yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=_laid(facts, pictured))
+
+    def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
+        """Bearings at which nothing is drawn."""
+        return [leg for leg in legs if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
 
     # -------------------------------------------------------------- directions of travel
     def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
@@ -208,7 +218,7 @@ def _laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
 
     Only where the told paths use every leg; without a diagram a road that is used goes on to both sides.
     """
-    used, legs = set(legs_used(facts)), {leg.bearing for leg in layout_of_facts(facts).legs}
+    used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
     sure = used if pictured else {*used, *(turned(leg, 180) for leg in used)}
     ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
     return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
@@ -240,9 +250,9 @@ def _ids(roads: list[DrawnRoad]) -> str:
 
 
 def _finding(
-    what: str, where: str, value: str, remedy: str, severity: str = "repair", holds: tuple[Hold, ...] = ()
+    what: str, where: str, value: str, remedy: str, severity: Severity = "repair", holds: tuple[Hold, ...] = ()
 ) -> Finding:
     return Finding(
-        source="road_narrative", severity="note" if severity == "note" else "repair",
+        source="road_narrative", severity=severity,
         what=what, where=where, value=value, remedy=remedy, holds=holds,
     )  # fmt: skip

@@ -127,16 +127,14 @@ _EACH_TURN = re.compile(
     r"\b(left|right)[ -]turn lanes? (?:in|for|on) (?:(?:each|both|either|all|opposite|opposing) "
     r"(?:direction|side|way|approach|of)|"
     rf"(?:the )?(?:{BOUND}) and (?:the )?(?:{BOUND}))", re.I)  # fmt: skip
-_ORDINALS = {"second": "two", "third": "three", "fourth": "four", "fifth": "five"}
-_COUNTED_TURN = re.compile(
+_ORDINALS = {"second": 2, "third": 3, "fourth": 4, "fifth": 5}
+_NUMBERED_TURN = re.compile(
     rf"\bthe ({'|'.join(_ORDINALS)}) ({BOUND}) lane,? (?:which|that) (?:was|is) an? (left|right)[ -]turn(?:[ -]only)?"
     r"[ -]lane", re.I)  # fmt: skip
 _EACH_WITH_TURN = re.compile(
     rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
     r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
-
-
 _CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
 
 
@@ -153,7 +151,7 @@ class _Item:
 
 def lane_facts(text: str) -> LaneFacts:
     """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
-    marked = _CENTER_TURN.sub(" CENTERLANE ", _spelled_out(text))
+    marked = _CENTER_TURN.sub(" CENTERLANE ", _NUMBERED_TURN.sub(r"the \1 \2 lane", _spelled_out(text)))
     each = _EACH.search(marked)
     own = _OWN.search(marked)
     marked = _OWN.sub(" ", marked)
@@ -161,6 +159,7 @@ def lane_facts(text: str) -> LaneFacts:
     items = _counts(list(_items(counted)), _TOTAL.search(marked))
     known = _directions(counted, items)
     toward, turns = _sums(items, known)
+    _numbered_turns(text, toward, turns)
     each_turn = _EACH_TURN.search(counted)
     turns |= {"each": ("left" if each_turn[1].lower() == "left" else "right",)} if each_turn else {}
     total = _total(_EACH.sub("EACH", marked), counted, items, known)
@@ -176,10 +175,16 @@ def lane_facts(text: str) -> LaneFacts:
 
 
 def _spelled_out(text: str) -> str:
-    """ "two lanes and a left turn lane in each direction": both are told for each direction; "the third northbound
-    lane, which was a left-turn lane": there are three, and that is one of them."""
-    counted = _COUNTED_TURN.sub(lambda m: f"{_ORDINALS[m[1].lower()]} {m[2]} lanes including a {m[3]}-turn lane", text)
-    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", counted)
+    """ "two lanes and a left turn lane in each direction": both are told for each direction."""
+    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)
+
+
+def _numbered_turns(text: str, toward: dict[str, int], turns: dict[str, tuple[Side, ...]]) -> None:
+    """ "the third northbound lane, which was a left-turn lane": there are three at least, and that is one of them."""
+    for m in _NUMBERED_TURN.finditer(text):
+        way = compass(m[2])
+        toward[way] = max(toward.get(way, 0), _ORDINALS[m[1].lower()])
+        turns.setdefault(way, ("left" if m[3].lower() == "left" else "right",))
 
 
 def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None]) -> int | None:

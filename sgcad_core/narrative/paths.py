@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.relative import contact_turn
 from sgcad_core.narrative.roads import RoadFacts
-from sgcad_core.specs import Area, Compass, Maneuver
+from sgcad_core.specs import Compass, Maneuver
 
-_FACING_DEG: dict[Area, int] = {"left": -90, "right": 90}
-"""Clockwise degrees from the heading of a striker to that of the vehicle whose side it meets squarely."""
+_ONWARD = ("straight", "slowing", "negotiating_curve")
 OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
 
 
-def legs_used(facts: RoadFacts) -> tuple[Compass, ...]:
+def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
 
     One that goes straight on needs no leg ahead: it may have been struck before. The road that a driveway meets goes on
-    to both sides, and a stem lies where the text says. Where a turn is told, a heading may follow that is not.
+    to both sides, and a stem lies where the text says. `faced`: also of those whose heading nobody tells, where their
+    turn and the sides that touched do.
     """
     junction, crash = facts.junction, facts.crash
     legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []
-    known = [v for v in crash.vehicles if v.heading_stated or _led(v) or _faced(v, crash)]
+    known = [v for v in crash.vehicles if v.heading_stated or (faced and _faced(v, crash))]
     driving = [v for v in known if v.heading and v.maneuver != "parked"]
     ways = [(v.heading, _meant(v)) for v in driving if v.heading and not (v.heading_stated and _joined(v, facts))]
     for heading, maneuver in ways:
@@ -42,22 +43,16 @@ def _along(driving: list[VehicleFacts], facts: RoadFacts) -> list[Compass]:
     return found if len({axis_of(heading) for heading in found}) == 1 else []
 
 
-def _led(v: VehicleFacts) -> bool:
-    """Whether a vehicle's heading follows from its turn and from where that led, both told."""
-    if not v.heading or not v.maneuver_stated or v.maneuver not in QUARTER_DEG:
-        return False
-    return v.exit_heading == turned(v.heading, QUARTER_DEG[v.maneuver])
-
-
 def _faced(v: VehicleFacts, crash: CrashFacts) -> bool:
-    """Whether a vehicle that turned was struck squarely on the side that faced one that drove on, all of it told."""
+    """Whether the front of one that drove on met squarely the side of a vehicle that turned, all of it told."""
     first = crash.contacts[0] if crash.contacts else None
     by = crash.vehicle(first.striker) if first and first.struck == v.id and first.areas_stated else None
-    if not (first and by and by.heading and by.heading_stated and v.maneuver_stated and v.maneuver in QUARTER_DEG):
+    if not (first and by and by.heading and v.heading and v.maneuver_stated and v.maneuver in QUARTER_DEG):
         return False
-    side = _FACING_DEG.get(first.struck_area)
-    aligned = side is not None and first.striker_area == "front" and by.maneuver not in QUARTER_DEG
-    return aligned and v.heading == turned(by.heading, side or 0)
+    square = (first.striker_area, first.struck_area) in (("front", "left"), ("front", "right"))
+    if not square or not by.heading_stated or by.maneuver not in _ONWARD:
+        return False
+    return between(by.heading, v.heading) == contact_turn("front", first.struck_area)
 
 
 def _meant(v: VehicleFacts) -> Maneuver:

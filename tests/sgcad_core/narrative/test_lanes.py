@@ -38,6 +38,8 @@ def test_lanes_each_way_have_many_spellings(text: str) -> None:
     ("The eastbound road consisted of three lanes, two through lanes and a right turn lane", {"E": 3}),
     ("two northbound through lanes, a left turn lane and a right turn lane, and one southbound lane", {"N": 4, "S": 1}),
     ("the third northbound lane, which was a left turn-only lane", {"N": 3}),
+    ("It had five northbound lanes. The fourth northbound lane, which was a left-turn lane, was empty", {"N": 5}),
+    ("in the second northbound lane, which was a left turn lane, of a road with four northbound lanes", {"N": 4}),
     ("the two southbound lanes and the second northbound lane, which was a right turn lane", {"S": 2, "N": 2}),
     ("one lane for northbound traffic and two lanes for the southbound traffic", {"N": 1, "S": 2}),
     ("This street has five lanes, two southbound lanes, two northbound lanes and a two-way left turn lane",

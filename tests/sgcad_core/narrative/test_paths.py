@@ -13,11 +13,7 @@ SIDE = "The front of V1 struck the left side of V2."
     ("V1 was traveling north and turned right at the intersection. V2 was traveling south.", "SEN"),
     ("V1 was traveling north and V2 was traveling south.", "SN"),
     ("V1 was stopped northbound, waiting to turn right into a side street. V2 was northbound behind V1.", "SE"),
-    ("V1 was traveling east on a two-lane road. V2 exited a driveway to turn left in front of V1.", "WES"),
-    ("V1 was traveling east on a two-lane road. V2 exited a driveway in front of V1.", "WE"),
-    ("V1 was traveling north in lane one. V2 came out of a parking lot onto northbound lane one, turning right.", "SEN"),
-    ("V1 was traveling west. V2 was making a left turn from a side road in front of V1.", "EN"),
-    ("V1 was traveling west and turned left. V2 was turning left from a side road in front of V1.", "ES"),
+    ("V1 was traveling east on a two-lane road. V2 exited a driveway to turn left in front of V1.", "WE"),
     ("V1 was traveling east at the T-intersection. The side street intersects from the south.", "WS"),
     ("V1 struck the rear of V2 at the intersection.", ""),
     ("V1 was northbound. V2 was parked facing west.", "S"),
@@ -25,6 +21,19 @@ SIDE = "The front of V1 struck the left side of V2."
 ])  # fmt: skip
 def test_legs_are_those_that_headings_and_turns_tell(text: str, legs: str) -> None:
     assert set(legs_used(road_facts(f"{text} {SIDE}"))) == set(legs)
+
+
+@pytest.mark.parametrize(("text", "legs"), [
+    ("V1 was traveling east on a two-lane road. V2 exited a driveway to turn left in front of V1.", "WES"),
+    ("V1 was traveling east on a two-lane road. V2 exited a driveway in front of V1.", "WE"),
+    ("V1 was traveling north in lane one. V2 came out of a parking lot onto lane one, turning right.", "SEN"),
+    ("V1 was traveling west. V2 was making a left turn from a side road in front of V1.", "EN"),
+    ("V1 was traveling west and turned left. V2 was turning left from a side road in front of V1.", "ES"),
+    ("V1 was traveling north and made a U-turn. V2 was turning left out of a driveway.", "SN"),
+    ("V2 was leaving a driveway and turned left across the eastbound lanes.", ""),
+])  # fmt: skip
+def test_a_side_that_was_struck_tells_where_a_turning_vehicle_came_from(text: str, legs: str) -> None:
+    assert set(legs_used(road_facts(f"{text} {SIDE}"), faced=True)) == set(legs)
 
 
 @pytest.mark.parametrize(("text", "stated"), [
