@@ -179,6 +179,18 @@ def test_what_did_not_compile_or_says_nothing_is_passed_over() -> None:
     assert findings("", network(leg("N", 1, 1), leg("S", 1, 1))) == []
 
 
+@pytest.mark.parametrize(("bearings", "found"), [("EWN", []), ("EWS", ["doubt"]), ("NSW", ["repair"])])
+def test_a_leg_that_only_the_struck_side_tells_is_a_doubt(bearings: str, found: list[str]) -> None:
+    text = (
+        "V1 was traveling west on a road. V2 was making a left turn from the side road at a T-intersection. "
+        "The front of V1 struck the left side of V2."
+    )
+    here = [f for f in findings(text, network(*(leg(bearing, 1, 1) for bearing in bearings))) if "turn into" in f.what]
+    assert [f.severity for f in here] == found
+    held = [hold.either[0]["bearing"][0] for f in here for hold in f.holds]
+    assert held == ["N", "E", "W"][: 3 * bool(found)]
+
+
 @pytest.mark.parametrize(("said", "low", "high"), [
     ("a four-lane, two-way road", 4, 5), ("a five-lane road with a center turn lane", 4, 6),
     ("a road with two lanes in each direction", 4, 5),
