@@ -23,7 +23,7 @@ MERGE = 2
 
 
 def make_config(vocabulary: int, special: dict[str, int], size: str = "mini") -> Qwen2_5_VLConfig:
-    """The config of a size: "mini" (about 5.5 M parameters) or "tiny" for tests."""
+    """The config of a size: "mini" (about 5.7 M parameters) or "tiny" for tests."""
     hidden, layers, heads, inner, depth, vision = {"mini": (192, 10, 4, 512, 4, 128), "tiny": (64, 2, 2, 96, 1, 32)}[
         size
     ]
