@@ -12,8 +12,9 @@ SILENT = ("self_attn.o_proj.weight", "mlp.down_proj.weight")
 """What a layer adds to its input comes through these."""
 
 
-def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
-    """`weights` by parameter name, with `layers` text layers, at least as many as there are.
+def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -> dict[str, Tensor]:
+    """`weights` by parameter name, with `layers` text layers, at least as many as there are; their names start with
+    `prefix` and a number.
 
     The old layers keep their order and spread evenly; each new one copies the one before it and adds nothing yet
     (its outputs are zero), so that the answers stay the same and gradients find features at once.
@@ -21,17 +22,17 @@ def deepened(weights: Mapping[str, Tensor], layers: int) -> dict[str, Tensor]:
     Raises:
         ValueError: fewer layers are asked for than the weights have.
     """
-    found = 1 + max(int(name[len(LAYERS) :].partition(".")[0]) for name in weights if name.startswith(LAYERS))
+    found = 1 + max(int(name[len(prefix) :].partition(".")[0]) for name in weights if name.startswith(prefix))
     if layers < found:
         raise ValueError(f"weights of {found} text layers cannot begin a model of {layers}: start from smaller ones")
     places = [i * (layers - 1) // max(1, found - 1) for i in range(found)]
-    grown = {name: value for name, value in weights.items() if not name.startswith(LAYERS)}
+    grown = {name: value for name, value in weights.items() if not name.startswith(prefix)}
     for place in range(layers):
         source = max(i for i in range(found) if places[i] <= place)
-        prefix = f"{LAYERS}{source}."
+        own = f"{prefix}{source}."
         for name, value in weights.items():
-            if name.startswith(prefix):
-                part = name.removeprefix(prefix)
+            if name.startswith(own):
+                part = name.removeprefix(own)
                 silent = part in SILENT and places[source] != place
-                grown[f"{LAYERS}{place}.{part}"] = torch.zeros_like(value) if silent else value.clone()
+                grown[f"{prefix}{place}.{part}"] = torch.zeros_like(value) if silent else value.clone()
     return grown

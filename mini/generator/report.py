@@ -79,7 +79,7 @@ def make_report(
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
-    if mode in ("both", "image") and not held_out:
+    if mode in ("both", "image", "none") and not held_out:  # context-free rows too, else contrast invents driveways
         crash = mouths(Random(f"{seed} mouths"), crash)
     drawn, shown = drawn_facts(crash, control, arrows, bool(crash.accesses)), None
     if mode == "both" and not held_out and half is None and rng.random() < CARELESS:

@@ -167,7 +167,7 @@ def mouths(rng: Random, crash: Crash) -> Crash:
     found = [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
     free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
     stem = next((leg.bearing for leg in crash.legs if leg.kind == "driveway"), None)
-    odds = 0.35 if found or stem is not None else 0.06
+    odds = 0.35 if found or stem is not None else 0.03
     while free and len(found) < MAX_ACCESSES and rng.random() < odds:
         leg = free.pop(rng.randrange(len(free)))
         side = rng.choice(("left", "right"))
