@@ -202,11 +202,13 @@ class Hold(Record):
     either: tuple[Mapping[str, tuple[str | int, ...]], ...] = ()
     at: int | None = Field(None, ge=0)
     at_least: int = 0
+    at_most: int | None = None
 
     def line(self) -> str:
         """One line for prompts and logs."""
         meant = self.items if self.at is None else f"{self.items}[{self.at}]"
         parts = [f"at least {self.at_least} {self.items}"] if self.at_least else []
+        parts += [f"at most {self.at_most} {self.items}"] if self.at_most is not None else []
         told = [", ".join(f"{k} {'/'.join(map(str, v))}" for k, v in choice.items()) for choice in self.either]
         where = f" with {self.key} {'/'.join(self.values)}" if self.key else ""
         parts += [f"{meant}{where}: {' or '.join(told)}"] if told else []

@@ -14,7 +14,7 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, unmark
-from mini.generator.roads import beside, carriageway, misdrawn, mouths
+from mini.generator.roads import beside, carriageway, misdrawn, mouths, one_way
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash, Leg
@@ -30,6 +30,9 @@ UNMENTIONED = 0.4
 UNUSUAL = 0.2
 """Share of narratives alone that keep back lanes although there are several."""
 SECOND_THOUGHTS = 4
+ONE_WAY = {"text": 0.2, "both": 0.12, "image": 0.05, "none": 0.08}
+"""How often a crash that trains, in each mode, gets a one-way street where it can: in words they come without a count
+of lanes, at a T and beside two-way streets, and each of these is rare in crashes as they are sampled."""
 Json = dict[str, Any]
 Sentences = list[tuple[int, frozenset[str]]]
 
@@ -67,7 +70,7 @@ def make_report(
     rng = Random(seed * 2 + held_out)
     weights = modes or MODES
     mode = rng.choices(list(weights), list(weights.values()))[0]
-    crash = sample_crash(rng)
+    crash = _sample(rng, seed, held_out, mode)
     aside = beside(crash) if mode == "both" and not held_out and rng.random() < UNMENTIONED else None
     writer = Writer(rng, aside or crash, held_out, length)
     control, arrows = rng.random() < 0.6, rng.random() < 0.6
@@ -75,7 +78,7 @@ def make_report(
         return _refused(seed, mode, rng, crash, writer)
     narrative, sentences = writer.finish(writer.write())
     if mode == "text" and not held_out:
-        crash, narrative, sentences = _worth_telling(rng, length, (crash, narrative, sentences))
+        crash, narrative, sentences = _worth_telling(rng, seed, length, (crash, narrative, sentences))
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
@@ -109,14 +112,22 @@ def make_report(
     )
 
 
-def _worth_telling(rng: Random, length: float, found: tuple[Crash, str, Sentences]) -> tuple[Crash, str, Sentences]:
+def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0) -> Crash:
+    """A crash; of those that train, more on one-way streets than the sampler knows."""
+    crash = sample_crash(rng)
+    return crash if held_out else one_way(Random(f"{seed} streets {attempt}"), crash, ONE_WAY.get(mode, 0.0))
+
+
+def _worth_telling(
+    rng: Random, seed: int, length: float, found: tuple[Crash, str, Sentences]
+) -> tuple[Crash, str, Sentences]:
     """A report in which a road that nobody describes is, most often, a plain one: writers mention what is unusual."""
-    for _ in range(SECOND_THOUGHTS):
+    for attempt in range(1, SECOND_THOUGHTS + 1):
         crash, _, sentences = found
         told = {fact for _, facts in sentences for fact in facts}
         if rng.random() < UNUSUAL or all(_plain(leg) or f"lanes.{leg.bearing % 4}" in told for leg in crash.legs):
             break
-        crash = sample_crash(rng)
+        crash = _sample(rng, seed, False, "text", attempt)
         writer = Writer(rng, crash, False, length)
         found = (crash, *writer.finish(writer.write()))
     return found

@@ -9,7 +9,7 @@ from random import Random
 from mini.generator import clauses_road as more
 from mini.generator import words
 from mini.generator.grammar import Told
-from mini.generator.settled import AXIS, ROAD
+from mini.generator.settled import AXIS, FLOW, ROAD
 from mini.generator.world import Crash, Leg
 
 ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
@@ -20,6 +20,8 @@ MEDIAN_WORDS = {
 LOOKS = ("level", "straight", "straight and level", "dry", "level, straight", "dry, level", "busy", "straight, dry")
 """Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
 _ARTICLE = re.compile("^an? ")
+UNCOUNTED = 0.5
+"""Share of one-way roads whose lanes nobody counts: in real reports most often there is one."""
 NAMED = "\uf8ff"
 """A mark in a phrase that says by what a road is divided."""
 
@@ -51,6 +53,8 @@ class RoadsMixin:
             }[leg.kind]
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.stated or not self.roads_left):
+            if not self.held_out and self._differs(leg) and rng.random() < 0.7:
+                return self._uncounted(leg, more.ONE_WAY_AGAIN, rng.choice(more.ROAD_WORD))
             same = axis % 4 == self.crash.main % 4
             return rng.choice(
                 ("the same road", "the same roadway", "the roadway")
@@ -75,6 +79,8 @@ class RoadsMixin:
         kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
         turns = any(side.turns_in for side in legs)
         simple = not turns and not (leg.twltl and leg.lanes_in != leg.lanes_out)
+        if not leg.lanes_in * leg.lanes_out and not self.held_out and rng.random() < UNCOUNTED:
+            return self._uncounted(leg, more.UNCOUNTED, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), False
         if simple and not self.held_out and rng.random() < words.MORE:
             return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
         even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
@@ -123,7 +129,7 @@ class RoadsMixin:
         if not leg.lanes_in * leg.lanes_out:
             xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
             text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
-            self.told |= {f"{AXIS}.{axis}"} if xb in text else set()
+            self.told |= {f"{AXIS}.{axis}", f"{FLOW}.{axis}"} if xb in text else set()
             return text
         if leg.lanes_in != leg.lanes_out:
             self.told.add(f"{AXIS}.{axis}")
@@ -157,7 +163,19 @@ class RoadsMixin:
                 f"a one-way {xb} {word} that had {count}",
             ]
         text = rng.choice(forms)
-        self.told |= {f"{AXIS}.{leg.bearing % 4}"} if xb in text else set()
+        self.told |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if xb in text else set()
+        return text
+
+    def _differs(self, leg: Leg) -> bool:
+        """Whether this is the one one-way road."""
+        others = (other for other in self.crash.legs if other.bearing % 4 != leg.bearing % 4)
+        return not leg.lanes_in * leg.lanes_out and all(other.lanes_in * other.lanes_out for other in others)
+
+    def _uncounted(self, leg: Leg, options: list[str], noun: str) -> str:
+        """A phrase for a one-way road that leaves open how many lanes it has."""
+        axis, xb = leg.bearing % 4, words.bound(self.rng, leg.bearing + (4 if leg.lanes_in else 0))
+        text = more.phrase(self.rng, options, noun=noun, xb=xb)
+        self.told |= {f"ways.{axis}"} | ({f"{hint}.{axis}" for hint in (AXIS, FLOW)} if xb in text else set())
         return text
 
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from random import Random
 
 from mini.answers import MAX_ACCESSES
-from mini.generator.world import Access, Crash, Leg, pick
+from mini.generator.world import TURN_OF, Access, Actor, Crash, Leg, pick
 
 LIMITS = {
     "rural": (35, 40, 45, 45, 50, 55, 55, 55),
@@ -206,6 +206,47 @@ def beside(crash: Crash) -> Crash | None:
     if crash.layout not in ("t", "four") or len(main) != 2 or not used <= ways or told:
         return None
     return replace(crash, layout="plain", legs=main)
+
+
+def one_way(rng: Random, crash: Crash, odds: float) -> Crash:
+    """The crash with, at these odds, a one-way street for a two-way one whose other direction nobody uses.
+
+    A through road keeps both legs, the third leg of a T only leads in or only out. Most such streets have one lane.
+    """
+    swerves = any(a.maneuver in ("crossing_centerline", "overtaking", "u_turn", "backing") for a in crash.actors)
+    if rng.random() > odds or swerves or crash.layout == "merge" or crash.area_word == "highway":
+        return crash
+    roads = {leg.bearing % 4: [own for own in crash.legs if own.bearing % 4 == leg.bearing % 4] for leg in crash.legs}
+    came, left = {a.leg for a in crash.actors}, {a.out for a in crash.actors}
+    ways = [
+        (into, out)
+        for legs in roads.values()
+        if all(leg.kind == "road" for leg in legs) and any(leg.lanes_in and leg.lanes_out for leg in legs)
+        for into, out in ((legs[0].bearing, (legs[0].bearing + 4) % 8), ((legs[0].bearing + 4) % 8, legs[0].bearing))
+        if into not in left and out not in came
+    ]
+    if not ways:
+        return crash
+    into, out = rng.choice(ways)
+    lanes = max(rng.choice((1, 1, 1, 1, 2, 2, 3)), *(a.lane or 1 for a in crash.actors if a.leg == into), 1)
+    legs = []
+    for leg in crash.legs:
+        if leg.bearing in (into, out):
+            ways_of = {"lanes_in": lanes * (leg.bearing == into), "lanes_out": lanes * (leg.bearing == out)}
+            leg = Leg(leg.bearing, **ways_of, control=leg.control, curve=leg.curve, limit=leg.limit)
+        elif any((leg.bearing + TURN_OF[way]) % 8 == into for use in leg.turns_in for way in use.split("_")):
+            leg = replace(leg, turns_in=[])
+        legs.append(leg)
+    actors = crash.actors
+    if sum(a.leg == into for a in actors) == 1:
+        actors = [replace(a, lane=lane_of(a, lanes)) if a.leg == into else a for a in actors]
+    return replace(crash, legs=legs, actors=actors)
+
+
+def lane_of(actor: Actor, lanes: int) -> int | None:
+    """Its lane where the road has so many: who turns left keeps to the left one."""
+    turns_left = actor.out is not None and (actor.out - actor.leg) % 8 == TURN_OF["left"]
+    return lanes if turns_left and actor.lane else actor.lane
 
 
 def misdrawn(rng: Random, crash: Crash) -> Crash:

@@ -10,7 +10,7 @@ from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
 from mini.generator.road_phrases import RoadsMixin
-from mini.generator.settled import AXIS, ROAD, STEM
+from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
@@ -162,8 +162,10 @@ class SceneMixin(RoadsMixin):
             out += self._each_way()
         if not self.held_out and self.crash.layout in ("four", "t") and rng.random() < 0.3:
             out += rng.choice((self._pair, self._limits))()
-        if not self.held_out and self.roads_left and rng.random() < 0.15:
+        if not self.held_out and self.roads_left and rng.random() < (0.15 if self._two_way() else 0.4):
             out += self._alike_roads()
+        if not self.held_out and rng.random() < 0.25:
+            out += self._flows()
         if not self.held_out and self.crash.layout in roads.STEM and rng.random() < 0.3:
             out.append(self.say(roads.STEM[self.crash.layout], main))
         curved = self._leg_of(main).curve != "none"
@@ -218,6 +220,21 @@ class SceneMixin(RoadsMixin):
         lanes, kind = max(ways), "one_way" if 0 in ways else "two_way"
         self.told |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD)}
         return [self.say(roads.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
+
+    def _two_way(self) -> bool:
+        """Whether any road is driven either way."""
+        return any(leg.lanes_in * leg.lanes_out for leg in self.crash.legs)
+
+    def _flows(self) -> list[str]:
+        """Which way a one-way road leads."""
+        found = [leg for leg in self.crash.legs if leg.kind == "road" and not leg.lanes_in * leg.lanes_out]
+        if not found:
+            return []
+        leg = self.rng.choice(found)
+        axis = leg.bearing % 4
+        self.told |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
+        xb = words.bound(self.rng, leg.bearing + (4 if leg.lanes_in else 0))
+        return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
 
     def _limits(self) -> list[str]:
         """One limit of both roads, where they have one."""

@@ -18,7 +18,11 @@ AXIS = f"{HINT}axis"
 STEM = f"{HINT}stem"
 """A sentence says where the leg lies that ends at the junction."""
 
-BY_AXIS = ("lanes", "turns", "median", "limit")
+FLOW = f"{HINT}flow"
+"""With an axis: a sentence says which way the one-way road of that axis leads."""
+
+BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
+"""Facts of one road; "ways" is that it is one-way, of however many lanes."""
 
 
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
@@ -54,6 +58,8 @@ def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool
 def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentences: list[frozenset[str]]) -> bool:
     """Whether a fact of a road belongs to known legs: told beside a direction, of a road that is named, or of both."""
     key, _, axis = fact.partition(".")
+    if key in ("lanes", "ways") and not _directed(crash, int(axis), {fact for some in sentences for fact in some}):
+        return False
     if any(other.startswith((AXIS, "heading.")) for other in facts):
         return True
     same = len({_value(key, leg) for leg in crash.legs}) == 1
@@ -65,9 +71,18 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
     return tied and any(fact in some and f"{ROAD}.{axis}" in some for some in sentences)
 
 
+def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
+    """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
+    if all(leg.lanes_in and leg.lanes_out for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
+        return True
+    used = {leg % 4 for actor in _headed(crash, told) for leg in _driven(actor, told)}
+    return axis in used or f"{FLOW}.{axis}" in told
+
+
 def _value(key: str, leg: Leg) -> tuple[object, ...]:
     return {
         "lanes": (leg.lanes_in, leg.lanes_out),
+        "ways": (leg.lanes_in > 0, leg.lanes_out > 0),
         "turns": tuple(leg.turns_in),
         "median": (leg.median,),
         "limit": (leg.limit,),

@@ -51,7 +51,11 @@ class Targets:
         if "legs" not in self.sure and self.crash.layout != "plain":
             self._unsure(path, "bearing", "more", "kind")
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
-            self._unsure(path, "lanes_in", "lanes_out")
+            one_way = f"ways.{axis}" in self.sure
+            self._unsure(
+                path,
+                *(key for key, n in (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out)) if n or not one_way),
+            )
         median = leg.median if f"median.{axis}" in self.known else "none"
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE

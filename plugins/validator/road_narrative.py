@@ -36,7 +36,7 @@ class RoadNarrative(Validator):
     """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes."""
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "3"
+    version: ClassVar[str] = "4"
     tolerance_deg: float = 35.0
     """Between a road as drawn and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
@@ -71,7 +71,8 @@ class RoadNarrative(Validator):
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
-            yield _finding(what, "junction", f"{widest} roads meet", remedy, "note")
+            holds = () if pictured else (Hold(items="legs", at_most=want), *_laid(facts, pictured))
+            yield _finding(what, "junction", f"{widest} roads meet", remedy, "note" if pictured else "repair", holds)
         elif junction.kind == "none" and widest >= 3:
             remedy = "draw a plain road, unless the diagram shows the junction"
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
@@ -82,7 +83,10 @@ class RoadNarrative(Validator):
         Where only the sides that touched tell a leg, that is a doubt.
         """
         drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
-        if facts.junction.kind not in ("t", "four_leg", "driveway") or not drawn:
+        if facts.junction.kind not in ("t", "four_leg", "driveway"):
+            return
+        if not drawn:
+            yield from self._nowhere_to_turn(facts, junctions, pictured)
             return
         stated, missing = legs_used(facts), self._without(legs_used(facts, faced=True), drawn)
         if not missing:
@@ -93,6 +97,20 @@ class RoadNarrative(Validator):
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
         yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=_laid(facts, pictured))
+
+    def _nowhere_to_turn(
+        self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool
+    ) -> Iterator[Finding]:
+        """A plain road where a vehicle leaves or enters a driveway or side road that the report names."""
+        junction = facts.junction
+        missing = self._without(legs_used(facts), [end for ends in junctions for end in ends])
+        named = junction.stated if junction.kind == "driveway" else junction.stem_stated and not junction.stated
+        if not missing or not named:
+            return
+        place = f"a {'driveway' if junction.kind == 'driveway' else 'road'} {WORDS[missing[0]]} of the crash"
+        what = f"a vehicle uses {place}, but the network has no junction"
+        holds = (Hold(items="legs", at_least=3), *_laid(facts, pictured))
+        yield _finding(what, "junction", "a plain road", f"lay a leg {WORDS[missing[0]]} of a junction", holds=holds)
 
     def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
         """Bearings at which nothing is drawn."""
@@ -119,9 +137,13 @@ class RoadNarrative(Validator):
     # -------------------------------------------------------------- one-way
     def _one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         for road in facts.streets:
-            here = self._on_axis(road, drawn)
+            here, name = self._on_axis(road, drawn), AXIS_WORDS[road.axis or "N"]
+            if _both_ways(road) and here and not any(d.forward and d.backward for d in here):
+                what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
+                both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
+                holds = (Hold(items="legs", key="bearing", values=_ends(road), either=both),)
+                yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=holds)
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
-                name = AXIS_WORDS[road.axis or "N"]
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
                 holds = (Hold(items="legs", key="bearing", values=_ends(road), either=either),)
@@ -154,6 +176,8 @@ class RoadNarrative(Validator):
         """
         read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
         told = [(way, n, n) for road in facts.streets if _adds_up(road) for way, n in road.ways]
+        for lanes in (road.lanes for road in facts.streets):
+            told += [(lanes.one_way_toward, lanes.total, lanes.total)] if lanes.one_way_toward and lanes.total else []
         driven = [v for v in facts.crash.vehicles if v.heading_stated]
         told += [(v.heading, v.lane, max(SOME_LANES)) for v in driven if v.heading and v.lane]
         for way, least, most in told:
@@ -200,6 +224,13 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
     fewer = lanes.center_turn_lane or (_vague(road, pictured) and named % 2)
     return set(range(max(1, named - fewer), named + extra + 1))
+
+
+def _both_ways(road: RoadFact) -> bool:
+    """Whether the text says that traffic goes both ways, on one carriageway."""
+    lanes = road.lanes
+    told = lanes.one_way is False or lanes.each_way or len(lanes.toward) == 2
+    return bool(told and road.axis) and not lanes.divided
 
 
 def _adds_up(road: RoadFact) -> bool:

@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 
 from mini.answers import behavior_walk, road_walk, write
 from mini.generator import clauses_contact, clauses_motion, clauses_noise, clauses_scene
+from mini.generator.configurations import opens
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import families
 from mini.generator.report import MODES, make_report
-from mini.generator.roads import beside
+from mini.generator.roads import beside, one_way
 from mini.generator.targets import GUESS
-from mini.generator.world import COMPASS, Crash
+from mini.generator.world import COMPASS, TURN_OF, Crash
 from mini.generator.writer import Writer
 from mini.rows import road_ids
 from sgcad_core.layout import road_spec
@@ -200,13 +201,46 @@ def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
     told = 0
     for seed in range(base, base + 1500):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
-        found = re.search(r"\bV(\d)\b(?![^.]* rest)[^.]* (?:behind|following) V(\d)\b", report.narrative)
+        found = re.search(r"\bV(\d)\b(?![^.]* rest)[^.]* (?:behind|(?<!the )following) V(\d)\b", report.narrative)
         if report.crash.config != "rear_end" or not found:
             continue
         pairs = {(report.crash.actors[c.striker].id, report.crash.actors[c.struck].id) for c in report.crash.contacts}
         assert (f"V{found[1]}", f"V{found[2]}") in pairs
         told += 1
     assert told > 1
+
+
+@given(seed=st.integers(0, 100_000))
+@settings(max_examples=200, deadline=None)
+def test_a_one_way_street_carries_everybody_who_uses_it(seed: int) -> None:
+    before = sample_crash(Random(seed))
+    crash = one_way(Random(seed), before, 1.0)
+    assert [(a.id, a.leg, a.out, a.maneuver) for a in crash.actors] == [
+        (a.id, a.leg, a.out, a.maneuver) for a in before.actors
+    ]
+    assert [leg.bearing for leg in crash.legs] == [leg.bearing for leg in before.legs]
+    for actor in crash.actors:
+        if actor.kind in ("object", "pedestrian", "bicycle"):
+            continue
+        leg = crash.leg(actor.leg)
+        assert leg is not None
+        assert actor.lane is not None
+        assert actor.lane <= leg.lanes_in
+        out = crash.leg(actor.out) if actor.out is not None else None
+        assert actor.out is None or (out is not None and out.lanes_out)
+    for leg in crash.legs:
+        for use in leg.turns_in:
+            assert all(opens(crash, leg.bearing + TURN_OF[way]) for way in use.split("_"))
+
+
+def test_some_one_way_streets_meet_two_way_ones_and_some_end_at_a_t() -> None:
+    changed = [one_way(Random(seed), sample_crash(Random(seed)), 1.0) for seed in range(300)]
+    found = [
+        (crash.layout, len({bool(leg.lanes_in * leg.lanes_out) for leg in crash.legs if leg.kind == "road"}))
+        for crash in changed
+        if any(leg.kind == "road" and not leg.lanes_in * leg.lanes_out for leg in crash.legs)
+    ]
+    assert {("four", 2), ("t", 2), ("plain", 1), ("driveway", 1)} <= set(found)
 
 
 def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mini.evaluate import source
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
-from mini.generator.settled import AXIS, ROAD, STEM, unsettled
+from mini.generator.settled import AXIS, FLOW, ROAD, STEM, unsettled
 from mini.generator.targets import GUESS, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
 
@@ -48,6 +48,33 @@ def test_a_direction_beside_a_road_settles_both_roads(tie: set[str]) -> None:
 def test_a_direction_alone_tells_the_legs_of_a_crossing_but_not_which_road_is_which() -> None:
     crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
     assert unsettled(crash, [*SAID, frozenset({"heading.V1"})]) == LANES
+
+
+@pytest.mark.parametrize("fact", ["lanes.2", "ways.2"])
+def test_a_one_way_road_needs_its_direction(fact: str) -> None:
+    main = [Leg(0, 2, 2), Leg(4, 2, 2)]
+    crash = Crash(
+        "crossing", "four", 0, [*main, Leg(2, 0, 1), Leg(6, 1, 0)], [_car("V1", 0, 4)], [], "day", "clear", "dry"
+    )
+    said = [frozenset({"layout", "heading.V1", f"{ROAD}.0"}), frozenset({fact, f"{ROAD}.2"})]
+    assert unsettled(crash, said) == {fact}
+    assert not unsettled(crash, [*said, frozenset({f"{FLOW}.2"})])
+    crash.actors.append(_car("V2", 6, 2))
+    assert not unsettled(crash, [*said, frozenset({"heading.V2"})])
+
+
+def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() -> None:
+    reports = [make_report(seed, modes={"text": 1.0}) for seed in range(400)]
+    weights = []
+    for report in reports:
+        for index, leg in enumerate(report.crash.legs):
+            axis = leg.bearing % 4
+            if f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told | report.doubtful:
+                weights.append([report.weight(("legs", index, key)) for key in ("lanes_in", "lanes_out")])
+                assert leg.lanes_in * leg.lanes_out == 0
+                assert "one-way" in report.narrative or "only" in report.narrative.lower()
+    assert len(weights) > 10
+    assert all(sorted(found) == [GUESS, SURE] for found in weights)
 
 
 def test_roads_alike_need_no_direction_of_their_own() -> None:

@@ -159,6 +159,53 @@ def test_traffic_against_a_one_way_street_is_found() -> None:
     assert any("one-way" in what for what in repairs(ONE_WAY, leg("N", 3, 3), leg("S", 3, 3)))
 
 
+MIXED = (
+    "V1 was traveling westbound on a two-way road with one lane in each direction. V2 was northbound on a one-lane, "
+    "one-way street. The vehicles met in the intersection and the front of V2 struck the left side of V1."
+)
+
+
+def test_a_two_way_road_drawn_in_one_direction_is_found_and_held() -> None:
+    north = (leg("N", 0, 1), leg("S", 1, 0))
+    assert repairs(MIXED, leg("E", 1, 1), leg("W", 1, 1), *north) == []
+    wrong = (leg("E", 2, 0), leg("W", 0, 2), *north)
+    (found,) = [f for f in findings(MIXED, network(*wrong)) if f.severity == "repair"]
+    assert "east-west road is two-way" in found.what
+    assert repairs(MIXED, *held([found], *wrong)) == []
+    divided = MIXED.replace("a two-way road", "a divided, two-way road")
+    assert not any("is two-way" in what for what in repairs(divided, *wrong))
+
+
+def test_lanes_told_of_a_one_way_road_are_held_where_no_diagram_counts_them() -> None:
+    legs = (leg("E", 1, 1), leg("W", 1, 1), leg("N", 0, 3), leg("S", 3, 0))
+    assert [what for what in repairs(MIXED, *legs) if "1 lanes that head north" in what]
+    assert repairs(MIXED, *legs, pictured=True) == []
+    uncounted = MIXED.replace("one-lane, one-way", "one-way")
+    assert repairs(uncounted, *legs) == []
+
+
+@pytest.mark.parametrize(("place", "found"), [
+    ("a driveway", True), ("the side road. The side street joins the road from the west", True),
+    ("a street", False),
+])  # fmt: skip
+def test_a_turn_into_a_named_place_needs_a_junction(place: str, found: bool) -> None:
+    text = f"V1 was northbound on a two-lane road and turned left into {place}. V2 was southbound and struck its side."
+    plain = (leg("N", 1, 1), leg("S", 1, 1))
+    assert bool(repairs(text, *plain)) == found
+    (finding, *_) = [f for f in findings(text, network(*plain)) if "no junction" in f.what] or [None]
+    assert not found or (finding and finding.holds[0].at_least == 3)
+    assert repairs(text, *plain, leg("W", 1, 1)) == []
+
+
+def test_a_t_with_four_legs_is_held_to_three_unless_a_diagram_may_show_another() -> None:
+    legs = tuple(leg(bearing, 1, 1) for bearing in "NESW")
+    (found,) = [f for f in findings(FROM_THE_SIDE, network(*legs)) if "leg too many" in f.what]
+    assert (found.severity, found.holds[0].at_most) == ("repair", 3)
+    held_to = narrowed(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
+    assert (held_to["minItems"], held_to["maxItems"]) == (3, 3)
+    assert all(f.severity == "note" for f in findings(FROM_THE_SIDE, network(*legs), pictured=True))
+
+
 def test_a_wrong_limit_and_an_unnamed_junction_are_notes() -> None:
     legs = (leg("N", 2, 2, 30), leg("S", 2, 2, 30), leg("E", 1, 1), leg("W", 1, 1))
     found = findings(CROSSING, network(*legs))
