@@ -17,7 +17,7 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from mini import eye
-from mini.grow import deepened
+from mini.grow import deepened, depth
 
 MODEL = "model.safetensors"
 LAYERS = "model.layers."
@@ -30,10 +30,8 @@ def blended(before: Mapping[str, Tensor], after: Mapping[str, Tensor], share: fl
     Raises:
         ValueError: both are not weights of one architecture, however deep.
     """
-    depth = 1 + max(
-        (int(name[len(LAYERS) :].partition(".")[0]) for name in after if name.startswith(LAYERS)), default=-1
-    )
-    early = deepened(before, depth, LAYERS) if depth else before
+    layers = depth(after, LAYERS)
+    early = deepened(before, layers, LAYERS) if layers else before
     if early.keys() != after.keys() or any(early[name].shape != after[name].shape for name in after):
         raise ValueError("the two folders hold weights of different architectures: blend states of one training")
     mean = {name: torch.lerp(early[name].float(), value.float(), share) for name, value in after.items()}

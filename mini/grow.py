@@ -12,6 +12,13 @@ SILENT = ("self_attn.o_proj.weight", "mlp.down_proj.weight")
 """What a layer adds to its input comes through these."""
 
 
+def depth(weights: Mapping[str, Tensor], prefix: str = LAYERS) -> int:
+    """Text layers in weights by name; 0 where no name starts with `prefix` and a number."""
+    return 1 + max(
+        (int(name[len(prefix) :].partition(".")[0]) for name in weights if name.startswith(prefix)), default=-1
+    )
+
+
 def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -> dict[str, Tensor]:
     """`weights` by parameter name, with `layers` text layers, at least as many as there are; their names start with
     `prefix` and a number.
@@ -22,7 +29,7 @@ def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -
     Raises:
         ValueError: fewer layers are asked for than the weights have.
     """
-    found = 1 + max(int(name[len(prefix) :].partition(".")[0]) for name in weights if name.startswith(prefix))
+    found = depth(weights, prefix)
     if layers < found:
         raise ValueError(f"weights of {found} text layers cannot begin a model of {layers}: start from smaller ones")
     places = [i * (layers - 1) // max(1, found - 1) for i in range(found)]

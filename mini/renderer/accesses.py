@@ -62,9 +62,8 @@ def beside(pen: Pen, ground: Ground, found: Sequence[Access], band: Band, side: 
     for access in found:
         if access.mouth is not None and (access.leg, access.side) == (band.leg.bearing, side):
             clear &= np.abs(s - place(pen, ground, access)) > HALF[access.kind] + 1.0
-    runs = np.split(s, np.flatnonzero(np.diff(clear.astype(int))) + 1)
-    kept = [clear[i] for i in np.cumsum([0, *map(len, runs[:-1])])]
-    return [run for run, is_kept in zip(runs, kept, strict=True) if is_kept and len(run) > 1]
+    runs = np.split(np.arange(len(s)), np.flatnonzero(np.diff(clear)) + 1)
+    return [s[run] for run in runs if len(run) > 1 and clear[run[0]]]
 
 
 def cut(pen: Pen, ground: Ground, found: Sequence[Access], wider: float) -> None:

@@ -73,8 +73,7 @@ class RoadMarks:
         paint = ImageDraw.Draw(area)
         for band in bands:
             self._fill(paint, band, band.right, band.left, band.length + 60, 255)
-        closed = [access for access in self.crash.accesses if access.mouth is None]
-        for access in closed:
+        for access in (access for access in self.crash.accesses if access.mouth is None):
             paint.polygon([tuple(p) for p in pen.px(accesses.box(pen, self.ground, access))], fill=255)
         if not self.ground.plain:
             area = rounded(area, self.corner * pen.scale * 0.6)
