@@ -60,6 +60,7 @@ the one-way {noun}
 the {xb} one-way {noun}
 the one-way {xb} {noun}
 """)
+TWO_WAY_AGAIN = ["the two-way {noun}"]
 FLOWS = clauses("""
 The {axis0} [road|street|roadway] [is|was] one-way {xb}
 The {axis0} [road|street|roadway] [carries|carried|has|had] {xb} traffic only

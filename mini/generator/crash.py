@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 
 from mini.generator import roads
@@ -41,6 +42,8 @@ LAYOUTS = {
     "overtaking": {"plain": 2.0, "driveway": 1.0, "t": 1.0},
     "head_on": {"plain": 6.5, "t": 1.5, "four": 1.0},
 }
+GLANCED = 0.2
+"""Share of head-on crashes struck by the one who crossed whose other vehicle is hit on its side."""
 FAMILY_ODDS = {"rural": 0.42, "urban": 0.46, "highway": 0.12}
 
 
@@ -68,6 +71,16 @@ def _roads(rng: Random, config: str) -> Crash:
         legs = roads.merge(rng, main) if layout == "merge" else roads.junction(rng, layout, main, area)
     light, weather, surface = conditions(rng)
     return Crash(config, layout, main % 8, legs, [], [], light, weather, surface, roads.accesses(rng, legs), area)
+
+
+def glanced(rng: Random, crash: Crash) -> Crash:
+    """Now and then one that crosses the center line meets the side of the oncoming vehicle instead of its front."""
+    first = crash.contacts[0]
+    ends = first.striker_area == first.struck_area == "front"
+    crossed = crash.config == "head_on" and crash.actors[first.striker].maneuver == "crossing_centerline"
+    if not (ends and crossed) or rng.random() > GLANCED:
+        return crash
+    return replace(crash, contacts=[replace(first, struck_area="left"), *crash.contacts[1:]])
 
 
 def conditions(rng: Random) -> tuple[str, str, str]:

@@ -12,10 +12,10 @@ from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
-from mini.generator import turnoffs
+from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
 from mini.generator.clauses_turning import PROCEEDS
-from mini.generator.grammar import Told, choose, clause_of, clauses, families
+from mini.generator.grammar import Told, choose, clause_of, clauses, families, fill
 from mini.generator.world import Actor, Contact, Crash
 
 _BEHIND = {
@@ -51,6 +51,8 @@ MUTUAL = re.compile(
 OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
 """Clauses of rest that need a second vehicle."""
 TRIES = 40
+YIELDING = 0.25
+"""Share of those who stand or slow for a turn of whom the traffic that they wait for is told, with its heading."""
 
 
 class EventsMixin:
@@ -131,11 +133,21 @@ class EventsMixin:
     def reason(self, key: str, actor: Actor) -> str:
         """What one stands or slows for; of those who turn off a road into a driveway half say so."""
         leaves = self.crash.layout == "driveway" and not self.crash.is_main(actor.leg)
+        others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
+        if others and self.rng.random() < YIELDING:
+            slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
+            return fill(clause_of(self.rng, turnoffs.YIELDS, False), slots.__getitem__)
         if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
             return self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key])
         if key in ("sign", "light"):
             return clause_of(self.rng, motion.WHY[key], self.held_out)
         return self.fitting(motion.WHY[key], into=not leaves)
+
+    def _others(self, actor: Actor, left: bool) -> list[int]:
+        """Headings of traffic that one who turns may have to wait for: the oncoming, on a side road any."""
+        ahead = self.crash.leg(actor.leg + 4)
+        others = [leg for leg in self.crash.legs if leg.bearing != actor.leg] if ahead is None else [ahead] * left
+        return [(leg.bearing + 4) % 8 for leg in others if leg.kind == "road" and leg.lanes_in]
 
     def fitting(self, options: list[str], into: bool = True) -> str:
         """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one.

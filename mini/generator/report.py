@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 from mini.answers import MISSING, REASONS
-from mini.generator.crash import sample_crash
+from mini.generator.crash import glanced, sample_crash
 from mini.generator.grammar import HINT, unmark
 from mini.generator.roads import beside, carriageway, misdrawn, mouths, one_way
 from mini.generator.settled import unsettled
@@ -113,9 +113,10 @@ def make_report(
 
 
 def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0) -> Crash:
-    """A crash; of those that train, more on one-way streets than the sampler knows."""
+    """A crash; of those that train, more on one-way streets and with other sides than the sampler knows."""
     crash = sample_crash(rng)
-    return crash if held_out else one_way(Random(f"{seed} streets {attempt}"), crash, ONE_WAY.get(mode, 0.0))
+    own = Random(f"{seed} streets {attempt}")
+    return crash if held_out else glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 
 def _worth_telling(

@@ -54,7 +54,8 @@ class RoadsMixin:
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.stated or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
-                return self._uncounted(leg, more.ONE_WAY_AGAIN, rng.choice(more.ROAD_WORD))
+                again = more.TWO_WAY_AGAIN if leg.lanes_in * leg.lanes_out else more.ONE_WAY_AGAIN
+                return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
             same = axis % 4 == self.crash.main % 4
             return rng.choice(
                 ("the same road", "the same roadway", "the roadway")
@@ -167,12 +168,15 @@ class RoadsMixin:
         return text
 
     def _differs(self, leg: Leg) -> bool:
-        """Whether this is the one one-way road."""
-        others = (other for other in self.crash.legs if other.bearing % 4 != leg.bearing % 4)
-        return not leg.lanes_in * leg.lanes_out and all(other.lanes_in * other.lanes_out for other in others)
+        """Whether one of two roads is one-way: this or the other."""
+        ways = {
+            side.bearing % 4: bool(side.lanes_in * side.lanes_out) for side in self.crash.legs if side.kind == "road"
+        }
+        one_way = not leg.lanes_in * leg.lanes_out
+        return list(ways.values()).count(False) == 1 and (one_way or len(ways) > 1)
 
     def _uncounted(self, leg: Leg, options: list[str], noun: str) -> str:
-        """A phrase for a one-way road that leaves open how many lanes it has."""
+        """A phrase that says whether a road is one-way and leaves open how many lanes it has."""
         axis, xb = leg.bearing % 4, words.bound(self.rng, leg.bearing + (4 if leg.lanes_in else 0))
         text = more.phrase(self.rng, options, noun=noun, xb=xb)
         self.told |= {f"ways.{axis}"} | ({f"{hint}.{axis}" for hint in (AXIS, FLOW)} if xb in text else set())

@@ -78,3 +78,18 @@ WHY = tables(
     turn_right="waiting to turn right into a [driveway|parking lot|private drive|gas station]|to turn right into [a|the] driveway|to make a right turn into a [business|store|restaurant|shopping center|parking lot]|preparing to turn right into [a|the] [driveway|private drive]|for a right turn into a [driveway|parking lot|school]|in order to turn right into a [driveway|market|bank|church lot]|before turning right into [its|her|his|a] driveway|intending to turn right into a [driveway|gas station|parking lot|business]|with a driveway on the right to turn into|to enter a [driveway|parking lot|business] on the right",
 )
 """What one stood or slowed for on a road with a driveway; trains only."""
+
+YIELDS = clauses("""
+to allow [several|a few|some|two] {other} [vehicles|cars] to pass before [turning {turn}|making an intended {turn} turn|its {turn} turn]
+to let {other} traffic [go by|clear|pass] before [turning {turn}|making its {turn} turn]
+for {other} traffic [to clear |]before turning {turn}
+as [a line of |several |]{other} [vehicles|cars] [passed|went by] before it could turn {turn}
+waiting for {other} [traffic|vehicles|cars] to [pass|clear] [so that it could turn|before turning|in order to turn] {turn}
+yielding to {other} [traffic|vehicles|cars] before [turning|a turn to the] {turn}
+because {other} traffic [kept|was keeping] it from turning {turn}
+until the {other} [vehicles|traffic|cars] had passed, [meaning|intending|in order] to turn {turn}
+while {other} traffic [cleared|went past], in order to turn {turn}
+to wait for [a gap|a break|an opening] in {other} traffic in order to turn {turn}
+"""
+)  # fmt: skip
+"""What one waits for who is about to turn: traffic of another heading than its own; trains only."""
