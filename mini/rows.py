@@ -107,10 +107,17 @@ def training_row(
 def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
     fact, shown = tags.fact_of(path, report.crash)
-    found = [at for (at, _), (_, facts) in zip(row.text_tags, report.sentences, strict=True) if fact in facts]
+    alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
+    found = [at for (at, _), (_, facts) in zip(row.text_tags, report.sentences, strict=True) if alike & facts]
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found
+
+
+def _closed(path: tuple[Any, ...], report: Report) -> bool:
+    """Whether a path asks for lanes of a direction that a one-way road does not have."""
+    asks = len(path) == 3 and path[0] == "legs" and path[2] in ("lanes_in", "lanes_out")
+    return asks and path[1] < len(report.crash.legs) and not getattr(report.crash.legs[path[1]], path[2])
 
 
 def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], report: Report) -> None:

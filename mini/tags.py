@@ -87,6 +87,8 @@ def told(crash: Crash, facts: Iterable[str]) -> list[int]:
             names += [name for leg in crash.legs for name in _of_leg(key, leg)]
         elif key in ("lanes", "turns", "median", "limit"):
             names += [n for leg in crash.legs if leg.bearing % 4 == int(rest) for n in _of_leg(key, leg)]
+        elif key == "ways":
+            names += [name for leg in crash.legs if leg.bearing % 4 == int(rest) for name in _closed(leg)]
         elif key in ("contact", "areas"):
             names += _of_contact(key, int(rest), crash)
         elif key in ("light", "weather", "surface"):
@@ -109,6 +111,12 @@ def _of_leg(key: str, leg: Leg) -> list[str]:
         "median": [f"axis{axis}.median={leg.median}"],
         "limit": [f"axis{axis}.limit={leg.limit}"],
     }[key]
+
+
+def _closed(leg: Leg) -> list[str]:
+    """What "one-way" tells of a leg, without a count of lanes."""
+    sides = {"in": leg.lanes_in, "out": leg.lanes_out}
+    return [f"leg{leg.bearing}.{side}=0" for side, lanes in sides.items() if not lanes]
 
 
 def _of_contact(key: str, number: int, crash: Crash) -> list[str]:

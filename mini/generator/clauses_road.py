@@ -50,7 +50,7 @@ a {xb}, one-way {noun}
 a one-way {noun} [heading|going|leading|running] {xb}
 a one-way {noun} for {xb} [traffic|travel]
 a {noun} [with one-way|that carries one-way|for one-way] {xb} traffic
-a {noun} [open|limited] to {xb} traffic[ only|]
+a {noun} [open|limited] to {xb} traffic only
 a [narrow|short|quiet|straight] one-way {noun}
 a {noun} that [is|was] one-way[ {xb}| to {xb} traffic|]
 """)
@@ -64,11 +64,10 @@ TWO_WAY_AGAIN = ["the two-way {noun}"]
 FLOWS = clauses("""
 The {axis0} [road|street|roadway] [is|was] one-way {xb}
 The {axis0} [road|street|roadway] [carries|carried|has|had] {xb} traffic only
-Only {xb} [traffic|vehicles] [is|was|may be] [allowed|permitted] on the {axis0} [road|street]
+Only {xb} traffic [is|was] [allowed|permitted] on the {axis0} [road|street]
 [Traffic|All traffic] on the {axis0} [road|street] [flows|moves|ran|runs] {xb}
 The {axis0} [road|street] [may be|is to be] [used|driven] {xb} only; it is one-way
 The {xb} [roadway|road|street|lane] [is|was] [a one-way road|one-way|a one-way street]
-[One|The other] [of the roads|of the streets], [running|going] {axis0}, [is|was] one-way {xb}
 """)
 SIDES = ["a {noun} with {a} and {b}"]
 JUNCTION = tables(four="four-leg intersection|4-way intersection", t="T-intersection|three-legged intersection")
@@ -173,7 +172,7 @@ Each one-way [road|roadway|street] [had|has|carried|consisted of] {each}[ of tra
 The two [roads|roadways|streets], both one-way, had {each}[ each| apiece|]
 This is where two one-way [roads|roadways|streets] of {each}[ each|] [cross|meet|intersect]
 [Both|The two] [were|are] one-way streets, {each} wide
-The [crash|collision] [occurred|happened|took place] [in|at|within] the [intersection|crossing] of two one-way [streets|roads|roadways]; [both|each] [had|have|has] {each}[ of travel|]
+The [crash|collision] [occurred|happened|took place] [in|at|within] the [intersection|crossing] of two one-way [streets|roads|roadways]; both [had|have] {each}[ of travel|]
 Two one-way [streets|roads] [cross|meet] here, [both|each] with {each}
 """),
 }

@@ -126,7 +126,7 @@ def _worth_telling(
     for attempt in range(1, SECOND_THOUGHTS + 1):
         crash, _, sentences = found
         told = {fact for _, facts in sentences for fact in facts}
-        if rng.random() < UNUSUAL or all(_plain(leg) or f"lanes.{leg.bearing % 4}" in told for leg in crash.legs):
+        if rng.random() < UNUSUAL or all(_plain(leg, told) or f"lanes.{leg.bearing % 4}" in told for leg in crash.legs):
             break
         crash = _sample(rng, seed, False, "text", attempt)
         writer = Writer(rng, crash, False, length)
@@ -134,9 +134,10 @@ def _worth_telling(
     return found
 
 
-def _plain(leg: Leg) -> bool:
-    """A lane each way, or one of a one-way street; or no street at all."""
-    return leg.kind != "road" or max(leg.lanes_in, leg.lanes_out) < 2
+def _plain(leg: Leg, told: set[str]) -> bool:
+    """A lane each way, or one of a street that is said to be one-way; or no street at all."""
+    usual = max(leg.lanes_in, leg.lanes_out) < 2 and (leg.two_way or f"ways.{leg.bearing % 4}" in told)
+    return leg.kind != "road" or usual
 
 
 def _told(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:

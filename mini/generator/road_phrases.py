@@ -54,7 +54,7 @@ class RoadsMixin:
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.stated or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
-                again = more.TWO_WAY_AGAIN if leg.lanes_in * leg.lanes_out else more.ONE_WAY_AGAIN
+                again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
                 return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
             same = axis % 4 == self.crash.main % 4
             return rng.choice(
@@ -69,7 +69,8 @@ class RoadsMixin:
         text = text.replace(NAMED, "")
         if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
             return text
-        return f"the {rng.choice(('intersecting', 'intersecting', 'crossing', 'other'))} {_ARTICLE.sub('', text)}"
+        others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
+        return f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
         """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure.
@@ -80,7 +81,7 @@ class RoadsMixin:
         kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
         turns = any(side.turns_in for side in legs)
         simple = not turns and not (leg.twltl and leg.lanes_in != leg.lanes_out)
-        if not leg.lanes_in * leg.lanes_out and not self.held_out and rng.random() < UNCOUNTED:
+        if not leg.two_way and not self.held_out and rng.random() < UNCOUNTED:
             return self._uncounted(leg, more.UNCOUNTED, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), False
         if simple and not self.held_out and rng.random() < words.MORE:
             return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
@@ -96,7 +97,7 @@ class RoadsMixin:
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")
         )
-        if leg.lanes_in * leg.lanes_out == 0:
+        if not leg.two_way:
             return self._one_way(leg, n, word), not turns
         divided = MEDIAN_WORDS.get(leg.median, "")
         divided += NAMED * bool(divided)
@@ -127,7 +128,7 @@ class RoadsMixin:
         rng, axis = self.rng, leg.bearing % 4
         total = words.NUMBERS[min(leg.lanes_in + leg.lanes_out + leg.twltl, len(words.NUMBERS) - 1)]
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
-        if not leg.lanes_in * leg.lanes_out:
+        if not leg.two_way:
             xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
             text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
             self.told |= {f"{AXIS}.{axis}", f"{FLOW}.{axis}"} if xb in text else set()
@@ -153,7 +154,7 @@ class RoadsMixin:
     def _one_way(self, leg: Leg, n: str, word: str) -> str:
         """`a one-lane, one-way street`, `a northbound one-way roadway with two lanes of travel`."""
         rng, lanes = self.rng, max(leg.lanes_in, leg.lanes_out)
-        xb = words.bound(rng, leg.bearing + (4 if leg.lanes_in else 0))
+        xb = words.bound(rng, leg.flow)
         forms = [f"a {n}, one-way {word}", f"a one-way, {n} {word}", f"a {n} one-way {word}"]
         if not self.held_out:
             count = words.lanes(lanes)
@@ -169,15 +170,12 @@ class RoadsMixin:
 
     def _differs(self, leg: Leg) -> bool:
         """Whether one of two roads is one-way: this or the other."""
-        ways = {
-            side.bearing % 4: bool(side.lanes_in * side.lanes_out) for side in self.crash.legs if side.kind == "road"
-        }
-        one_way = not leg.lanes_in * leg.lanes_out
-        return list(ways.values()).count(False) == 1 and (one_way or len(ways) > 1)
+        ways = {side.bearing % 4: side.two_way for side in self.crash.legs if side.kind == "road"}
+        return list(ways.values()).count(False) == 1 and (not leg.two_way or len(ways) > 1)
 
     def _uncounted(self, leg: Leg, options: list[str], noun: str) -> str:
         """A phrase that says whether a road is one-way and leaves open how many lanes it has."""
-        axis, xb = leg.bearing % 4, words.bound(self.rng, leg.bearing + (4 if leg.lanes_in else 0))
+        axis, xb = leg.bearing % 4, words.bound(self.rng, leg.flow)
         text = more.phrase(self.rng, options, noun=noun, xb=xb)
         self.told |= {f"ways.{axis}"} | ({f"{hint}.{axis}" for hint in (AXIS, FLOW)} if xb in text else set())
         return text

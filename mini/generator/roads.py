@@ -211,42 +211,58 @@ def beside(crash: Crash) -> Crash | None:
 def one_way(rng: Random, crash: Crash, odds: float) -> Crash:
     """The crash with, at these odds, a one-way street for a two-way one whose other direction nobody uses.
 
-    A through road keeps both legs, the third leg of a T only leads in or only out. Most such streets have one lane.
+    A through road keeps both legs, the third leg of a T only leads in or only out. Most such streets have one lane; one
+    that several came by keeps its lanes.
     """
-    swerves = any(a.maneuver in ("crossing_centerline", "overtaking", "u_turn", "backing") for a in crash.actors)
-    if rng.random() > odds or swerves or crash.layout == "merge" or crash.area_word == "highway":
-        return crash
-    roads = {leg.bearing % 4: [own for own in crash.legs if own.bearing % 4 == leg.bearing % 4] for leg in crash.legs}
-    came, left = {a.leg for a in crash.actors}, {a.out for a in crash.actors}
-    ways = [
-        (into, out)
-        for legs in roads.values()
-        if all(leg.kind == "road" for leg in legs) and any(leg.lanes_in and leg.lanes_out for leg in legs)
-        for into, out in ((legs[0].bearing, (legs[0].bearing + 4) % 8), ((legs[0].bearing + 4) % 8, legs[0].bearing))
-        if into not in left and out not in came
-    ]
-    if not ways:
+    ways = _unused(crash)
+    if rng.random() > odds or not ways:
         return crash
     into, out = rng.choice(ways)
-    lanes = max(rng.choice((1, 1, 1, 1, 2, 2, 3)), *(a.lane or 1 for a in crash.actors if a.leg == into), 1)
+    here = [actor for actor in crash.actors if actor.leg == into and actor.lane]
+    lanes = max(rng.choice((1, 1, 1, 1, 2, 2, 3)), *(actor.lane or 1 for actor in here), 1)
+    if len(here) > 1:
+        lanes = next(leg.lanes_in for leg in crash.legs if leg.bearing == into)
     legs = []
     for leg in crash.legs:
-        if leg.bearing in (into, out):
-            ways_of = {"lanes_in": lanes * (leg.bearing == into), "lanes_out": lanes * (leg.bearing == out)}
-            leg = Leg(leg.bearing, **ways_of, control=leg.control, curve=leg.curve, limit=leg.limit)
-        elif any((leg.bearing + TURN_OF[way]) % 8 == into for use in leg.turns_in for way in use.split("_")):
-            leg = replace(leg, turns_in=[])
+        if leg.bearing == into:
+            leg = Leg(into, lanes, 0, control=leg.control, curve=leg.curve, limit=leg.limit)
+        elif leg.bearing == out:
+            leg = Leg(out, 0, lanes, curve=leg.curve, limit=leg.limit)
+        else:
+            leg = replace(leg, turns_in=_uses(leg, into))
         legs.append(leg)
-    actors = crash.actors
-    if sum(a.leg == into for a in actors) == 1:
-        actors = [replace(a, lane=lane_of(a, lanes)) if a.leg == into else a for a in actors]
+    actors = [replace(a, lane=_lane_of(a, lanes)) if here == [a] else a for a in crash.actors]
     return replace(crash, legs=legs, actors=actors)
 
 
-def lane_of(actor: Actor, lanes: int) -> int | None:
-    """Its lane where the road has so many: who turns left keeps to the left one."""
+def _unused(crash: Crash) -> list[tuple[int, int]]:
+    """Directions in which a road of the crash may become one-way: bearings that traffic comes from and goes to.
+
+    No lane of another road may be only for a turn that would be closed.
+    """
+    swerves = any(a.maneuver in ("crossing_centerline", "overtaking", "u_turn", "backing") for a in crash.actors)
+    if swerves or crash.layout == "merge" or crash.area_word == "highway":
+        return []
+    wheels = [a for a in crash.actors if a.kind not in ("object", "pedestrian", "bicycle")]
+    came, left = {a.leg for a in wheels}, {a.out for a in wheels}
+    only = {(leg.bearing + TURN_OF[use]) % 8 for leg in crash.legs for use in leg.turns_in if use in TURN_OF}
+    axes = {leg.bearing % 4 for leg in crash.legs if leg.kind == "road" and leg.two_way}
+    axes -= {leg.bearing % 4 for leg in crash.legs if leg.kind != "road"}
+    ways = [(axis + step, (axis + 4 - step) % 8) for axis in sorted(axes) for step in (0, 4)]
+    return [(into, out) for into, out in ways if into not in left | only and out not in came]
+
+
+def _uses(leg: Leg, closed: int) -> list[str]:
+    """Uses of a leg's lanes where one leg can no longer be driven into; [] where no lane is left for turning only."""
+    kept = [[way for way in use.split("_") if (leg.bearing + TURN_OF[way]) % 8 != closed] for use in leg.turns_in]
+    uses = ["_".join(ways) for ways in kept]
+    return uses if {"left", "right"} & set(uses) else []
+
+
+def _lane_of(actor: Actor, lanes: int) -> int | None:
+    """The lane of the only one who came by a road that has so many now: who turns left keeps to the left."""
     turns_left = actor.out is not None and (actor.out - actor.leg) % 8 == TURN_OF["left"]
-    return lanes if turns_left and actor.lane else actor.lane
+    return lanes if turns_left else actor.lane
 
 
 def misdrawn(rng: Random, crash: Crash) -> Crash:

@@ -118,8 +118,9 @@ class SceneMixin(RoadsMixin):
         return ""
 
     def _controlled(self, slot: str) -> str:
-        axis = next((leg.bearing for leg in self.crash.legs if leg.control in ("stop", "yield")), 0)
-        legs = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
+        signed = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
+        legs = [leg for leg in signed if leg.lanes_in or self.held_out] or signed
+        axis = legs[0].bearing if legs else 0
         rng = self.rng
         self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
         if slot == "caxis":
@@ -181,7 +182,7 @@ class SceneMixin(RoadsMixin):
         rng = self.rng
         axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
         legs = self._legs_on(axis)
-        if not self.roads_left or not legs[0].lanes_in * legs[0].lanes_out:
+        if not self.roads_left or not legs[0].two_way:
             return []
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
         one, other = rng.sample((legs[0], back), 2)
@@ -223,17 +224,17 @@ class SceneMixin(RoadsMixin):
 
     def _two_way(self) -> bool:
         """Whether any road is driven either way."""
-        return any(leg.lanes_in * leg.lanes_out for leg in self.crash.legs)
+        return any(leg.two_way for leg in self.crash.legs)
 
     def _flows(self) -> list[str]:
         """Which way a one-way road leads."""
-        found = [leg for leg in self.crash.legs if leg.kind == "road" and not leg.lanes_in * leg.lanes_out]
+        found = [leg for leg in self.crash.legs if leg.kind == "road" and not leg.two_way]
         if not found:
             return []
         leg = self.rng.choice(found)
         axis = leg.bearing % 4
         self.told |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
-        xb = words.bound(self.rng, leg.bearing + (4 if leg.lanes_in else 0))
+        xb = words.bound(self.rng, leg.flow)
         return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
 
     def _limits(self) -> list[str]:

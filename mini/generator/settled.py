@@ -22,7 +22,7 @@ FLOW = f"{HINT}flow"
 """With an axis: a sentence says which way the one-way road of that axis leads."""
 
 BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
-"""Facts of one road; "ways" is that it is one-way, of however many lanes."""
+"""Facts of one road; "ways" is whether it is one-way, of however many lanes."""
 
 
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
@@ -73,7 +73,7 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
 
 def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
     """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
-    if all(leg.lanes_in and leg.lanes_out for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
+    if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
         return True
     used = {leg % 4 for actor in _headed(crash, told) for leg in _driven(actor, told)}
     return axis in used or f"{FLOW}.{axis}" in told

@@ -60,7 +60,8 @@ class Targets:
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
-        self._unsure(path, *(("center_turn_lane",) if f"lanes.{axis}" not in self.sure else ()))
+        counted = f"lanes.{axis}" in self.sure or (f"ways.{axis}" in self.sure and not leg.two_way)
+        self._unsure(path, *(() if counted else ("center_turn_lane",)))
         self._unsure(path, *(("turns_in",) if f"turns.{axis}" in self.known - self.sure else ()))
         self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
         if f"limit.{axis}" in self.sure and leg.limit:

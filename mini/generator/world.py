@@ -33,6 +33,16 @@ class Leg:
     mouth: float | None = None
     """Metres of a driveway that a drawing shows beyond the junction; None: as of any leg."""
 
+    @property
+    def two_way(self) -> bool:
+        """Whether traffic comes in and goes out."""
+        return self.lanes_in > 0 and self.lanes_out > 0
+
+    @property
+    def flow(self) -> int:
+        """Heading of its traffic as a bearing index; of a two-way one, of those who come in."""
+        return (self.bearing + 4 * (self.lanes_in > 0)) % 8
+
 
 @dataclass
 class Access:

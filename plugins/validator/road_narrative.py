@@ -11,13 +11,14 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
+from plugins.validator._road_holds import carrying, ends, laid, totals
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle, turned
+from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.paths import legs_used
+from sgcad_core.narrative.paths import legs_used, turns_off
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
@@ -66,16 +67,25 @@ class RoadNarrative(Validator):
             said = "a T-intersection" if want == 3 else "a four-leg intersection"
             what = f"the report says {said}, but no junction of the network has {want} legs"
             remedy = f"let {want} roads meet at one node"
-            holds = (Hold(items="legs", at_least=want), *_laid(facts, pictured))
+            holds = (Hold(items="legs", at_least=want), *laid(facts, pictured))
             yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
-            holds = () if pictured else (Hold(items="legs", at_most=want), *_laid(facts, pictured))
-            yield _finding(what, "junction", f"{widest} roads meet", remedy, "note" if pictured else "repair", holds)
+            alone = not pictured and self._alone(facts)
+            holds = (Hold(items="legs", at_most=want),) if alone else ()
+            yield _finding(what, "junction", f"{widest} roads meet", remedy, "repair" if alone else "note", holds)
         elif junction.kind == "none" and widest >= 3:
             remedy = "draw a plain road, unless the diagram shows the junction"
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
+
+    def _alone(self, facts: RoadFacts) -> bool:
+        """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
+        legs, vehicles = legs_used(facts), facts.crash.vehicles
+        straight = [v for v in vehicles if v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
+        ahead = [v.heading for v in straight if v.heading]
+        through = {*legs, *ahead}
+        return len(through) <= 3 and len(facts.streets) == len(facts.roads) and not any(v.origin for v in vehicles)
 
     def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
         """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round.
@@ -96,7 +106,7 @@ class RoadNarrative(Validator):
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
-        yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=_laid(facts, pictured))
+        yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=laid(facts, pictured))
 
     def _nowhere_to_turn(
         self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool
@@ -105,12 +115,13 @@ class RoadNarrative(Validator):
         junction = facts.junction
         missing = self._without(legs_used(facts), [end for ends in junctions for end in ends])
         named = junction.stated if junction.kind == "driveway" else junction.stem_stated and not junction.stated
-        if not missing or not named:
+        if missing != [junction.stem] or not named or not any(map(turns_off, facts.crash.vehicles)):
             return
-        place = f"a {'driveway' if junction.kind == 'driveway' else 'road'} {WORDS[missing[0]]} of the crash"
-        what = f"a vehicle uses {place}, but the network has no junction"
-        holds = (Hold(items="legs", at_least=3), *_laid(facts, pictured))
-        yield _finding(what, "junction", "a plain road", f"lay a leg {WORDS[missing[0]]} of a junction", holds=holds)
+        where = f"{WORDS[missing[0]]} of"
+        what = f"a vehicle uses a {'driveway' if junction.kind == 'driveway' else 'road'} {where} the crash"
+        holds = (Hold(items="legs", at_least=3), *laid(facts, pictured))
+        severity: Severity = "doubt" if pictured else "repair"
+        yield _finding(what, "junction", "no junction", f"lay a leg {where} a junction", severity, holds)
 
     def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
         """Bearings at which nothing is drawn."""
@@ -127,7 +138,7 @@ class RoadNarrative(Validator):
             word = WORDS[v.heading]
             what = f"{v.id} travels {word}, but no road carries traffic that way"
             remedy = f"give a road lanes that head {word}; x is east, y is north"
-            yield _finding(what, v.id, f"heading {word}", remedy, holds=_carrying(v.heading))
+            yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
 
     def _carries(self, road: DrawnRoad, way: Compass, divided: bool) -> bool:
         """Whether traffic may head that way; of a divided road one carriageway may stand for both."""
@@ -136,17 +147,19 @@ class RoadNarrative(Validator):
 
     # -------------------------------------------------------------- one-way
     def _one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+        if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
+            return  # nobody knows which of the roads is meant
         for road in facts.streets:
             here, name = self._on_axis(road, drawn), AXIS_WORDS[road.axis or "N"]
-            if _both_ways(road) and here and not any(d.forward and d.backward for d in here):
+            if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
-                holds = (Hold(items="legs", key="bearing", values=_ends(road), either=both),)
+                holds = (Hold(items="legs", key="bearing", values=ends(road), either=both),)
                 yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=holds)
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
-                holds = (Hold(items="legs", key="bearing", values=_ends(road), either=either),)
+                holds = (Hold(items="legs", key="bearing", values=ends(road), either=either),)
                 yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=holds)
 
     def _on_axis(self, road: RoadFact, drawn: list[DrawnRoad]) -> list[DrawnRoad]:
@@ -166,7 +179,7 @@ class RoadNarrative(Validator):
             what = f"the {AXIS_WORDS[road.axis or 'N']} road has {said} lanes in both directions together in the report"
             seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
-            yield _finding(what, _ids(here), seen, remedy, holds=(_totals(road, allowed),))
+            yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
 
     def _lanes_one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         """Lanes of one direction: those that the text counts, and at least as many as the lane that one drives in.
@@ -226,11 +239,17 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     return set(range(max(1, named - fewer), named + extra + 1))
 
 
-def _both_ways(road: RoadFact) -> bool:
-    """Whether the text says that traffic goes both ways, on one carriageway."""
+def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:
+    """Whether the text says that traffic goes both ways, of a street at a junction: both its carriageways are drawn."""
     lanes = road.lanes
     told = lanes.one_way is False or lanes.each_way or len(lanes.toward) == 2
-    return bool(told and road.axis) and not lanes.divided
+    crossing = road.kind == "road" and facts.junction.kind in ("t", "four_leg", "driveway")
+    return bool(told and road.axis and crossing) and not lanes.divided and not lanes.one_way
+
+
+def _driven(road: RoadFact, facts: RoadFacts) -> set[Compass]:
+    """Headings told of vehicles that come along a road's axis."""
+    return {v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.heading in ends(road)}
 
 
 def _adds_up(road: RoadFact) -> bool:
@@ -242,38 +261,6 @@ def _adds_up(road: RoadFact) -> bool:
 def _vague(road: RoadFact, pictured: bool) -> bool:
     """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
     return pictured and len(road.lanes.toward) < 2
-
-
-def _laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
-    """Each leg in its place, clockwise from north (of a list of which any may be repeated some would be).
-
-    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides.
-    """
-    used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
-    sure = used if pictured else {*used, *(turned(leg, 180) for leg in used)}
-    ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
-    return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
-
-
-def _carrying(way: Compass) -> tuple[Hold, ...]:
-    """Lanes that way on both legs that may lie along it."""
-    return (
-        Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": SOME_LANES},)),
-        Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": SOME_LANES},)),
-    )
-
-
-def _totals(road: RoadFact, allowed: set[int]) -> Hold:
-    """Lanes of a leg, both ways, that add up to what the text allows."""
-    pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in SOME_LANES)) for n in SOME_LANES]
-    either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
-    return Hold(items="legs", key="bearing", values=_ends(road), either=either)
-
-
-def _ends(road: RoadFact) -> tuple[str, ...]:
-    """Bearings of the legs that a road may have."""
-    axis = road.axis or "N"
-    return axis, turned(axis, 180)
 
 
 def _ids(roads: list[DrawnRoad]) -> str:

@@ -76,7 +76,7 @@ _OWN = re.compile(
     rf"\dth)(?: lane)? of (?:the )?({NUM})"
     rf"(?: (?:through|travel|traffic))? lanes?\b(?! (?:each|in each|{BOUND}))", re.I)  # fmt: skip
 _ONE_WAY = re.compile(r"\bone[ -]way\b", re.I)
-_TWO_WAY = re.compile(r"\btwo[ -]way\b(?![ -](?:left|turn|center|stop))|\bbi-?directional\b", re.I)
+_TWO_WAY = re.compile(r"\btwo[ -]way\b(?![ -](?:left|turn|center|stop|radio|bi|traffic sig))|\bbi-?directional\b", re.I)
 _CENTER_TURN = re.compile(
     r"\b(?:cent(?:er|re)|middle|shared)[ -]+(?:two[ -]way[ -]+)?(?:left[ -]?)?(?:hand[ -])?turn(?:ing)?(?:[ -]lane|"
     r"(?! ?-?only))\b|"
@@ -163,12 +163,12 @@ def lane_facts(text: str) -> LaneFacts:
     each_turn = _EACH_TURN.search(counted)
     turns |= {"each": ("left" if each_turn[1].lower() == "left" else "right",)} if each_turn else {}
     total = _total(_EACH.sub("EACH", marked), counted, items, known)
-    one_way = bool(_ONE_WAY.search(text)) and not _TWO_WAY.search(text)
+    one_way, two_way = bool(_ONE_WAY.search(text)), bool(_TWO_WAY.search(text))
     divided, median = divided_and_median(text)
     return LaneFacts(
         total=total, each_way=number(each[1] or each[2]) if each else None, toward=toward, turns=turns,
-        one_way=True if one_way else False if _TWO_WAY.search(text) else None,
-        one_way_toward=_one_way_toward(text) if one_way else None,
+        one_way=one_way if one_way != two_way else None,
+        one_way_toward=_one_way_toward(text) if one_way > two_way else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
         own=number(own[1]) if own else None,
     )  # fmt: skip

@@ -34,6 +34,11 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     return tuple(dict.fromkeys(legs))
 
 
+def turns_off(v: VehicleFacts) -> bool:
+    """Whether the text tells that a vehicle turned or, standing or slowing, was about to."""
+    return v.maneuver_stated and _meant(v) in QUARTER_DEG
+
+
 def _along(driving: list[VehicleFacts], facts: RoadFacts) -> list[Compass]:
     """Headings of those that surely drive on a street, not on what joins it."""
     streets = {road.axis for road in facts.streets}

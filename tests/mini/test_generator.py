@@ -16,7 +16,7 @@ from mini.generator.grammar import families
 from mini.generator.report import MODES, make_report
 from mini.generator.roads import beside, one_way
 from mini.generator.targets import GUESS
-from mini.generator.world import COMPASS, TURN_OF, Crash
+from mini.generator.world import COMPASS, TURN_OF, WORDS, Crash
 from mini.generator.writer import Writer
 from mini.rows import road_ids
 from sgcad_core.layout import road_spec
@@ -226,11 +226,30 @@ def test_a_one_way_street_carries_everybody_who_uses_it(seed: int) -> None:
         assert leg is not None
         assert actor.lane is not None
         assert actor.lane <= leg.lanes_in
+        alone = sum(other.leg == actor.leg and bool(other.lane) for other in crash.actors) == 1
+        if alone and actor.maneuver == "turn_left" and not leg.two_way:
+            assert actor.lane == leg.lanes_in
         out = crash.leg(actor.out) if actor.out is not None else None
         assert actor.out is None or (out is not None and out.lanes_out)
-    for leg in crash.legs:
+    for leg, old in zip(crash.legs, before.legs, strict=True):
+        assert leg == old or leg.control == "none" or leg.lanes_in
+        assert len(leg.turns_in) in (0, leg.lanes_in)
         for use in leg.turns_in:
             assert all(opens(crash, leg.bearing + TURN_OF[way]) for way in use.split("_"))
+
+
+def test_no_sign_is_told_of_traffic_that_cannot_come() -> None:
+    signed = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        closed = {leg.flow for leg in report.crash.legs if not leg.lanes_in and leg.control != "none"}
+        for end, facts in report.sentences:
+            if "control" in facts and closed and "top sign" in report.narrative[:end].rpartition(". ")[2]:
+                said = report.narrative[:end].rpartition(". ")[2].lower()
+                signed += 1
+                wrong = [f"{WORDS[way]}bound" for way in ((flow + 4) % 8 for flow in closed)]
+                assert not any(f"for {word}" in said or f"controls {word}" in said for word in wrong)
+    assert signed > 3
 
 
 def test_some_one_way_streets_meet_two_way_ones_and_some_end_at_a_t() -> None:

@@ -1,5 +1,6 @@
 """Tags: sentences say what they tell, drawings what they show, and neither leaves a trace in the report."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -187,6 +188,26 @@ def test_pointers_lead_to_what_tells_the_value(seed: int) -> None:
     for at, sources in row.pointers:
         assert all(source in ends for source in sources) or all(source in shown for source in sources)
         assert all(source < at for source in sources)
+
+
+def test_one_way_without_a_count_tells_the_direction_that_nobody_drives(coder: Coder) -> None:
+    found = 0
+    for seed in range(500):
+        report = make_report(seed, modes={"text": 1.0})
+        bare = [leg for leg in report.crash.legs if not leg.two_way and f"ways.{leg.bearing % 4}" in report.told]
+        bare = [leg for leg in bare if f"lanes.{leg.bearing % 4}" not in report.told | report.doubtful]
+        said = {NAMES[i] for _, facts in report.sentences for i in tags.told(report.crash, facts)}
+        if bare:
+            mute = [(end, {fact for fact in facts if not fact.startswith("ways")}) for end, facts in report.sentences]
+            without = replace(report, sentences=mute)
+            pointers = [len(training_row(coder, some, None).pointers) for some in (report, without)]
+            assert pointers[0] > pointers[1]
+        for leg in bare:
+            side, other = ("in", "out") if not leg.lanes_in else ("out", "in")
+            assert f"leg{leg.bearing}.{side}=0" in said
+            assert not any(name.startswith(f"leg{leg.bearing}.{other}=") for name in said)
+            found += 1
+    assert found > 10
 
 
 def test_every_fact_of_an_answer_has_a_name() -> None:

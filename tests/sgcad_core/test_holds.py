@@ -146,3 +146,19 @@ def test_of_two_holds_that_exclude_each_other_the_first_is_kept(first, second):
     narrowed_ = grammar_of(BehaviorSpec, *holds)
     assert accepts(narrowed_, behavior(actor("V1"), actor(first)))
     assert not accepts(narrowed_, behavior(actor("V1"), actor(second)))
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_place_beyond_the_most_items_is_passed_over(order: int) -> None:
+    last = Hold(items="legs", at=3, either=({"bearing": ("W",)},))
+    holds = [Hold(items="legs", at_most=3), last][::order]
+    legs = narrowed(answer_schema(RoadLayout), holds)["anyOf"][0]["properties"]["legs"]
+    assert legs["minItems"] <= legs["maxItems"]
+    assert Hold(items="legs", at_most=3).line() == "at most 3 legs"
+
+
+@pytest.mark.parametrize(("bearings", "right"), [("NES", True), ("NESW", False)])
+def test_no_more_legs_are_written_than_are_told(bearings: str, right: bool) -> None:
+    answer = RoadLayout.model_validate({"legs": [{"bearing": b, "lanes_in": 1, "lanes_out": 1} for b in bearings]})
+    grammar = grammar_of(RoadLayout, Hold(items="legs", at_most=3))
+    assert accepts(grammar, json.loads(answer.model_dump_json())) == right

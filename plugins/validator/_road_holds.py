@@ -1,0 +1,43 @@
+"""What the next layout is held to where a narrative tells its roads: bearings, directions and lanes of legs."""
+
+from __future__ import annotations
+
+from sgcad_core.holds import SOME_LANES
+from sgcad_core.narrative.compass import COMPASS, turned
+from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.paths import legs_used
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.records import Hold
+from sgcad_core.specs import Compass
+
+
+def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
+    """Each leg in its place, clockwise from north (of a list of which any may be repeated some would be).
+
+    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides.
+    """
+    used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
+    sure = used if pictured else {*used, *(turned(leg, 180) for leg in used)}
+    ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
+    return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
+
+
+def carrying(way: Compass) -> tuple[Hold, ...]:
+    """Lanes that way on both legs that may lie along it."""
+    return (
+        Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": SOME_LANES},)),
+        Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": SOME_LANES},)),
+    )
+
+
+def totals(road: RoadFact, allowed: set[int]) -> Hold:
+    """Lanes of a leg, both ways, that add up to what the text allows."""
+    pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in SOME_LANES)) for n in SOME_LANES]
+    either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
+    return Hold(items="legs", key="bearing", values=ends(road), either=either)
+
+
+def ends(road: RoadFact) -> tuple[str, ...]:
+    """Bearings of the legs that a road may have."""
+    axis = road.axis or "N"
+    return axis, turned(axis, 180)
