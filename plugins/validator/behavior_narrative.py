@@ -1,7 +1,8 @@
 """Whether a scenario's behavior says what the narrative states for sure.
 
 Vehicles, initial headings, maneuvers and the first contact. Only what the text tells outright is asked
-again; where the reading is inferred or a corner is hit, a note is all. Reads no diagram.
+again; where the reading is inferred a note is all, and of a corner the side that the told paths make likely is a doubt.
+Reads no diagram.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.ways import Way, apart, degree, ways_of
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _FAR_RAD = math.radians(70)
@@ -28,7 +29,7 @@ class BehaviorNarrative(Validator):
     """Compares a behavior spec with the narrative's stated facts."""
 
     stage: ClassVar[str] = "scenario"
-    version: ClassVar[str] = "2"
+    version: ClassVar[str] = "3"
 
     areas: Literal["repair", "note"] = "repair"
     """Severity where a declared side is none that the text allows."""
@@ -56,7 +57,7 @@ def _finding(
     where: str,
     value: str,
     remedy: str,
-    severity: Literal["repair", "refuse", "note"] = "repair",
+    severity: Severity = "repair",
     holds: tuple[Hold, ...] = (),
 ) -> Finding:
     return Finding(
@@ -166,13 +167,32 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
         yield _finding(f"the report's first contact is between {told.striker} and {told.struck}", "contacts[0]",
                        f"{said.striker} and {said.struck}", _declare(told), holds=_first(told))  # fmt: skip
     elif _sides(said) != _sides(told):
-        sure = severity if any(side not in _allowed(told)[name] for name, side in _sides(said).items()) else "note"
+        allowed = all(side in _allowed(told)[name] for name, side in _sides(said).items())
+        doubted = allowed and severity == "repair" and _cornered(said, told) and _moves_as_told(told, behavior, facts)
         yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
-                       _declare(told), sure, _first(told))  # fmt: skip
+                       _declare(told), "doubt" if doubted else "note" if allowed else severity,
+                       _first(told, doubted))  # fmt: skip
 
 
-def _first(told: ContactFacts) -> tuple[Hold, ...]:
-    sides = {"striker_area": told.striker_may, "struck_area": told.struck_may}
+def _cornered(said: Contact, told: ContactFacts) -> bool:
+    """Whether every side that differs is one of a told corner's two."""
+    sides = _sides(told)
+    return all(len(_allowed(told)[name]) == 2 for name, side in _sides(said).items() if side != sides[name])
+
+
+def _moves_as_told(told: ContactFacts, behavior: BehaviorSpec, facts: CrashFacts) -> bool:
+    """Whether both vehicles do what the text tells: which side of a corner was hit follows from that."""
+    does = {actor.id: actor.maneuver for actor in behavior.actors}
+    known = {name: facts.vehicle(name) for name in (told.striker, told.struck)}
+    return all(v is not None and v.heading_stated and does[name] == v.maneuver for name, v in known.items())
+
+
+def _first(told: ContactFacts, decided: bool = False) -> tuple[Hold, ...]:
+    """The first contact with the sides that the words allow; `decided`: of a corner the one that the paths suggest."""
+    sides: dict[str, tuple[Area, ...]] = {"striker_area": told.striker_may, "struck_area": told.struck_may}
+    if decided:
+        likely: dict[str, Area] = {"striker_area": told.striker_area, "struck_area": told.struck_area}
+        sides = {key: (likely[key],) if len(may) == 2 else may for key, may in sides.items()}
     pair = {"striker": (told.striker,), "struck": (told.struck,)}
     return (Hold(items="contacts", at=0, either=(pair | sides,)),)
 

@@ -34,6 +34,10 @@ def _changed(index: int, **changes: Any) -> BehaviorSpec:
     return GOOD.model_copy(update={"actors": tuple(actors)})
 
 
+def _turning(actor: Actor) -> Actor:
+    return actor.model_copy(update={"maneuver": "turn_right", "exit_road": "E"})
+
+
 def _contact(**changes: Any) -> BehaviorSpec:
     return GOOD.model_copy(update={"contacts": (GOOD.contacts[0].model_copy(update=changes),)})
 
@@ -80,7 +84,14 @@ def test_a_corner_may_be_read_either_way() -> None:
     text = "V1 was northbound. V2 was eastbound. The front of V1 struck the left front of V2."
     good = behavior_of_facts(crash_facts(text), SPEC)
     other = good.contacts[0].model_copy(update={"striker_area": "front", "struck_area": "front"})
-    assert [f.severity for f in _found(good.model_copy(update={"contacts": (other,)}), text)] in ([], ["note"])
+    assert [f.severity for f in _found(good.model_copy(update={"contacts": (other,)}), text)] == ["doubt"]
+    elsewhere = good.model_copy(update={"contacts": (other,), "actors": (_turning(good.actors[0]), good.actors[1])})
+    assert "doubt" not in [f.severity for f in _found(elsewhere, text)]
+    unheaded = text.replace("V2 was eastbound", "V2 was there")
+    read = behavior_of_facts(crash_facts(unheaded), SPEC)
+    swapped = {"front": "left", "left": "front"}[read.contacts[0].struck_area]
+    changed = read.contacts[0].model_copy(update={"struck_area": swapped})
+    assert [f.severity for f in _found(read.model_copy(update={"contacts": (changed,)}), unheaded)] == ["note"]
 
 
 def test_a_contact_that_is_not_declared_is_asked_for() -> None:
@@ -172,14 +183,14 @@ CORNER = TEXT.replace("the right side of V2", "the right front of V2")
 
 
 @pytest.mark.parametrize(("side", "severity"), [
-    ("right", None), ("front", "note"), ("left", "repair"), ("back", "repair"),
+    ("right", None), ("front", "doubt"), ("left", "repair"), ("back", "repair"),
 ])  # fmt: skip
 def test_a_corner_may_be_either_of_its_sides_and_no_other(side: str, severity: str | None) -> None:
     found = [f for f in _found(_contact(struck_area=side), CORNER) if "sides" in f.what]
     assert [f.severity for f in found] == ([severity] if severity else [])
     for finding in found:
         (hold,) = finding.holds
-        assert set(hold.either[0]["struck_area"]) == {"right", "front"}
+        assert set(hold.either[0]["struck_area"]) == ({"right"} if severity == "doubt" else {"right", "front"})
         assert hold.either[0]["striker_area"] == ("front",)
 
 
