@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import ClassVar, Literal
 
 from plugins.validator._courses import UNNUMBERED, approaches, course, heading, held
@@ -22,6 +23,7 @@ from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
+_ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 
 
@@ -47,7 +49,7 @@ class BehaviorNarrative(Validator):
         found = list(_vehicles(behavior, facts))
         spec = evidence.network.spec if evidence.network else None
         if spec is not None:
-            found += _headings(behavior, facts, spec)
+            found += [*_headings(behavior, facts, spec), *_following(behavior, facts, spec)]
         found += _maneuvers(behavior, facts, spec, self.maneuvers)
         return [*found, *_contact(behavior, facts, self.areas)]
 
@@ -107,6 +109,30 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
                 _better_ways(wanted, tuple(ways.values()), spec),
                 holds=courses(fact, spec),
             )  # fmt: skip
+
+
+def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iterator[Finding]:
+    """A told rear-end crash of two that do not turn: both head the same way."""
+    told = next((c for c in facts.contacts if c.stated), None)
+    if told is None or not told.areas_stated or (told.striker_area, told.struck_area) != ("front", "back"):
+        return
+    ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
+    acting = {actor.id: actor for actor in behavior.actors}
+    pair = [(facts.vehicle(name), acting.get(name)) for name in (told.struck, told.striker)]
+    found = [(v, a, ways.get((a.road, a.direction))) for v, a in pair if v is not None and a is not None]
+    if len(found) < 2 or any(v.maneuver not in _ALONG or a.maneuver not in _ALONG for v, a, _ in found):
+        return
+    for (leader, _, way), (v, actor, own) in (found, found[::-1]):
+        if v.heading_stated or way is None or own is None or apart(way.heading_rad, own.heading_rad) <= _FAR_RAD:
+            continue
+        other = leader.heading if leader.heading_stated else compass_of_angle(way.heading_rad)
+        yield _finding(
+            f"the front of {told.striker} meets the rear of {told.struck}, but they head different ways",
+            f"{v.id}.road", f"{actor.road}, {actor.direction}",
+            f"start {v.id} where {leader.id} starts, heading {other}",
+            holds=courses(replace(v, heading=other, heading_stated=True), spec),
+        )  # fmt: skip
+        return
 
 
 def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:

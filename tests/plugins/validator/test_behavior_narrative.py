@@ -200,3 +200,33 @@ def test_a_corner_may_be_either_of_its_sides_and_no_other(side: str, severity: s
 def test_facts_keep_which_sides_the_words_allow(said: str, may: set[str]) -> None:
     (contact,) = crash_facts(TEXT.replace("the right side of V2", said)).contacts
     assert set(contact.struck_may if contact.struck == "V2" else contact.striker_may) == may
+
+
+BEHIND = (
+    "V1 was stopped on the roadway facing north. V2 was traveling in the same direction. "
+    "The front of V2 struck the rear of V1."
+)
+
+
+@pytest.mark.parametrize(("text", "moved", "road"), [
+    (BEHIND, 1, "S"), (BEHIND.replace("facing north", "in traffic"), 1, "S"),
+    (BEHIND.replace("facing north", "in traffic").replace("in the same direction", "north"), 0, "S"),
+])  # fmt: skip
+def test_of_a_rear_end_crash_both_start_the_same_way(text: str, moved: int, road: str) -> None:
+    def found(behavior: BehaviorSpec) -> list[Finding]:
+        return [f for f in _found(behavior, text) if "head different ways" in f.what]
+
+    right = behavior_of_facts(crash_facts(BEHIND), SPEC)
+    assert found(right) == []
+    actors = list(right.actors)
+    actors[moved] = actors[moved].model_copy(update={"road": "E"})
+    (finding,) = found(right.model_copy(update={"actors": tuple(actors)}))
+    assert finding.where == f"V{moved + 1}.road"
+    (hold,) = finding.holds
+    assert {choice["road"] for choice in hold.either} == {(road,)}
+
+
+def test_one_that_turned_before_it_was_struck_from_behind_may_head_elsewhere() -> None:
+    text = "V1 was northbound and turned left. V2 was westbound. The front of V2 struck the rear of V1."
+    behavior = behavior_of_facts(crash_facts(text), SPEC)
+    assert not [f for f in _found(behavior, text) if "head different ways" in f.what]
