@@ -114,7 +114,9 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
 def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iterator[Finding]:
     """A told rear-end crash of two that do not turn: both head the same way."""
     told = next((c for c in facts.contacts if c.stated), None)
-    if told is None or not told.areas_stated or (told.striker_area, told.struck_area) != ("front", "back"):
+    if told is None or (told.striker_area, told.struck_area) != ("front", "back"):
+        return
+    if max(len(told.striker_may), len(told.struck_may)) > 2:  # a side that the text leaves open
         return
     ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
     acting = {actor.id: actor for actor in behavior.actors}

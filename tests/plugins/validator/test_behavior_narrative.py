@@ -209,7 +209,8 @@ BEHIND = (
 
 
 @pytest.mark.parametrize(("text", "moved", "road"), [
-    (BEHIND, 1, "S"), (BEHIND.replace("facing north", "in traffic"), 1, "S"),
+    (BEHIND, 1, "S"), (BEHIND.replace("rear of V1", "right rear of V1"), 1, "S"),
+    (BEHIND.replace("facing north", "in traffic"), 1, "S"),
     (BEHIND.replace("facing north", "in traffic").replace("in the same direction", "north"), 0, "S"),
 ])  # fmt: skip
 def test_of_a_rear_end_crash_both_start_the_same_way(text: str, moved: int, road: str) -> None:
