@@ -234,7 +234,8 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     named = named or (sum(lanes.toward.values()) if len(lanes.toward) == 2 else None)
     if not named:
         return set()
-    extra = sum(len(turns) for turns in lanes.turns.values()) + pictured
+    whole = len(lanes.toward) == 2 and sum(lanes.toward.values()) == lanes.total  # turn lanes are among them
+    extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
     fewer = lanes.center_turn_lane or (_vague(road, pictured) and named % 2)
     return set(range(max(1, named - fewer), named + extra + 1))
 

@@ -286,6 +286,13 @@ def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: 
     assert max(allowed_totals(road, pictured=False)) == high - 1
 
 
+def test_turn_lanes_among_lanes_told_way_by_way_are_not_counted_twice() -> None:
+    said = "a five-lane road (two southbound lanes, two northbound lanes, one northbound left turn lane)"
+    road = road_facts(f"V1 was traveling north on {said}.").streets[0]
+    assert allowed_totals(road, pictured=False) == {5}
+    assert max(allowed_totals(road)) == 6
+
+
 @pytest.mark.parametrize("said", ["a divided four-lane highway", "a two-lane, one-way street", "a road"])
 def test_a_road_whose_drawn_total_is_open_allows_anything(said: str) -> None:
     assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0]) == set()
