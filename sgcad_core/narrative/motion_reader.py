@@ -22,6 +22,14 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
                           "rest": 2}  # fmt: skip
 
 
+_STOPPED_AT_LAST = re.compile(
+    r"\b(?:and|then|until it|before it|before they)\s+(?:\w+ly |then |both )?stopped\b"
+    r"(?! (?:for|at|behind|because|due|to let|to allow|waiting|and|in traffic))", re.I
+)  # fmt: skip
+_THROWN = re.compile(
+    r"\b(?:spun|spinning|rolled|rotated|deflected|recoil\w*|rebound\w*|bounced|shoved|pushed|knocked|thrown|"
+    r"separate ways|ran into|over the curb|off the (?:road\w*|pavement))\b", re.I
+)  # fmt: skip
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
 
 
@@ -35,7 +43,7 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
         for vehicle in segment.subjects:
             motion = found[vehicle]
             late = segment.number > impact and bool(motion.headings or motion.deeds)
-            _read(motion, segment, vehicle, who, 2 if late else 4)
+            _read(motion, segment, vehicle, who, 2 if late else 4, segment.number > impact)
     for t in told:
         if t.role not in _UNREAD:
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))
@@ -44,9 +52,9 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
     return found
 
 
-def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int) -> None:
-    """`most`: the highest weight; what is told again behind the impact is another witness."""
-    text = re.sub(r"\([^()]*\)", " ", segment.text)
+def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:
+    """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
+    text = _until_stopped(re.sub(r"\([^()]*\)", " ", segment.text), after)
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
@@ -56,6 +64,12 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
         read_lane(motion, before_hit)
         read_access(motion, before_hit)
     read_speed(motion, segment.text, weight)
+
+
+def _until_stopped(text: str, after: bool) -> str:
+    """Without the end of a way that a blow began: "spun and stopped in the road", "traveled west and stopped"."""
+    found = _STOPPED_AT_LAST.search(text)
+    return text[: found.start()] if found and (after or _THROWN.search(text[: found.start()])) else text
 
 
 def _until_hit(text: str) -> str:
