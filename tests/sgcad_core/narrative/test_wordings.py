@@ -112,3 +112,25 @@ def test_a_long_report_costs_a_fraction_of_a_second() -> None:
     started = time.process_time()
     road_facts(report)
     assert time.process_time() - started < 5.0
+
+
+@pytest.mark.parametrize("end", [
+    "V2 traveled east and stopped.", "Both vehicles spun and stopped in the road.",
+    "V2 was shoved to the northeast and stopped 8 feet away.", "V2 ran into a wall and then stopped.",
+])  # fmt: skip
+def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> None:
+    vehicle = crash_facts(f"{SCENE}The front of V1 struck the left side of V2. {end}").vehicle("V2")
+    assert vehicle is not None
+    assert vehicle.maneuver == "straight"
+
+
+def test_a_stop_that_is_told_before_the_impact_stays_one() -> None:
+    text = f"{SCENE}V2 came up to a line of cars and stopped. The front of V1 struck the left side of V2."
+    vehicle = crash_facts(text).vehicle("V2")
+    assert vehicle is not None
+    assert vehicle.maneuver == "stopped"
+
+
+def test_a_vehicle_that_was_thrown_and_stopped_did_not_stop_before_an_impact_that_nobody_told() -> None:
+    facts = crash_facts(SCENE + "Both vehicles bounced apart and stopped off the road.")
+    assert [v.maneuver for v in facts.vehicles] == ["straight", "straight"]
