@@ -26,6 +26,7 @@ _STOPPED_AT_LAST = re.compile(
     r"\b(?:and|then|until it|before it|before they)\s+(?:\w+ly |then |both )?stopped\b"
     r"(?! (?:for|at|behind|because|due|to let|to allow|waiting|and|in traffic))", re.I
 )  # fmt: skip
+_STOPPED_THERE = re.compile(r"\bstopped (?:facing|headed|heading|pointing|together|almost|short|\d)", re.I)
 _THROWN = re.compile(
     r"\b(?:spun|spinning|rolled|rotated|deflected|recoil\w*|rebound\w*|bounced|shoved|pushed|knocked|thrown|"
     r"separate ways|ran into|over the curb|off the (?:road\w*|pavement))\b", re.I
@@ -67,8 +68,8 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
 
 
 def _until_stopped(text: str, after: bool) -> str:
-    """Without the end of a way that a blow began: "spun and stopped in the road", "traveled west and stopped"."""
-    found = _STOPPED_AT_LAST.search(text)
+    """Without the end of a way that a blow began: "spun and stopped in the road", "stopped facing west"."""
+    found = _STOPPED_AT_LAST.search(text) or (_STOPPED_THERE.search(text) if after else None)
     return text[: found.start()] if found and (after or _THROWN.search(text[: found.start()])) else text
 
 

@@ -117,11 +117,12 @@ def test_a_long_report_costs_a_fraction_of_a_second() -> None:
 @pytest.mark.parametrize("end", [
     "V2 traveled east and stopped.", "Both vehicles spun and stopped in the road.",
     "V2 was shoved to the northeast and stopped 8 feet away.", "V2 ran into a wall and then stopped.",
+    "V2 stopped facing northwest.",
 ])  # fmt: skip
 def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> None:
     vehicle = crash_facts(f"{SCENE}The front of V1 struck the left side of V2. {end}").vehicle("V2")
     assert vehicle is not None
-    assert vehicle.maneuver == "straight"
+    assert (vehicle.heading, vehicle.maneuver) == ("E", "straight")
 
 
 def test_a_stop_that_is_told_before_the_impact_stays_one() -> None:
