@@ -236,7 +236,9 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
         return set()
     whole = len(lanes.toward) == 2 and sum(lanes.toward.values()) == lanes.total  # turn lanes are among them
     extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
-    fewer = lanes.center_turn_lane or (_vague(road, pictured) and named % 2)
+    both = "each" in lanes.turns or len(lanes.turns) > 1  # turn lanes either way: no place of the road has all of them
+    beyond = max(map(len, lanes.turns.values())) if both else 0
+    fewer = max(beyond, lanes.center_turn_lane or (_vague(road, pictured) and named % 2))
     return set(range(max(1, named - fewer), named + extra + 1))
 
 

@@ -286,6 +286,12 @@ def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: 
     assert max(allowed_totals(road, pictured=False)) == high - 1
 
 
+def test_turn_lanes_of_both_approaches_lie_one_behind_the_other() -> None:
+    lanes = ", ".join(f"one {way} left turn lane, one {way} lane" for way in ("northbound", "southbound"))
+    said = f"a four-lane road ({lanes})"
+    assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0], pictured=False) == {3, 4}
+
+
 def test_turn_lanes_among_lanes_told_way_by_way_are_not_counted_twice() -> None:
     said = "a five-lane road (two southbound lanes, two northbound lanes, one northbound left turn lane)"
     road = road_facts(f"V1 was traveling north on {said}.").streets[0]
