@@ -17,6 +17,8 @@ from sgcad_core.formats.road_geometry import LANE_M, MEDIAN_M
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
+OUTER = "_outer"
+"""Behind a leg's name: its piece beyond the last access."""
 LEG_M = 240.0
 """Length of a leg: 8 s at 65 mph, so that every approach begins on the road."""
 ARC_M = 120.0
@@ -192,7 +194,7 @@ class _LegDrawing:
         """The leg's road between two places, forward towards the hub."""
         (inner, s_in), (outer, s_out) = places[index], places[index + 1]
         leg, last = self.leg, len(places) - 2
-        suffix = "" if index == 0 else "_outer" if index == last else f"_mid{_number(index - 1)}"
+        suffix = "" if index == 0 else OUTER if index == last else f"_mid{_number(index - 1)}"
         return Road(
             id=f"{leg.bearing}{suffix}", from_node=outer, to_node=inner,
             lanes_forward=leg.lanes_in, lanes_backward=leg.lanes_out,

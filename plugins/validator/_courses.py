@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from sgcad_core.layout import OUTER
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of
 from sgcad_core.records import Hold
 from sgcad_core.specs import Maneuver, RoadSpec
@@ -42,8 +43,17 @@ def heading(ways: Sequence[Way], wanted_rad: float) -> tuple[Way, ...]:
 
 
 def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:
-    """Without those that begin at a junction and lead away, if there are others: who drives there came through it."""
-    return tuple(w for w in ways if degree(w.from_node, spec) <= 2 or degree(w.to_node, spec) > 2) or tuple(ways)
+    """Without those that begin at a junction and lead away, or that others lead straight into, if there are others: who
+    drives there came through these.
+
+    A leg's piece from an access on towards the hub stays: small models know the leg by this name only.
+    """
+    split = {road.id.removesuffix(OUTER) for road in spec.roads if road.id.endswith(OUTER)}
+    inner = [w for w in ways if w.direction == "forward" and w.road.id in split]
+    onward = {(w.from_node, w.road.id) for p in ways for w in exits(p, ways) if abs(turn_of(p, w)) <= _TURN_RAD}
+    first = [w for w in ways if (w.from_node, w.road.id) not in onward]
+    kept = [w for w in first if degree(w.from_node, spec) <= 2 or degree(w.to_node, spec) > 2]
+    return tuple(w for w in ways if w in kept or w in inner) or tuple(ways)
 
 
 def held(name: str, either: Sequence[Course]) -> Hold:
