@@ -189,8 +189,10 @@ class RoadNarrative(Validator):
         """
         read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
         told = [(way, n, n) for road in facts.streets if _adds_up(road) for way, n in road.ways]
-        for lanes in (road.lanes for road in facts.streets):
-            told += [(lanes.one_way_toward, lanes.total, lanes.total)] if lanes.one_way_toward and lanes.total else []
+        for road in (road for road in facts.streets if road.lanes.one_way):
+            count, toward = road.lanes.total, road.lanes.one_way_toward
+            flows = {toward} if toward else _driven(road, facts)
+            told += [(way, count, count) for way in flows if count and len(flows) == 1]
         driven = [v for v in facts.crash.vehicles if v.heading_stated]
         told += [(v.heading, v.lane, max(SOME_LANES)) for v in driven if v.heading and v.lane]
         for way, least, most in told:

@@ -192,9 +192,10 @@ def _total(text: str, counted: str, items: list[_Item], known: list[Compass | No
     said = [number(n) for n in _TOTAL.findall(text)]
     if said:
         return said[0]
+    alone = _ONE_WAY.search(text) and not _TWO_WAY.search(text)  # else "one lane" may be one of several
     loose = [
         item.count for item, way in zip(items, known, strict=True)
-        if way is None and item.plain and item.count > 1 and not _CROSSED.search(counted[: item.place])
+        if way is None and item.plain and (item.count > 1 or alone) and not _CROSSED.search(counted[: item.place])
     ]  # fmt: skip
     return loose[0] if len(loose) == 1 else None
 

@@ -158,3 +158,13 @@ def test_every_statement_gives_a_road_one_can_drive(facts: LaneFacts) -> None:
 @settings(max_examples=200, deadline=None)
 def test_lane_facts_read_any_text(text: str) -> None:
     lane_facts(text)
+
+
+@pytest.mark.parametrize(("said", "total", "one_way"), [
+    ("a one-way roadway with one lane of travel", 1, True), ("a one-way street, two lanes wide", 2, True),
+    ("a roadway with one lane of travel", None, None), ("a two-way road reduced to a one-way lane", None, None),
+    ("a one-way street with a two-way radio post", None, True),
+])  # fmt: skip
+def test_lanes_of_one_way_streets(said: str, total: int | None, one_way: bool | None) -> None:
+    facts = lane_facts(said)
+    assert (facts.total, facts.one_way) == (total, one_way)
