@@ -14,7 +14,7 @@ import os
 import threading
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -98,6 +98,13 @@ class Claims:
             self._held.pop(claim.digest, None)
             for number in range(1, claim.number + 1):
                 self.place.remove(f"{CLAIMS}/{claim.digest}.{number}")
+
+    def drop_dead(self, done: Callable[[str], bool]) -> None:
+        """Remove claims of dead workers on reports that are done: one was killed before it could let go."""
+        for name in self.place.names(CLAIMS):
+            digest = name.rpartition(".")[0]
+            if digest not in self._held and done(digest) and not self._alive(f"{CLAIMS}/{name}"):
+                self.place.remove(f"{CLAIMS}/{name}")
 
     def forsake(self, claim: Claim) -> None:
         """Stop beating without letting go: the report is another's by now."""

@@ -69,6 +69,7 @@ class Intake:
                     self._do(taken, do)
                     patience = time.monotonic() + wait_s
                 elif not any(_is_report(e) for e in self._waiting()) or time.monotonic() >= patience:
+                    self.claims.drop_dead(lambda digest: self._outcome(digest) is not None)
                     return self._told()
                 else:
                     time.sleep(min(1.0, max(wait_s, 0.05)))

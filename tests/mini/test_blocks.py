@@ -60,7 +60,7 @@ def test_frames_stand_on_both_sides_of_the_split_and_use_known_slots(options: li
 
 def test_left_turns_are_coded_of_those_who_turn_left() -> None:
     told = 0
-    for seed in range(3000):
+    for seed in range(4000):
         report = make_report(seed, modes={"text": 1.0})
         turning = {actor.id for actor in report.crash.actors if actor.maneuver == "turn_left"}
         start = 0

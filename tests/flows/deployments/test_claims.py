@@ -81,3 +81,16 @@ def test_a_report_that_two_workers_died_with_is_taken_alone(claims, tmp_path):
     foreign(tmp_path, 2, 7200)
     assert claims().take("d", alone=False) is None
     assert claims().take("d", alone=True).number == 3
+
+
+def test_what_a_dead_worker_left_of_a_report_that_is_done_is_removed(claims, tmp_path):
+    foreign(tmp_path, age_s=7200)
+    mine = claims()
+    mine.drop_dead(lambda _: False)
+    assert (tmp_path / CLAIMS / "d.1").exists()
+    foreign(tmp_path, age_s=0)
+    mine.drop_dead(lambda _: True)
+    assert (tmp_path / CLAIMS / "d.1").exists()
+    foreign(tmp_path, age_s=7200)
+    mine.drop_dead(lambda digest: digest == "d")
+    assert not (tmp_path / CLAIMS / "d.1").exists()
