@@ -34,10 +34,10 @@ def narrowed(schema: Mapping[str, Any], holds: Sequence[Hold]) -> Json:
 
 
 def _held(array: Json, hold: Hold) -> Json:
-    most = array.get("maxItems", hold.at_least)
-    out = {**array, "minItems": max(array.get("minItems", 0), min(hold.at_least, most))}
     if hold.at is not None and hold.at >= array.get("maxItems", hold.at + 1):
         return array
+    most = array.get("maxItems", hold.at_least)
+    out = {**array, "minItems": max(array.get("minItems", 0), min(hold.at_least, most))}
     if hold.at_most is not None and hold.at_most >= out["minItems"]:
         out["maxItems"] = min(hold.at_most, array.get("maxItems", hold.at_most))
     if not hold.either:

@@ -5,7 +5,7 @@ Slots: {noun} "urban road", {n} all its lanes ("four"), {each} lanes each way ("
 {a} {b} "two northbound lanes" of either way, {median} a phrase of MEDIAN, {xb} "northbound", {mph} {kph}, {number}
 {ordinal} of a lane counted from the right, {word} "north". STEM says where the leg lies that ends at the road: {axis}
 {axis2} "north/south" of the through road and of the other, {stemdir} "south", {opposite} "north". They only train: nothing
-here is held out.
+here is held out. UNCOUNTED, ONE_WAY_AGAIN, TWO_WAY_AGAIN and FLOWS say whether a road is one-way and leave its lanes open.
 
 Sentences: PAIR tells both roads of a junction at once ({one} and {other} with their articles, {a1} and {a2} their axes),
 LIMITS one {lim} that holds on both, ALIKE {each} direction's lanes of both ({total} together), EACH_WAY the lanes of a road ({axis0}) that has {each} either way ({w1}, {w2}).

@@ -115,8 +115,10 @@ def make_report(
 def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0) -> Crash:
     """A crash; of those that train, more on one-way streets and with other sides than the sampler knows."""
     crash = sample_crash(rng)
+    if held_out:
+        return crash
     own = Random(f"{seed} streets {attempt}")
-    return crash if held_out else glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
+    return glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 
 def _worth_telling(

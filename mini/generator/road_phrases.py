@@ -86,7 +86,7 @@ class RoadsMixin:
         if simple and not self.held_out and rng.random() < words.MORE:
             return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
         even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
-        plain = not turns and not leg.twltl and leg.lanes_in * leg.lanes_out
+        plain = not turns and not leg.twltl and leg.two_way
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
         other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
         total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
@@ -131,8 +131,7 @@ class RoadsMixin:
         if not leg.two_way:
             xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
             text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
-            self.told |= {f"{AXIS}.{axis}", f"{FLOW}.{axis}"} if xb in text else set()
-            return text
+            return self._flowing(leg, xb, text)
         if leg.lanes_in != leg.lanes_out:
             self.told.add(f"{AXIS}.{axis}")
             a, b = words.lanes(leg.lanes_in, to), words.lanes(leg.lanes_out, fro)
@@ -165,6 +164,10 @@ class RoadsMixin:
                 f"a one-way {xb} {word} that had {count}",
             ]
         text = rng.choice(forms)
+        return self._flowing(leg, xb, text)
+
+    def _flowing(self, leg: Leg, xb: str, text: str) -> str:
+        """That phrase of a one-way street, noted if it tells the way that its traffic goes."""
         self.told |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if xb in text else set()
         return text
 
@@ -175,10 +178,9 @@ class RoadsMixin:
 
     def _uncounted(self, leg: Leg, options: list[str], noun: str) -> str:
         """A phrase that says whether a road is one-way and leaves open how many lanes it has."""
-        axis, xb = leg.bearing % 4, words.bound(self.rng, leg.flow)
-        text = more.phrase(self.rng, options, noun=noun, xb=xb)
-        self.told |= {f"ways.{axis}"} | ({f"{hint}.{axis}" for hint in (AXIS, FLOW)} if xb in text else set())
-        return text
+        xb = words.bound(self.rng, leg.flow)
+        self.told.add(f"ways.{leg.bearing % 4}")
+        return self._flowing(leg, xb, more.phrase(self.rng, options, noun=noun, xb=xb))
 
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
         """`a road with two northbound lanes and one southbound lane` and the like."""

@@ -50,18 +50,15 @@ class Targets:
         lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
         if "legs" not in self.sure and self.crash.layout != "plain":
             self._unsure(path, "bearing", "more", "kind")
+        one_way = f"ways.{axis}" in self.sure and not leg.two_way
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
-            one_way = f"ways.{axis}" in self.sure
-            self._unsure(
-                path,
-                *(key for key, n in (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out)) if n or not one_way),
-            )
+            counts = (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out))
+            self._unsure(path, *(key for key, n in counts if n or not one_way))
         median = leg.median if f"median.{axis}" in self.known else "none"
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
-        counted = f"lanes.{axis}" in self.sure or (f"ways.{axis}" in self.sure and not leg.two_way)
-        self._unsure(path, *(() if counted else ("center_turn_lane",)))
+        self._unsure(path, *(() if one_way or f"lanes.{axis}" in self.sure else ("center_turn_lane",)))
         self._unsure(path, *(("turns_in",) if f"turns.{axis}" in self.known - self.sure else ()))
         self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
         if f"limit.{axis}" in self.sure and leg.limit:

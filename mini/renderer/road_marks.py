@@ -120,7 +120,7 @@ class RoadMarks:
     # -------------------------------------------------------------- lines
     def _center(self, band: Band, start: float) -> None:
         leg, pen = band.leg, self.pen
-        if not leg.lanes_in * leg.lanes_out or leg.kind != "road":
+        if not leg.two_way or leg.kind != "road":
             return
         s = np.arange(start, band.length, STEP)
         if len(s) < 3:
@@ -195,7 +195,7 @@ class RoadMarks:
     def _one_way(self, band: Band, start: float, arrows: bool) -> None:
         """Arrows on a one-way road, without which nobody could tell; on a plain one the vehicles mostly do."""
         leg = band.leg
-        if leg.kind != "road" or leg.lanes_in * leg.lanes_out or (arrows and leg.turns_in):
+        if leg.kind != "road" or leg.two_way or (arrows and leg.turns_in):
             return
         if self.ground.plain and self.rng.random() < 0.4:
             return

@@ -33,8 +33,13 @@ def course(way: Way, ways: Sequence[Way], maneuver: Maneuver) -> dict[str, tuple
 
 def straight_on(way: Way, ways: Sequence[Way]) -> str | None:
     """The road that goes on where a way ends; None on a stem, or where the road has no end."""
-    onward = min(exits(way, ways), key=lambda w: abs(turn_of(way, w)), default=None)
-    return onward.road.id if onward and abs(turn_of(way, onward)) <= _TURN_RAD else None
+    onward = min(_onward(way, ways), key=lambda w: abs(turn_of(way, w)), default=None)
+    return onward.road.id if onward else None
+
+
+def _onward(way: Way, ways: Sequence[Way]) -> list[Way]:
+    """Exits that no turn takes."""
+    return [w for w in exits(way, ways) if abs(turn_of(way, w)) <= _TURN_RAD]
 
 
 def heading(ways: Sequence[Way], wanted_rad: float) -> tuple[Way, ...]:
@@ -50,7 +55,7 @@ def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:
     """
     split = {road.id.removesuffix(OUTER) for road in spec.roads if road.id.endswith(OUTER)}
     inner = [w for w in ways if w.direction == "forward" and w.road.id in split]
-    onward = {(w.from_node, w.road.id) for p in ways for w in exits(p, ways) if abs(turn_of(p, w)) <= _TURN_RAD}
+    onward = {(w.from_node, w.road.id) for p in ways for w in _onward(p, ways)}
     first = [w for w in ways if (w.from_node, w.road.id) not in onward]
     kept = [w for w in first if degree(w.from_node, spec) <= 2 or degree(w.to_node, spec) > 2]
     return tuple(w for w in ways if w in kept or w in inner) or tuple(ways)

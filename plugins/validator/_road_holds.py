@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sgcad_core.holds import SOME_LANES
 from sgcad_core.narrative.compass import COMPASS, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
@@ -34,6 +36,11 @@ def totals(road: RoadFact, allowed: set[int]) -> Hold:
     """Lanes of a leg, both ways, that add up to what the text allows."""
     pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in SOME_LANES)) for n in SOME_LANES]
     either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
+    return along(road, either)
+
+
+def along(road: RoadFact, either: tuple[Mapping[str, tuple[str | int, ...]], ...]) -> Hold:
+    """Each leg that lies along a road is one of these."""
     return Hold(items="legs", key="bearing", values=ends(road), either=either)
 
 

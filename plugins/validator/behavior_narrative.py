@@ -8,7 +8,7 @@ Reads no diagram.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar, Literal
 
@@ -25,6 +25,8 @@ _FAR_RAD = math.radians(70)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
+_Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
+"""Ways of a road spec by road and direction."""
 
 
 class BehaviorNarrative(Validator):
@@ -49,7 +51,8 @@ class BehaviorNarrative(Validator):
         found = list(_vehicles(behavior, facts))
         spec = evidence.network.spec if evidence.network else None
         if spec is not None:
-            found += [*_headings(behavior, facts, spec), *_following(behavior, facts, spec)]
+            ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
+            found += [*_headings(behavior, facts, spec, ways), *_following(behavior, facts, spec, ways)]
         found += _maneuvers(behavior, facts, spec, self.maneuvers)
         return [*found, *_contact(behavior, facts, self.areas)]
 
@@ -95,8 +98,7 @@ def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
 
 
 # ------------------------------------------------------------------ headings
-def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iterator[Finding]:
-    ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
+def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     for actor in behavior.actors:
         fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
         if fact is None or way is None or fact.heading is None or not fact.heading_stated:
@@ -111,14 +113,13 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iter
             )  # fmt: skip
 
 
-def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec) -> Iterator[Finding]:
+def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     """A told rear-end crash of two that do not turn: both head the same way."""
-    told = next((c for c in facts.contacts if c.stated), None)
+    told = _told(facts)
     if told is None or (told.striker_area, told.struck_area) != ("front", "back"):
         return
     if max(len(told.striker_may), len(told.struck_may)) > 2:  # a side that the text leaves open
         return
-    ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
     acting = {actor.id: actor for actor in behavior.actors}
     pair = [(facts.vehicle(name), acting.get(name)) for name in (told.struck, told.striker)]
     found = [(v, a, ways.get((a.road, a.direction))) for v, a in pair if v is not None and a is not None]
@@ -184,7 +185,7 @@ def _contradicts(said: Maneuver, told: Maneuver) -> bool:
 
 # ------------------------------------------------------------------ contact
 def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
-    told = next((c for c in facts.contacts if c.stated), None)
+    told = _told(facts)
     if told is None or not _acted(told, behavior):
         return
     said = behavior.contacts[0] if behavior.contacts else None
@@ -200,6 +201,11 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
         yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
                        _declare(told), "doubt" if doubted else "note" if allowed else severity,
                        _first(told, doubted))  # fmt: skip
+
+
+def _told(facts: CrashFacts) -> ContactFacts | None:
+    """The first contact, if the text tells one."""
+    return next((c for c in facts.contacts if c.stated), None)
 
 
 def _cornered(said: Contact, told: ContactFacts) -> bool:

@@ -35,6 +35,7 @@ class Meeting(Validator):
     """Doubts on contacts that only skids, spins and made-up ways bring about."""
 
     stage: ClassVar[str] = "scenario"
+    version: ClassVar[str] = "2"
     odd: Literal["doubt", "note"] = "doubt"
     odd_from: float = 0.5
     """Oddity (`Plan.oddity`) from which a contact is doubted."""

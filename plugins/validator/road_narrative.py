@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
-from plugins.validator._road_holds import carrying, ends, laid, totals
+from plugins.validator._road_holds import along, carrying, ends, laid, totals
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.net_xml import parse_net
 from sgcad_core.holds import SOME_LANES
@@ -72,20 +72,12 @@ class RoadNarrative(Validator):
         elif want == 3 and junction.stated and widest > 3:
             what = "the report says a T-intersection, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
-            alone = not pictured and self._alone(facts)
+            alone = not pictured and _alone(facts)
             holds = (Hold(items="legs", at_most=want),) if alone else ()
             yield _finding(what, "junction", f"{widest} roads meet", remedy, "repair" if alone else "note", holds)
         elif junction.kind == "none" and widest >= 3:
             remedy = "draw a plain road, unless the diagram shows the junction"
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
-
-    def _alone(self, facts: RoadFacts) -> bool:
-        """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
-        legs, vehicles = legs_used(facts), facts.crash.vehicles
-        straight = [v for v in vehicles if v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
-        ahead = [v.heading for v in straight if v.heading]
-        through = {*legs, *ahead}
-        return len(through) <= 3 and len(facts.streets) == len(facts.roads) and not any(v.origin for v in vehicles)
 
     def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
         """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round.
@@ -113,7 +105,7 @@ class RoadNarrative(Validator):
     ) -> Iterator[Finding]:
         """A plain road where a vehicle leaves or enters a driveway or side road that the report names."""
         junction = facts.junction
-        missing = self._without(legs_used(facts), [end for ends in junctions for end in ends])
+        missing = self._without(legs_used(facts), [leg for legs in junctions for leg in legs])
         named = junction.stated if junction.kind == "driveway" else junction.stem_stated and not junction.stated
         if missing != [junction.stem] or not named or not any(map(turns_off, facts.crash.vehicles)):
             return
@@ -154,13 +146,11 @@ class RoadNarrative(Validator):
             if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
-                holds = (Hold(items="legs", key="bearing", values=ends(road), either=both),)
-                yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=holds)
+                yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=(along(road, both),))
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
-                holds = (Hold(items="legs", key="bearing", values=ends(road), either=either),)
-                yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=holds)
+                yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=(along(road, either),))
 
     def _on_axis(self, road: RoadFact, drawn: list[DrawnRoad]) -> list[DrawnRoad]:
         axis = road.axis
@@ -242,6 +232,15 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     beyond = max(map(len, lanes.turns.values())) if both else 0
     fewer = max(beyond, lanes.center_turn_lane or (_vague(road, pictured) and named % 2))
     return set(range(max(1, named - fewer), named + extra + 1))
+
+
+def _alone(facts: RoadFacts) -> bool:
+    """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
+    legs, vehicles = legs_used(facts), facts.crash.vehicles
+    straight = [v for v in vehicles if v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
+    ahead = [v.heading for v in straight if v.heading]
+    through = {*legs, *ahead}
+    return len(through) <= 3 and len(facts.streets) == len(facts.roads) and not any(v.origin for v in vehicles)
 
 
 def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:

@@ -162,13 +162,14 @@ def lane_facts(text: str) -> LaneFacts:
     _numbered_turns(text, toward, turns)
     each_turn = _EACH_TURN.search(counted)
     turns |= {"each": ("left" if each_turn[1].lower() == "left" else "right",)} if each_turn else {}
-    total = _total(_EACH.sub("EACH", marked), counted, items, known)
     one_way, two_way = bool(_ONE_WAY.search(text)), bool(_TWO_WAY.search(text))
+    alone = one_way and not two_way
+    total = _total(_EACH.sub("EACH", marked), counted, items, known, alone)
     divided, median = divided_and_median(text)
     return LaneFacts(
         total=total, each_way=number(each[1] or each[2]) if each else None, toward=toward, turns=turns,
         one_way=one_way if one_way != two_way else None,
-        one_way_toward=_one_way_toward(text) if one_way > two_way else None,
+        one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
         own=number(own[1]) if own else None,
     )  # fmt: skip
@@ -187,15 +188,14 @@ def _numbered_turns(text: str, toward: dict[str, int], turns: dict[str, tuple[Si
         turns.setdefault(way, ("left" if m[3].lower() == "left" else "right",))
 
 
-def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None]) -> int | None:
+def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None], one_way: bool) -> int | None:
     """ "four-lane", else the one number of lanes that no direction claims ("consists of four lanes")."""
     said = [number(n) for n in _TOTAL.findall(text)]
     if said:
         return said[0]
-    alone = _ONE_WAY.search(text) and not _TWO_WAY.search(text)  # else "one lane" may be one of several
     loose = [
         item.count for item, way in zip(items, known, strict=True)
-        if way is None and item.plain and (item.count > 1 or alone) and not _CROSSED.search(counted[: item.place])
+        if way is None and item.plain and (item.count > 1 or one_way) and not _CROSSED.search(counted[: item.place])
     ]  # fmt: skip
     return loose[0] if len(loose) == 1 else None
 

@@ -43,8 +43,9 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
             continue
         for vehicle in segment.subjects:
             motion = found[vehicle]
-            late = segment.number > impact and bool(motion.headings or motion.deeds)
-            _read(motion, segment, vehicle, who, 2 if late else 4, segment.number > impact)
+            after = segment.number > impact
+            late = after and bool(motion.headings or motion.deeds)
+            _read(motion, segment, vehicle, who, 2 if late else 4, after)
     for t in told:
         if t.role not in _UNREAD:
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))

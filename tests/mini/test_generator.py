@@ -255,9 +255,9 @@ def test_no_sign_is_told_of_traffic_that_cannot_come() -> None:
 def test_some_one_way_streets_meet_two_way_ones_and_some_end_at_a_t() -> None:
     changed = [one_way(Random(seed), sample_crash(Random(seed)), 1.0) for seed in range(300)]
     found = [
-        (crash.layout, len({bool(leg.lanes_in * leg.lanes_out) for leg in crash.legs if leg.kind == "road"}))
+        (crash.layout, len({leg.two_way for leg in crash.legs if leg.kind == "road"}))
         for crash in changed
-        if any(leg.kind == "road" and not leg.lanes_in * leg.lanes_out for leg in crash.legs)
+        if any(leg.kind == "road" and not leg.two_way for leg in crash.legs)
     ]
     assert {("four", 2), ("t", 2), ("plain", 1), ("driveway", 1)} <= set(found)
 

@@ -149,7 +149,7 @@ def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypa
         parts = re.findall(r"(?:QQ|RR) ([a-z/ -]+)=(.*?)(?:;|\.$)", text)
         for axis, road in parts:
             way = next(leg for leg in crash.legs if _lies(leg.bearing, axis))
-            one_way = not way.lanes_in * way.lanes_out
+            one_way = not way.two_way
             found += one_way
             assert ("one-way" in road or "one way" in road) >= (one_way and way.kind == "road" and "same" not in road)
     assert found >= 2

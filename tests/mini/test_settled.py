@@ -71,7 +71,7 @@ def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() 
             axis = leg.bearing % 4
             if f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told | report.doubtful:
                 found = [report.weight(("legs", index, key)) for key in ("lanes_in", "lanes_out")]
-                if leg.lanes_in * leg.lanes_out:
+                if leg.two_way:
                     assert found == [GUESS, GUESS]
                     assert "the two-way" in report.narrative.lower()
                     continue
