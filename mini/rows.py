@@ -72,8 +72,10 @@ def road_ids(road: answers.Any) -> tuple[str, ...]:
 def tag_text(coder: Coder, row: Row, report: Report) -> None:
     """Note at the end of every sentence what it tells."""
     ends = np.array([end for _, end in coder.offsets(report.narrative)])
+    before: set[str] = set()
     for end, facts in report.sentences:
-        row.text_tags.append((int(np.searchsorted(ends, end)), tags.told(report.crash, facts)))
+        row.text_tags.append((int(np.searchsorted(ends, end)), tags.told(report.crash, facts, before)))
+        before |= facts
 
 
 def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:
@@ -108,7 +110,9 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
     fact, shown = tags.fact_of(path, report.crash)
     alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
-    found = [at for (at, _), (_, facts) in zip(row.text_tags, report.sentences, strict=True) if alike & facts]
+    leg = tags.TEXT[shown] if fact == "legs" else -1  # no sentence tells all legs: each comes from those who use it
+    told = zip(row.text_tags, report.sentences, strict=True)
+    found = [at for (at, said), (_, facts) in told if alike & facts or leg in said]
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found

@@ -8,12 +8,12 @@ knows no tokens and no model.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Set
 from typing import Any
 
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
-from mini.generator.settled import STEM
+from mini.generator.settled import STEM, driven
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
@@ -74,9 +74,12 @@ TEXT = _text_tags()
 PICTURE = _picture_tags()
 
 
-def told(crash: Crash, facts: Iterable[str]) -> list[int]:
-    """Indices into `TEXT` of what a sentence that tells these facts says of a crash."""
-    names: list[str] = []
+def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[int]:
+    """Indices into `TEXT` of what a sentence that tells these facts says of a crash.
+
+    `before`: what the sentences before it told; a turn leads to a leg once the heading is known.
+    """
+    names = [f"leg={bearing}" for bearing in _used(crash, facts, before | facts)]
     for fact in sorted(facts):
         key, _, rest = fact.partition(".")
         if key.startswith(HINT):
@@ -98,6 +101,12 @@ def told(crash: Crash, facts: Iterable[str]) -> list[int]:
         else:
             names += [n for actor in crash.actors if actor.id == rest for n in _of_actor(key, actor)]
     return sorted({TEXT[name] for name in names if name in TEXT})
+
+
+def _used(crash: Crash, facts: Set[str], known: Set[str]) -> list[int]:
+    """Legs that those whom a sentence tells of come from or go to, as far as they are known by then."""
+    moved = [a for a in crash.actors if any(f"{key}.{a.id}" in facts for key in ("heading", "man", "exit"))]
+    return [leg for actor in moved if f"heading.{actor.id}" in known for leg in driven(actor, known)]
 
 
 def _of_leg(key: str, leg: Leg) -> list[str]:
@@ -158,6 +167,8 @@ def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
             return path[2], f"leg={bearing}"
         if isinstance(path[2], int) or path[2] == "turns_in":
             return f"turns.{bearing % 4}", f"leg={bearing}"
+        if path[2] == "bearing":
+            return "legs", f"leg={_deciding(crash, bearing)}"
         name = _OF_LEG.get(path[2], "")
         return (f"{name}.{bearing % 4}", f"leg={bearing}") if name else ("", "")
     if path[0] == "actors" and len(path) > 2 and path[1] < len(crash.actors) and key in _OF_ACTOR:
@@ -167,6 +178,12 @@ def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
         number = path[1]
         return f"{'areas' if key.endswith('area') else 'contact'}.{number}", "" if number else key.split("_")[0]
     return (key, "") if key in ("light", "weather", "surface") else ("", "")
+
+
+def _deciding(crash: Crash, bearing: int) -> int:
+    """The leg that decides which legs stand in an answer: of three the stem, whose place no other leg tells."""
+    stems = [leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)]
+    return stems[0] if len(stems) == 1 else bearing
 
 
 # ------------------------------------------------------------------ drawings

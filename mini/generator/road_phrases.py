@@ -40,6 +40,12 @@ class RoadsMixin:
     def _legs_on(self, axis: int) -> list[Leg]:
         return [leg for leg in self.crash.legs if leg.bearing % 4 == axis % 4]
 
+    @property
+    def _first(self) -> int:
+        """Axis of the road that the scene is told of first: the main one, unless all are on the road that crosses it."""
+        crossing = self.crash.layout in ("four", "t") and not any(self.crash.is_main(a.leg) for a in self.crash.actors)
+        return (self.crash.main + 2 * crossing) % 4
+
     def _road(self, axis: int, bare: bool = False) -> str:
         """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
         rng, legs = self.rng, self._legs_on(axis)
@@ -56,7 +62,7 @@ class RoadsMixin:
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
                 again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
                 return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
-            same = axis % 4 == self.crash.main % 4
+            same = axis % 4 == self._first
             return rng.choice(
                 ("the same road", "the same roadway", "the roadway")
                 if same
@@ -67,7 +73,7 @@ class RoadsMixin:
         self.told |= {key} if told else set()
         self.told |= {f"median.{axis % 4}"} if leg.median == "none" or NAMED in text else set()
         text = text.replace(NAMED, "")
-        if bare or self.held_out or axis % 4 == self.crash.main % 4 or rng.random() < 0.5:
+        if bare or self.held_out or axis % 4 == self._first or rng.random() < 0.5:
             return text
         others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
         return f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
@@ -211,7 +217,7 @@ class RoadsMixin:
         )
 
     def _limit(self, slot: str) -> str:
-        axis = (self.crash.main + 2 * (slot == "lim2")) % 4
+        axis = (self._first + 2 * (slot == "lim2")) % 4
         legs = [leg for leg in self._legs_on(axis) if leg.limit]
         if not legs:
             return words.limit(self.rng, 25, self.held_out)

@@ -39,8 +39,9 @@ class SceneMixin(RoadsMixin):
             return self.scene_junction()
         if slot in ("light", "wx", "surf"):
             return self._condition(slot)
-        if slot in ("axis", "axis2"):
-            axis = (crash.main + 2 * (slot == "axis2")) % 4
+        if slot in ("axis", "axis2", "through", "ending"):
+            from_main = crash.main if slot in ("through", "ending") else self._first
+            axis = (from_main + 2 * (slot in ("axis2", "ending"))) % 4
             self.told.add(f"{AXIS}.{axis}")
             return words.axis(rng, axis)
         if slot in ("lim", "lim2"):
@@ -63,7 +64,7 @@ class SceneMixin(RoadsMixin):
         if slot in ("cxb", "caxis"):
             return self._controlled(slot)
         if slot in ("roadbare", "road2bare", "road2full", "road2"):
-            axis = crash.main % 4 if slot == "roadbare" else (crash.main + 2) % 4
+            axis = (self._first + 2 * (slot != "roadbare")) % 4
             return self._road(axis, bare=slot.endswith("bare"))
         raise KeyError(slot)
 

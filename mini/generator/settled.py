@@ -75,7 +75,7 @@ def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
     """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
     if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
         return True
-    used = {leg % 4 for actor in _headed(crash, told) for leg in _driven(actor, told)}
+    used = {leg % 4 for actor in _headed(crash, told) for leg in driven(actor, told)}
     return axis in used or f"{FLOW}.{axis}" in told
 
 
@@ -93,7 +93,7 @@ def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     """Whether the text tells which legs there are."""
     if crash.layout in ("plain", "four"):
         return tied or bool(_headed(crash, told))
-    found = {leg for actor in _headed(crash, told) for leg in _driven(actor, told)}
+    found = {leg for actor in _headed(crash, told) for leg in driven(actor, told)}
     found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
     stem = {leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)}
     if stem <= found and crash.layout != "t":
@@ -106,7 +106,7 @@ def _headed(crash: Crash, told: set[str]) -> list[Actor]:
     return [actor for actor in crash.actors if f"heading.{actor.id}" in told]
 
 
-def _driven(actor: Actor, told: set[str]) -> list[int]:
+def driven(actor: Actor, told: set[str]) -> list[int]:
     """Legs that an actor with a known heading uses, as bearings."""
     out = actor.exit_of(told) if f"man.{actor.id}" in told else None
     return [actor.leg, *([] if out is None else [out])]

@@ -20,6 +20,8 @@ RARE = 2.0
 seldom seen. Not of maneuvers: a model that leans to the rare ones reads them into reports that tell the usual one."""
 USUAL = {"car", "suv", "pickup", "van"}
 CONTACT = 6.0
+STEM = 3.0
+"""Of the places of three legs: a turn and a heading, told apart, tell on which side the third one lies."""
 
 
 class Targets:
@@ -50,6 +52,8 @@ class Targets:
         lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
         if "legs" not in self.sure and self.crash.layout != "plain":
             self._unsure(path, "bearing", "more", "kind")
+        elif len(self.crash.legs) == 3:
+            self.weights[(*path, "bearing")] = STEM
         one_way = f"ways.{axis}" in self.sure and not leg.two_way
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
             counts = (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out))

@@ -160,3 +160,16 @@ def _lies(bearing: int, axis: str) -> bool:
         WORDS[bearing % 4],
         WORDS[bearing % 4 + 4],
     }
+
+
+def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -> None:
+    crossing = 0
+    for seed in range(1500):
+        report = make_report(seed, modes={"text": 1.0})
+        crash = report.crash
+        crossing += crash.layout == "four" and not any(crash.is_main(actor.leg) for actor in crash.actors)
+        for _, facts in report.sentences:
+            limits = {int(fact.partition(".")[2]) for fact in facts if fact.startswith("limit.")}
+            axes = {actor.leg % 4 for actor in crash.actors if f"heading.{actor.id}" in facts}
+            assert not (limits and axes) or axes <= limits
+    assert crossing > 20

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from hypothesis import strategies as st
 from mini import picture, tags
 from mini.batch import Pass, Taggers
 from mini.feed import labeled, moment
+from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, MARK, Told, unmark
 from mini.generator.report import make_report
+from mini.generator.targets import STEM
 from mini.model import Forward
 from mini.options import parse
 from mini.rows import collate, tag_picture, training_row
@@ -210,6 +213,33 @@ def test_one_way_without_a_count_tells_the_direction_that_nobody_drives(coder: C
     assert found > 10
 
 
+def test_places_of_three_legs_are_read_where_the_third_is_used(coder: Coder) -> None:
+    found = 0
+    for seed in range(300):
+        report = make_report(seed, modes={"text": 1.0})
+        legs = report.crash.legs
+        if report.crash.layout not in ("driveway", "t") or "legs" not in report.told:
+            continue
+        stem = next(leg.bearing for leg in legs if not report.crash.is_main(leg.bearing))
+        row = training_row(coder, report, None)
+        ends = [at for at, said in row.text_tags if tags.TEXT[f"leg={stem}"] in said]
+        used = {actor.leg for actor in report.crash.actors} | {actor.out for actor in report.crash.actors}
+        assert ends or stem not in used
+        assert not ends or sum(sources == ends for _, sources in row.pointers) >= len(legs)
+        assert {report.weight(("legs", i, "bearing")) for i in range(len(legs))} == {STEM}
+        found += bool(ends)
+    assert found > 20
+
+
+def test_a_turn_leads_to_a_leg_once_the_heading_is_known() -> None:
+    crash = next(c for c in (sample_crash(Random(s)) for s in range(99)) if c.config == "left_lateral")
+    mover = next(actor for actor in crash.actors if actor.maneuver == "turn_left")
+    turn, heading = {f"man.{mover.id}"}, {f"heading.{mover.id}"}
+    legs = {tags.TEXT[f"leg={mover.leg}"], tags.TEXT[f"leg={mover.out}"]}
+    assert legs.isdisjoint(tags.told(crash, turn))
+    assert legs <= set(tags.told(crash, turn, heading)) & set(tags.told(crash, heading, turn))
+
+
 def test_every_fact_of_an_answer_has_a_name() -> None:
     report = make_report(7, length=0.0, modes={"both": 1.0})
     crash = report.crash
@@ -218,6 +248,7 @@ def test_every_fact_of_an_answer_has_a_name() -> None:
     assert tags.fact_of(("legs", 0, 0), crash)[0] == f"turns.{bearing % 4}"
     assert tags.fact_of(("actors", 0, "maneuver"), crash) == (f"man.{crash.actors[0].id}", f"id={crash.actors[0].id}")
     assert tags.fact_of(("contacts", 0, "struck_area"), crash) == ("areas.0", "struck")
+    assert tags.fact_of(("legs", 0, "bearing"), crash)[0] == "legs"
     assert tags.fact_of(("light",), crash) == ("light", "")
     assert tags.fact_of(("refuse",), crash) == ("", "")
 
