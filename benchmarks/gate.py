@@ -104,7 +104,7 @@ class Probe:
             raise ConfigError(f"{self.config.name}: no backbone or no decoder, so nothing to calibrate; use mini.yaml")
 
         def ask(context: Context, query: Query) -> Generation:
-            heard[stage] = backbone.generate(context, query, decoder, seed=self.config.seed)
+            heard[stage] = backbone.generate(context, query, decoder.at(1), seed=self.config.seed)
             return heard[stage]
 
         return ask

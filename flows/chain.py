@@ -231,7 +231,7 @@ def ask_of(config: Config) -> Ask:
         raise ConfigError(f"{config.name}: a writer asks a model, but there is no backbone or no decoder")
 
     def ask(context: Context, query: Query) -> Generation:
-        return backbone.generate(context, query, decoder, seed=config.seed + query.attempt - 1)
+        return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)
 
     return ask
 

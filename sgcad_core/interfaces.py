@@ -86,6 +86,10 @@ class Decoder(Plugin):
         """False where the fields switch the contrast off (alpha 0): the second row is then not run."""
         return self.needs_prior
 
+    def at(self, attempt: int) -> Decoder:
+        """The decoder of an attempt, from 1: the same one, unless it draws first attempts otherwise."""
+        return self
+
     def draw(self, scores: Any, generator: Any) -> Any:
         """Pick one token a row, (rows,), from scores behind the grammar; the default takes the best."""
         return scores.argmax(-1)

@@ -22,6 +22,15 @@ class Sampled(Decoder):
 
     temperature: float = Field(0.0, ge=0.0, le=5.0)
     top_p: float = Field(1.0, gt=0.0, le=1.0)
+    first_temperature: float | None = Field(
+        None, ge=0.0, le=5.0, description="of first attempts, if another: 0 and chance only draws what findings ask for"
+    )
+
+    def at(self, attempt: int) -> Sampled:
+        """First attempts with `first_temperature`, further ones with `temperature`."""
+        if attempt > 1 or self.first_temperature is None:
+            return self
+        return self.model_copy(update={"temperature": self.first_temperature})
 
     def draw(self, scores: Any, generator: Any) -> Any:
         """One token a row from masked logits (rows, vocabulary); see `sample`."""

@@ -8,6 +8,7 @@ import pytest
 from flows import store
 from flows.cases import Case
 from flows.chain import run_case
+from plugins.backbone.scripted import Scripted
 from sgcad_core.config import load
 from sgcad_core.errors import ConfigError, MissingTool
 
@@ -140,6 +141,19 @@ def test_the_configured_number_of_attempts_is_the_limit(run):
     script = {"name": "scripted", "answers": ["no"] * 5}
     ending, _ = run(**MODEL, backbone=script, max_attempts=4)
     assert (ending.result["status"], ending.result["attempts"]["road"]) == ("exhausted", 4)
+
+
+def test_first_attempts_are_drawn_at_their_own_temperature(run, monkeypatch):
+    drawn, generate = [], Scripted.generate
+
+    def noted(self, context, query, decoder, seed=0):
+        drawn.append((query.attempt, decoder.temperature))
+        return generate(self, context, query, decoder, seed)
+
+    monkeypatch.setattr(Scripted, "generate", noted)
+    sampled = {"name": "nucleus", "temperature": 0.3, "first_temperature": 0}
+    run(**MODEL | {"decoder": sampled}, backbone={"name": "scripted", "answers": ["no", "never", "ok"]})
+    assert drawn == [(1, 0.0), (2, 0.3), (3, 0.3)]
 
 
 @pytest.mark.parametrize("shown", [True, False])

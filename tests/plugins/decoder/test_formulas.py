@@ -132,6 +132,14 @@ def test_temperature_zero_takes_the_best_token() -> None:
         assert torch.equal(decoder.draw(scores, torch.Generator()), scores.argmax(-1))
 
 
+def test_first_attempts_may_have_a_temperature_of_their_own() -> None:
+    decoder = Cad(alpha=0.3, temperature=0.4, first_temperature=0.0)
+    assert decoder.at(1) == Cad(alpha=0.3, temperature=0.0, first_temperature=0.0)
+    assert decoder.at(2) is decoder
+    for plain in (Cad(temperature=0.4), Greedy()):
+        assert plain.at(1) is plain
+
+
 def test_vcd_noises_the_diagram_and_keeps_the_narrative() -> None:
     context = Context(narrative="V1 struck V2.", diagrams=(diagram(),))
     noised = Vcd().contrast_context(context)
