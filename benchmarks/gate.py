@@ -13,22 +13,23 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import io
 import json
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
+from benchmarks.first_answers import as_report, first_answers
 from benchmarks.gate_sweep import Sample, Score, area, choose, halves, refused, score, sweep
 from flows.cases import cases_in
+from mini.generator.report import make_report
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of
 from sgcad_core import settings
 from sgcad_core.config import Config, load
-from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool, Refused
-from sgcad_core.records import Context, CrashReport, Diagram, Generation, Query, RoadNetwork
+from sgcad_core.errors import BadInput, ConfigError, MissingTool
+from sgcad_core.records import CrashReport
 
 THIN: tuple[Level, ...] = ("critical_depletion", "total_sparsity")
 """Levels that should be refused; the others should be answered."""
@@ -40,18 +41,8 @@ FIRST_MADE = 60_000_000
 # ------------------------------------------------------------------ reports
 def made(count: int) -> Iterator[CrashReport]:
     """Reports of mini's generator with text, and mostly with a drawing; phrases that no training saw."""
-    from mini.feed import drawing
-    from mini.generator.report import make_report
-
     for seed in range(FIRST_MADE, FIRST_MADE + count):
-        report = make_report(seed, True, 0.6, {"both": 3.0, "text": 1.0})
-        picture = drawing(report)
-        diagrams: tuple[Diagram, ...] = ()
-        if picture is not None:
-            out = io.BytesIO()
-            picture.save(out, "PNG")
-            diagrams = (Diagram(png=out.getvalue(), width_px=picture.width, height_px=picture.height),)
-        yield CrashReport(case=f"made-{seed}", narrative=report.narrative, diagrams=diagrams)
+        yield as_report(make_report(seed, True, 0.6, {"both": 3.0, "text": 1.0}))
 
 
 def read(config: Config, folders: Sequence[Path]) -> Iterator[CrashReport]:
@@ -64,50 +55,16 @@ def read(config: Config, folders: Sequence[Path]) -> Iterator[CrashReport]:
 
 
 # ------------------------------------------------------------------ groundings
-@dataclass
-class Probe:
-    """First answers of a config's model to reports."""
-
-    config: Config
-
-    def sample(self, report: CrashReport, level: Level) -> Sample:
-        """Groundings of a report at a level: road, and scenario where the road could be drawn."""
-        heard: dict[str, Generation] = {}
-        shown = degrade(report, level)
-        context = Context(narrative=shown.narrative, diagrams=shown.diagrams)
-        declined = False
-        try:
-            self._scenario(context, self._road(context, heard), heard)
-        except Refused:
-            declined = True
-        except InvalidOutput:  # an answer of no use has its groundings all the same
-            pass
-        sums = {
-            group.field: round(nats, 4)
-            for stage, groups in GROUPS.items()
-            for group in groups
-            if stage in heard and (nats := nats_of(group, heard[stage].grounding)) is not None
-        }
-        return Sample(report.case, level, level in THIN, declined, sums)
-
-    def _road(self, context: Context, heard: dict[str, Generation]) -> RoadNetwork:
-        passages = self.config.retriever.retrieve(context.narrative, "road")
-        return self.config.road_writer.write(context, passages, (), self._ask("road", heard), 1)
-
-    def _scenario(self, context: Context, network: RoadNetwork, heard: dict[str, Generation]) -> None:
-        passages = self.config.retriever.retrieve(context.narrative, "scenario")
-        self.config.scenario_writer.write(context, passages, (), self._ask("scenario", heard), 1, network)
-
-    def _ask(self, stage: str, heard: dict[str, Generation]) -> Callable[[Context, Query], Generation]:
-        backbone, decoder = self.config.backbone, self.config.decoder
-        if backbone is None or decoder is None:
-            raise ConfigError(f"{self.config.name}: no backbone or no decoder, so nothing to calibrate; use mini.yaml")
-
-        def ask(context: Context, query: Query) -> Generation:
-            heard[stage] = backbone.generate(context, query, decoder.at(1), seed=self.config.seed)
-            return heard[stage]
-
-        return ask
+def sample(config: Config, report: CrashReport, level: Level) -> Sample:
+    """Groundings of a report's first answers at a level: road, and scenario where the road could be drawn."""
+    heard, declined = first_answers(config, degrade(report, level))
+    sums = {
+        group.field: round(nats, 4)
+        for stage, groups in GROUPS.items()
+        for group in groups
+        if stage in heard and (nats := nats_of(group, heard[stage].grounding)) is not None
+    }
+    return Sample(report.case, level, level in THIN, declined, sums)
 
 
 def collected(
@@ -115,10 +72,9 @@ def collected(
 ) -> list[Sample]:
     """Samples of all reports at all levels; what stands in the file already is not asked again."""
     known = kept(file)
-    probe = Probe(config)
     tasks = ((report, level) for report in reports for level in levels if (report.case, level) not in known)
     with ThreadPoolExecutor(jobs) as pool, file.open("a", encoding="utf-8") as out:
-        for one in pool.map(lambda task: _sampled(probe, *task), tasks):
+        for one in pool.map(lambda task: _sampled(config, *task), tasks):
             if one is None:
                 continue
             out.write(json.dumps(asdict(one)) + "\n")
@@ -138,10 +94,10 @@ def default_file(config: Config) -> Path:
     return Path("runs") / f"gate-{config.name}-{digest}.jsonl"
 
 
-def _sampled(probe: Probe, report: CrashReport, level: Level) -> Sample | None:
+def _sampled(config: Config, report: CrashReport, level: Level) -> Sample | None:
     """A sample; None, and a line on stderr, for a report that the model cannot take."""
     try:
-        return probe.sample(report, level)
+        return sample(config, report, level)
     except BadInput as fault:
         sys.stderr.write(f"{report.case} at {level} is left out: {fault}\n")
         return None
