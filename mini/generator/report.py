@@ -29,8 +29,10 @@ UNMENTIONED = 0.4
 """Share of junctions in drawings that the narrative passes over, of those that the crash has nothing to do with."""
 UNUSUAL = 0.2
 """Share of narratives alone that keep back lanes although there are several."""
+UNUSUAL_ONE_WAY = 0.04
+"""Of those in which nobody counts the lanes of a one-way street that has several: writers pass over one lane."""
 SECOND_THOUGHTS = 4
-ONE_WAY = {"text": 0.2, "both": 0.12, "image": 0.05, "none": 0.08}
+ONE_WAY = {"text": 0.3, "both": 0.12, "image": 0.05, "none": 0.08}
 """How often a crash that trains, in each mode, gets a one-way street where it can: in words they come without a count
 of lanes, at a T and beside two-way streets, and each of these is rare in crashes as they are sampled."""
 Json = dict[str, Any]
@@ -128,7 +130,8 @@ def _worth_telling(
     for attempt in range(1, SECOND_THOUGHTS + 1):
         crash, _, sentences = found
         told = {fact for _, facts in sentences for fact in facts}
-        if rng.random() < UNUSUAL or all(_plain(leg, told) or f"lanes.{leg.bearing % 4}" in told for leg in crash.legs):
+        rare = [leg for leg in crash.legs if not _plain(leg, told) and f"lanes.{leg.bearing % 4}" not in told]
+        if rng.random() < (UNUSUAL if all(leg.two_way for leg in rare) else UNUSUAL_ONE_WAY) or not rare:
             break
         crash = _sample(rng, seed, False, "text", attempt)
         writer = Writer(rng, crash, False, length)

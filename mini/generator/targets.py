@@ -14,6 +14,8 @@ from mini.generator.world import COMPASS, Access, Actor, Crash, Leg
 Json = dict[str, Any]
 GUESS = 0.25
 """Weight of a value that the evidence does not tell and that has no null."""
+LIKELY = 0.6
+"""Of the lanes of a one-way street that nobody counts: mostly there is one."""
 SURE = 1.0
 RARE = 2.0
 """Of a value that is told and learned late: a curve, a speed or its limit, light and weather, and kinds that are
@@ -58,6 +60,7 @@ class Targets:
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
             counts = (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out))
             self._unsure(path, *(key for key, n in counts if n or not one_way))
+            self.weights |= {(*path, key): LIKELY for key, n in counts if n and one_way}
         median = leg.median if f"median.{axis}" in self.known else "none"
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE

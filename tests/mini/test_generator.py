@@ -240,7 +240,7 @@ def test_a_one_way_street_carries_everybody_who_uses_it(seed: int) -> None:
 
 def test_no_sign_is_told_of_traffic_that_cannot_come() -> None:
     signed = 0
-    for seed in range(1500):
+    for seed in range(2500):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
         closed = {leg.flow for leg in report.crash.legs if not leg.lanes_in and leg.control != "none"}
         for end, facts in report.sentences:
@@ -382,3 +382,15 @@ def test_driveways_are_spoken_of_where_there_is_one() -> None:
         assert "layout" in report.told
         alone += "driveway" not in report.narrative.split(".")[0]
     assert alone > 10
+
+
+def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
+    lanes = []
+    for seed in range(1200):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for leg in report.crash.legs if report.behavior and "refuse" not in report.road else ():
+            axis = leg.bearing % 4
+            if leg.kind == "road" and f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told:
+                lanes += [max(leg.lanes_in, leg.lanes_out)] * (not leg.two_way)
+    assert len(lanes) > 40
+    assert 0.7 < lanes.count(1) / len(lanes) < 0.97

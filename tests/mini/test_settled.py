@@ -12,7 +12,7 @@ from mini.evaluate import source
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM, unsettled
-from mini.generator.targets import GUESS, RARE, SURE
+from mini.generator.targets import GUESS, LIKELY, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
 
 LANES = {"lanes.0", "lanes.2"}
@@ -78,7 +78,7 @@ def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() 
                 weights.append(found)
                 assert "one-way" in report.narrative or "only" in report.narrative.lower()
     assert len(weights) > 10
-    assert all(sorted(found) == [GUESS, SURE] for found in weights)
+    assert all(sorted(found) == [LIKELY, SURE] for found in weights)
 
 
 def test_roads_alike_need_no_direction_of_their_own() -> None:
