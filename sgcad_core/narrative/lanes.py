@@ -54,6 +54,8 @@ class LaneFacts:
     center_turn_lane: bool = False
     median: Median | None = None
     divided: bool | None = None
+    one_lane: bool = False
+    """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
 
@@ -134,6 +136,7 @@ _NUMBERED_TURN = re.compile(
 _EACH_WITH_TURN = re.compile(
     rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
     r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
+_ONE_LANE = re.compile(rf"\b(?:one|1|a single) (?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|{BOUND}))", re.I)
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
 _CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
 
@@ -171,7 +174,7 @@ def lane_facts(text: str) -> LaneFacts:
         one_way=one_way if one_way != two_way else None,
         one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
-        own=number(own[1]) if own else None,
+        one_lane=bool(_ONE_LANE.search(text)), own=number(own[1]) if own else None,
     )  # fmt: skip
 
 
@@ -241,12 +244,8 @@ def _turn(mods: str, bare: str | None) -> tuple[Side, ...]:
         return ("left",) if bare.lower() == "left" else ("right",)
     if not re.search(r"\bturn", mods):
         return ()
-    sides: list[Side] = []
-    if "left" in mods:
-        sides.append("left")
-    if "right" in mods:
-        sides.append("right")
-    return tuple(sides)
+    sides: tuple[Side, ...] = ("left", "right")
+    return tuple(side for side in sides if side in mods)
 
 
 def _directions(text: str, items: list[_Item]) -> list[Compass | None]:

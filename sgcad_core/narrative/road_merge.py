@@ -48,7 +48,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         one_way=more.one_way if first.one_way is None else first.one_way,
         one_way_toward=first.one_way_toward or more.one_way_toward,
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
-        divided=more.divided if first.divided is None else first.divided,
+        divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
     )  # fmt: skip
 
 
@@ -71,8 +71,11 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
     roads = _settled(roads, headings)
     for mention in shared:
         for road in _streets(roads):
-            if not _counted(road.lanes):
+            if not _counted(road.lanes) or (road.lanes.one_way and mention.lanes.one_lane):
                 road.lanes = merged(road.lanes, mention.lanes)
+    for road in roads:
+        if road.lanes.one_way and road.lanes.one_lane and not lane_count(road.lanes):
+            road.lanes = replace(road.lanes, total=1)
     return roads
 
 
@@ -260,4 +263,7 @@ def _place_one(streets: list[GatheredRoad], placed: list[GatheredRoad], road: Ga
         road.cross = True
         placed.append(road)
     else:
+        namesakes = [r for r in placed if r.lanes.one_way and alike_lanes(r.lanes, road.lanes)]
+        if len(namesakes) == 1:  # "the one-way street" of another sentence has the lanes that were counted here
+            namesakes[0].lanes = merged(namesakes[0].lanes, road.lanes)
         streets.remove(road)

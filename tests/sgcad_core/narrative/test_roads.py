@@ -35,6 +35,26 @@ def test_two_roads_of_an_intersection_are_told_apart_by_axis() -> None:
     assert legs(text) == {"W": (1, 1), "E": (1, 1), "S": (2, 2), "N": (2, 2)}
 
 
+def _counts(text: str) -> dict[str, int | None]:
+    return {road.axis or "": road.lanes.total for road in road_facts(text).roads}
+
+
+def test_one_lane_of_travel_is_the_whole_of_a_one_way_street_alone() -> None:
+    met = "Two one-way streets meet here. Both streets have a single lane of travel. "
+    assert _counts(met + "V1 was northbound on a one-way street. V2 went west on a one-way street.") == {"N": 1, "E": 1}
+    mixed = "A one-way street meets a two-way street here. Both streets have one lane of travel. "
+    counts = _counts(mixed + "V1 was northbound on the one-way street. V2 went west on the two-way street.")
+    assert (counts["N"], counts["E"]) == (1, None)
+
+
+def test_lanes_of_a_one_way_street_stay_its_own_when_it_is_named_again() -> None:
+    text = ("It happened in the intersection of a two-way road with two lanes in each direction and a one-way road "
+            "with one lane of traffic. The northbound road has a yield sign. V1 was westbound on the two-way road and V2 "
+            "was traveling north on the one-way road.")  # fmt: skip
+    assert legs(text) == {"E": (2, 2), "W": (2, 2), "S": (1, 0), "N": (0, 1)}
+    assert _counts(text)["N"] == 1
+
+
 def test_two_roads_of_an_intersection_are_told_apart_by_what_was_said_of_them() -> None:
     text = ("The crash occurred in the intersection of a two-way roadway with two lanes in each direction and a "
             "one-lane, one-way roadway. V1 was traveling southbound on the one-way roadway. V2 was traveling east "
