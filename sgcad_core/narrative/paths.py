@@ -17,9 +17,9 @@ OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
 def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
 
-    One that goes straight on needs no leg ahead: it may have been struck before. The road that a driveway meets goes on
-    to both sides, and a stem lies where the text says. `faced`: also of those whose heading nobody tells, where their
-    turn and the sides that touched do.
+    One that goes straight on needs no leg ahead: it may have been struck before; two that cross each other's way do.
+    The road that a driveway meets goes on to both sides, and a stem lies where the text says. `faced`: also of those
+    whose heading nobody tells, where their turn and the sides that touched do.
     """
     junction, crash = facts.junction, facts.crash
     legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []
@@ -31,7 +31,19 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
     if junction.kind == "driveway":
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
+    if junction.kind == "four_leg":
+        legs += _crossing(crash)
     return tuple(dict.fromkeys(legs))
+
+
+def _crossing(crash: CrashFacts) -> list[Compass]:
+    """Headings of the first two that touch, if both are told to go straight on and their ways cross squarely."""
+    first = crash.contacts[0] if crash.contacts and crash.contacts[0].stated else None
+    pair = [crash.vehicle(name) for name in (first.striker, first.struck)] if first else []
+    sure = [v.heading for v in pair if v and v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
+    found = [heading for heading in sure if heading]
+    square = len(found) == 2 and between(found[0], found[1]) % 180 == 90
+    return found if square else []
 
 
 def turns_off(v: VehicleFacts) -> bool:

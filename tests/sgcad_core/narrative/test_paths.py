@@ -17,6 +17,10 @@ SIDE = "The front of V1 struck the left side of V2."
     ("V1 was traveling east at the T-intersection. The side street intersects from the south.", "WS"),
     ("V1 struck the rear of V2 at the intersection.", ""),
     ("V1 was northbound. V2 was parked facing west.", "S"),
+    ("V1 was going straight, northbound, at the intersection. V2 was going straight, westbound.", "SENW"),
+    ("V1 was going straight, northbound, at the intersection. V2 was going straight, southbound.", "SN"),
+    ("V1 was going straight, northbound, at the intersection. V2 was westbound and turned right.", "SEN"),
+    ("V1 was going straight, northbound, at the T-intersection. V2 was going straight, westbound.", "SE"),
     ("V1 left the road. V2 was traveling west on a parking lot driveway.", "E"),
 ])  # fmt: skip
 def test_legs_are_those_that_headings_and_turns_tell(text: str, legs: str) -> None:
