@@ -1,11 +1,12 @@
 """What do decoders make of values that a report tells, and of those that it leaves open?
 
-    python -m benchmarks.decoders [--count 200] [--config configs/mini.yaml] [--arms greedy mini ...]
+    python -m benchmarks.decoders [--count 200] [--config configs/mini.yaml] [--arms greedy adaptive ...]
 
 First answers to made reports, half of them narratives alone, under one decoder after another, value by value against
-the truth: told by the text, shown by the drawing, told by both, or left open, where a model can only know how often it
-is so. The same reports for every arm, phrases that no training saw; brackets are 95 % bootstrap intervals over reports,
-p is a paired permutation test against the first arm, Holm's correction over the arms of a column.
+the truth: told by the text, shown by the drawing, told by both, or by neither: then left out if the answer allows it,
+else guessed, where a model can only know how often it is so. The same reports for every arm, phrases that no training
+saw; brackets are 95 % bootstrap intervals over reports, p is a paired permutation test against the first arm, Holm's
+correction over the arms of a column.
 """
 
 from __future__ import annotations
@@ -24,15 +25,17 @@ from benchmarks.first_answers import as_report, first_answers
 from mini.evaluate import fields, source
 from mini.generator.report import Report, make_report
 from sgcad_core.config import Config, load
-from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.errors import BadInput, ConfigError, MissingTool
 from sgcad_core.metrics.statistics import holm, ratio_interval, swap_test
 from sgcad_core.records import Floats
 
 FIRST_SEED = 61_000_000
 """Held out from training, and neither those of the card nor those that the gate is calibrated on."""
 MODES = {"text": 2.0, "both": 1.0, "image": 1.0}
-SOURCES = ("text", "diagram", "both", "none")
-COLUMNS = ("told by the text", "shown by the drawing", "both", "left open")
+SOURCES = ("text", "diagram", "both", "left out", "guessed")
+COLUMNS = ("told by the text", "shown by the drawing", "both", "to be left out", "to be guessed")
+LEFT_OUT = {"light", "weather", "surface", "speed", "speed_limit", "lane", "median", "control", "turns", "curve"}
+"""Fields that an answer leaves empty where nobody tells them."""
 _MASKED = "decoder={name: cad, beta: 0.1, alpha: %s}"
 ARMS: dict[str, str] = {
     "greedy": "decoder=greedy",
@@ -58,12 +61,16 @@ def marks(config: Config, reports: Sequence[Report], jobs: int) -> Floats:
         if "road" not in heard:
             return
         answers = [_read(heard[stage].text) if stage in heard else None for stage in ("road", "scenario")]
-        for _, key, right in fields(report, (answers[0] or {}, answers[1])):
-            found[index, SOURCES.index(source(report, key))] += right, 1
+        for name, key, right in fields(report, (answers[0] or {}, answers[1])):
+            found[index, SOURCES.index(_column(source(report, key), name))] += right, 1
 
     with ThreadPoolExecutor(jobs) as pool:
         list(pool.map(one, range(len(reports))))
     return found
+
+
+def _column(told_by: str, name: str) -> str:
+    return told_by if told_by != "none" else "left out" if name in LEFT_OUT else "guessed"
 
 
 def _read(text: str) -> Any:
@@ -74,8 +81,9 @@ def _read(text: str) -> Any:
 
 
 def table(found: dict[str, Floats]) -> str:
-    """Arms by sources; an arm's values count on the reports that all arms answered."""
-    answered = np.all([counts[:, :, 1].sum(1) > 0 for counts in found.values()], axis=0)
+    """Arms by sources, over the reports of which every arm gave all that is asked for."""
+    asked = np.stack([counts[:, :, 1] for counts in found.values()])
+    answered = (asked == asked.max(axis=0)).all(axis=(0, 2)) & (asked.sum(axis=(0, 2)) > 0)
     if not answered.any():
         raise SystemExit("no report was answered under every decoder; give more reports (--count)")
     kept = {name: counts[answered] for name, counts in found.items()}
@@ -87,7 +95,8 @@ def table(found: dict[str, Floats]) -> str:
     for name, counts in kept.items():
         lines.append(f"| {name} | " + " | ".join(_cell(counts, i, p[i].get(name)) for i in columns) + " |")
     n = ", ".join(f"{first[:, i, 1].sum():.0f} {COLUMNS[i]}" for i in columns)
-    return "\n".join([f"{int(answered.sum())} reports that every arm answers; values: {n}.", "", *lines])
+    kept_of = f"{int(answered.sum())} of {len(answered)} reports, those that every arm answers in full"
+    return "\n".join([f"{kept_of}; values: {n}.", "", *lines])
 
 
 def _pair(counts: Floats, source_index: int) -> tuple[Floats, Floats]:
@@ -98,7 +107,7 @@ def _cell(counts: Floats, index: int, p: float | None) -> str:
     right, asked = _pair(counts, index)
     around = ratio_interval(right, asked)
     ends = f" [{around.low:.3f}, {around.high:.3f}]" if around else ""
-    return f"{right.sum() / asked.sum():.3f}{ends}" + (f" p {p:.2f}" if p is not None else "")
+    return f"{right.sum() / asked.sum():.3f}{ends}" + ("" if p is None else f" p {p:.2f}" if p >= 0.01 else " p < 0.01")
 
 
 def main() -> None:
@@ -107,7 +116,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200, help="reports")
     parser.add_argument("--config", default="mini.yaml")
     parser.add_argument("--set", action="append", default=[], dest="overrides", help="key=value, as for sgcad")
-    parser.add_argument("--arms", nargs="*", default=list(ARMS), choices=list(ARMS), help="the first is the reference")
+    parser.add_argument("--arms", nargs="+", default=list(ARMS), choices=list(ARMS), help="the first is the reference")
     parser.add_argument("--jobs", type=int, default=8, help="reports asked at once")
     told = parser.parse_args()
     reports = [make_report(seed, True, 0.6, MODES) for seed in range(FIRST_SEED, FIRST_SEED + told.count)]
@@ -116,8 +125,8 @@ def main() -> None:
         started = time.perf_counter()
         try:
             found[name] = marks(load(told.config, (*told.overrides, ARMS[name])), reports, told.jobs)
-        except (ConfigError, MissingTool) as fault:
-            raise SystemExit(str(fault)) from fault
+        except (BadInput, ConfigError, MissingTool) as fault:
+            raise SystemExit(f"{name}: {fault}") from fault
         sys.stderr.write(f"{name}: {time.perf_counter() - started:.0f} s\n")
     sys.stdout.write(table(found) + "\n")
 

@@ -30,7 +30,7 @@ UNMENTIONED = 0.4
 UNUSUAL = 0.2
 """Share of narratives alone that keep back lanes although there are several."""
 UNUSUAL_ONE_WAY = 0.04
-"""Of those in which nobody counts the lanes of a one-way street that has several: writers pass over one lane."""
+"""The same share where one of the roads whose lanes are kept back is one-way: of these writers pass over one lane."""
 SECOND_THOUGHTS = 4
 ONE_WAY = {"text": 0.3, "both": 0.12, "image": 0.05, "none": 0.08}
 """How often a crash that trains, in each mode, gets a one-way street where it can: in words they come without a count
@@ -94,7 +94,7 @@ def make_report(
         narrative, sentences = "", []
     told, doubtful = _told(crash, sentences)
     seen = drawn if mode in ("both", "image") else set()
-    targets = Targets(crash, told | doubtful | seen, doubtful - seen)
+    targets = Targets(crash, told | doubtful | seen, doubtful - seen, alone=mode == "text")
     if mode == "none":
         targets = _prior(crash, rng)
     return Report(

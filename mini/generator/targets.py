@@ -15,22 +15,26 @@ Json = dict[str, Any]
 GUESS = 0.25
 """Weight of a value that the evidence does not tell and that has no null."""
 LIKELY = 0.6
-"""Of the lanes of a one-way street that nobody counts: mostly there is one."""
+"""Of the lanes of a one-way street that a narrative alone does not count: mostly there is one."""
 SURE = 1.0
 RARE = 2.0
 """Of a value that is told and learned late: a curve, a speed or its limit, light and weather, and kinds that are
 seldom seen. Not of maneuvers: a model that leans to the rare ones reads them into reports that tell the usual one."""
 USUAL = {"car", "suv", "pickup", "van"}
 CONTACT = 6.0
-STEM = 3.0
-"""Of the places of three legs: a turn and a heading, told apart, tell on which side the third one lies."""
+THIRD_LEG = 3.0
+"""Of the places of three legs: in words a turn and a heading, told apart, mostly tell where the third one lies."""
 
 
 class Targets:
     """Both answers to one report and the weights of their values."""
 
-    def __init__(self, crash: Crash, known: set[str], doubtful: Set[str] = frozenset()) -> None:
-        """`doubtful`: what is known and cannot be laid on a leg; it stands in the answer with the weight of a guess."""
+    def __init__(self, crash: Crash, known: set[str], doubtful: Set[str] = frozenset(), alone: bool = False) -> None:
+        """`doubtful`: what is known and cannot be laid on a leg; it stands in the answer with the weight of a guess.
+
+        `alone`: of a narrative without a drawing.
+        """
+        self.alone = alone
         self.crash, self.known, self.sure = crash, known, known - doubtful
         self.weights: dict[tuple[Any, ...], float] = {}
         self.flat: float | None = None
@@ -55,12 +59,13 @@ class Targets:
         if "legs" not in self.sure and self.crash.layout != "plain":
             self._unsure(path, "bearing", "more", "kind")
         elif len(self.crash.legs) == 3:
-            self.weights[(*path, "bearing")] = STEM
+            self.weights[(*path, "bearing")] = THIRD_LEG
         one_way = f"ways.{axis}" in self.sure and not leg.two_way
         if f"lanes.{axis}" not in self.sure or (leg.turns_in and not turns):
             counts = (("lanes_in", leg.lanes_in), ("lanes_out", leg.lanes_out))
             self._unsure(path, *(key for key, n in counts if n or not one_way))
-            self.weights |= {(*path, key): LIKELY for key, n in counts if n and one_way}
+            if one_way and self.alone and not lanes:
+                self.weights |= {(*path, key): LIKELY for key, n in counts if n}
         median = leg.median if f"median.{axis}" in self.known else "none"
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE

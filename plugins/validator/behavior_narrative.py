@@ -204,7 +204,7 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
 
 
 def _told(facts: CrashFacts) -> ContactFacts | None:
-    """The first contact, if the text tells one."""
+    """The first contact that the text tells."""
     return next((c for c in facts.contacts if c.stated), None)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.narrative.median import divided_and_median
@@ -62,7 +62,7 @@ class LaneFacts:
     @property
     def empty(self) -> bool:
         """Whether nothing at all was found."""
-        return self == LaneFacts()
+        return replace(self, one_lane=False) == LaneFacts()
 
 
 # ------------------------------------------------------------------ whole-road words
@@ -136,7 +136,8 @@ _NUMBERED_TURN = re.compile(
 _EACH_WITH_TURN = re.compile(
     rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
     r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
-_ONE_LANE = re.compile(rf"\b(?:one|1|a single) (?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|{BOUND}))", re.I)
+_ONE_LANE = re.compile(r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) (?:travel )?"
+                       rf"lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))", re.I)
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
 _CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
 

@@ -17,9 +17,10 @@ OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
 def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
 
-    One that goes straight on needs no leg ahead: it may have been struck before; two that cross each other's way do.
-    The road that a driveway meets goes on to both sides, and a stem lies where the text says. `faced`: also of those
-    whose heading nobody tells, where their turn and the sides that touched do.
+    One that goes straight on needs no leg ahead: it may have been struck before; two that cross each other's way where
+    four legs are told do. The road that a driveway meets goes on to both sides, and a stem lies where the text says.
+    `faced`: also of those whose heading nobody tells, where their turn and the sides that touched do, and of those that
+    cross at a junction of which nobody says how many legs it has.
     """
     junction, crash = facts.junction, facts.crash
     legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []
@@ -31,7 +32,7 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
     if junction.kind == "driveway":
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
-    if junction.kind == "four_leg":
+    if junction.kind == "four_leg" and (junction.stated or faced):
         legs += _crossing(crash)
     return tuple(dict.fromkeys(legs))
 

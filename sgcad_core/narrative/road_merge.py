@@ -71,10 +71,11 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
     roads = _settled(roads, headings)
     for mention in shared:
         for road in _streets(roads):
-            if not _counted(road.lanes) or (road.lanes.one_way and mention.lanes.one_lane):
+            if not _counted(road.lanes):
                 road.lanes = merged(road.lanes, mention.lanes)
+            road.lanes = replace(road.lanes, one_lane=road.lanes.one_lane or mention.lanes.one_lane)
     for road in roads:
-        if road.lanes.one_way and road.lanes.one_lane and not lane_count(road.lanes):
+        if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
             road.lanes = replace(road.lanes, total=1)
     return roads
 
@@ -263,7 +264,8 @@ def _place_one(streets: list[GatheredRoad], placed: list[GatheredRoad], road: Ga
         road.cross = True
         placed.append(road)
     else:
-        namesakes = [r for r in placed if r.lanes.one_way and alike_lanes(r.lanes, road.lanes)]
-        if len(namesakes) == 1:  # "the one-way street" of another sentence has the lanes that were counted here
+        later = [r for r in placed if min(r.sentences, default=0) > min(road.sentences, default=0)]
+        namesakes = [r for r in later if r.lanes.one_way and alike_lanes(r.lanes, road.lanes)]
+        if len(namesakes) == 1:  # "the one-way street" of a later sentence has the lanes that were counted before
             namesakes[0].lanes = merged(namesakes[0].lanes, road.lanes)
         streets.remove(road)

@@ -28,11 +28,21 @@ def test_every_arm_is_a_decoder_of_the_embedded_models_config() -> None:
 
 def test_a_worse_arm_has_a_lower_share_and_a_small_p() -> None:
     text = decoders.table({"all": counts([4] * 20), "half": counts([2] * 20), "same": counts([4] * 20)})
-    assert "20 reports that every arm answers; values: 80 told by the text." in text
+    assert "20 of 20 reports, those that every arm answers in full; values: 80 told by the text." in text
     rows = [line for line in text.splitlines() if line.startswith(("| half", "| same"))]
     assert "| half | 0.500" in rows[0]
-    assert "p 0.00" in rows[0]
+    assert "p < 0.01" in rows[0]
     assert "p 1.00" in rows[1]
+
+
+def test_a_report_of_which_one_arm_gave_half_counts_for_none() -> None:
+    whole, half = counts([3, 3, 4]), counts([3, 3, 4])
+    half[0, 0] = 2, 2
+    text = decoders.table({"whole": whole, "half": half})
+    assert "2 of 3 reports" in text
+    assert [line.split("|")[2].split()[0] for line in text.splitlines()[4:]] == ["0.875", "0.875"]
+    with pytest.raises(SystemExit, match="more reports"):
+        decoders.table({"none": counts([0], 0)})
 
 
 @settings(max_examples=20, deadline=None)

@@ -16,7 +16,7 @@ from mini.feed import labeled, moment
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import HINT, MARK, Told, unmark
 from mini.generator.report import make_report
-from mini.generator.targets import STEM
+from mini.generator.targets import THIRD_LEG
 from mini.model import Forward
 from mini.options import parse
 from mini.rows import collate, tag_picture, training_row
@@ -226,7 +226,7 @@ def test_places_of_three_legs_are_read_where_the_third_is_used(coder: Coder) -> 
         used = {actor.leg for actor in report.crash.actors} | {actor.out for actor in report.crash.actors}
         assert ends or stem not in used
         assert not ends or sum(sources == ends for _, sources in row.pointers) >= len(legs)
-        assert {report.weight(("legs", i, "bearing")) for i in range(len(legs))} == {STEM}
+        assert {report.weight(("legs", i, "bearing")) for i in range(len(legs))} == {THIRD_LEG}
         found += bool(ends)
     assert found > 20
 

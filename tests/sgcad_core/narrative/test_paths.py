@@ -17,9 +17,10 @@ SIDE = "The front of V1 struck the left side of V2."
     ("V1 was traveling east at the T-intersection. The side street intersects from the south.", "WS"),
     ("V1 struck the rear of V2 at the intersection.", ""),
     ("V1 was northbound. V2 was parked facing west.", "S"),
-    ("V1 was going straight, northbound, at the intersection. V2 was going straight, westbound.", "SENW"),
-    ("V1 was going straight, northbound, at the intersection. V2 was going straight, southbound.", "SN"),
-    ("V1 was going straight, northbound, at the intersection. V2 was westbound and turned right.", "SEN"),
+    ("V1 was going straight, northbound, at the four-leg intersection. V2 was going straight, westbound.", "SENW"),
+    ("V1 was going straight, northbound, at the four-leg intersection. V2 was going straight, southbound.", "SN"),
+    ("V1 was going straight, northbound, at the intersection. V2 was going straight, westbound.", "SE"),
+    ("V1 was going straight, northbound, at the four-leg intersection. V2 was westbound and turned right.", "SEN"),
     ("V1 was going straight, northbound, at the T-intersection. V2 was going straight, westbound.", "SE"),
     ("V1 left the road. V2 was traveling west on a parking lot driveway.", "E"),
 ])  # fmt: skip
@@ -34,6 +35,8 @@ def test_legs_are_those_that_headings_and_turns_tell(text: str, legs: str) -> No
     ("V1 was traveling west. V2 was making a left turn from a side road in front of V1.", "EN"),
     ("V1 was traveling west and turned left. V2 was turning left from a side road in front of V1.", "ES"),
     ("V1 was traveling north and made a U-turn. V2 was turning left out of a driveway.", "SN"),
+    ("V1 was going straight, northbound, at the intersection. V2 was going straight, westbound.", "SENW"),
+    ("V1 was going straight, northbound, at the T-intersection. V2 was going straight, westbound.", "SE"),
     ("V2 was leaving a driveway and turned left across the eastbound lanes.", ""),
 ])  # fmt: skip
 def test_a_side_that_was_struck_tells_where_a_turning_vehicle_came_from(text: str, legs: str) -> None:

@@ -47,10 +47,24 @@ def test_one_lane_of_travel_is_the_whole_of_a_one_way_street_alone() -> None:
     assert (counts["N"], counts["E"]) == (1, None)
 
 
+@pytest.mark.parametrize("more", [
+    "V1 crossed one lane of traffic and struck V2.", "One lane of traffic was blocked by a parked truck.",
+    "The truck had one lane of traffic per direction to its left.", "A bus on a street blocked one lane of traffic.",
+])  # fmt: skip
+def test_a_lane_that_is_crossed_or_blocked_is_no_width_of_a_street(more: str) -> None:
+    assert _counts(f"V1 was traveling north on a one-way street. {more}") == {"N": None}
+
+
+def test_another_one_way_street_told_later_lends_no_lanes() -> None:
+    text = ("V1 was northbound on a one-way street. V2 was westbound on a four-lane two-way road. A one-way street "
+            "with three lanes runs parallel to the scene.")  # fmt: skip
+    assert _counts(text) == {"N": None, "E": 4}
+
+
 def test_lanes_of_a_one_way_street_stay_its_own_when_it_is_named_again() -> None:
     text = ("It happened in the intersection of a two-way road with two lanes in each direction and a one-way road "
-            "with one lane of traffic. The northbound road has a yield sign. V1 was westbound on the two-way road and V2 "
-            "was traveling north on the one-way road.")  # fmt: skip
+            "with one lane of traffic. The northbound road has a yield sign. V1 was westbound on the two-way road and "
+            "V2 was traveling north on the one-way road.")  # fmt: skip
     assert legs(text) == {"E": (2, 2), "W": (2, 2), "S": (1, 0), "N": (0, 1)}
     assert _counts(text)["N"] == 1
 
