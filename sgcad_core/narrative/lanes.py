@@ -136,8 +136,8 @@ _NUMBERED_TURN = re.compile(
 _EACH_WITH_TURN = re.compile(
     rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
     r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
-_ONE_LANE = re.compile(r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) (?:travel )?"
-                       rf"lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))", re.I)
+_ONE_LANE = re.compile(r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) "
+                       rf"(?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))", re.I)
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
 _CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
 
