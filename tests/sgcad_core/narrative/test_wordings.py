@@ -125,6 +125,14 @@ def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> Non
     assert (vehicle.heading, vehicle.maneuver) == ("E", "straight")
 
 
+@pytest.mark.parametrize(("told", "maneuver"), [
+    ("V2 pulled up to the crossing and stopped.", "stopped"), ("V2 stopped, then was crossing.", "straight"),
+])  # fmt: skip
+def test_a_crossing_that_one_comes_to_is_no_movement(told: str, maneuver: str) -> None:
+    facts = crash_facts(f"{SCENE}{told} The front of V1 struck the left side of V2.")
+    assert facts.vehicles[1].maneuver == maneuver
+
+
 def test_a_stop_that_is_told_before_the_impact_stays_one() -> None:
     text = f"{SCENE}V2 came up to a line of cars and stopped. The front of V1 struck the left side of V2."
     vehicle = crash_facts(text).vehicle("V2")
