@@ -26,11 +26,15 @@ class Sampled(Decoder):
         None, ge=0.0, le=5.0, description="of first attempts, if another: 0 and chance only draws what findings ask for"
     )
 
+    warming: float = Field(
+        0.0, ge=0.0, le=1.0, description="added to the temperature with every attempt after the second"
+    )
+
     def at(self, attempt: int) -> Sampled:
-        """First attempts with `first_temperature`, further ones with `temperature`."""
-        if attempt > 1 or self.first_temperature is None:
-            return self
-        return self.model_copy(update={"temperature": self.first_temperature})
+        """First attempts with `first_temperature`, the second with `temperature`, each one after it warmer."""
+        cold = self.first_temperature
+        wanted = cold if attempt == 1 and cold is not None else self.temperature + self.warming * max(0, attempt - 2)
+        return self if wanted == self.temperature else self.model_copy(update={"temperature": wanted})
 
     def draw(self, scores: Any, generator: Any) -> Any:
         """One token a row from masked logits (rows, vocabulary); see `sample`."""

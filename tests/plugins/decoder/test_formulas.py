@@ -140,6 +140,12 @@ def test_first_attempts_may_have_a_temperature_of_their_own() -> None:
         assert plain.at(1) is plain
 
 
+def test_every_attempt_after_the_second_may_be_warmer() -> None:
+    decoder = Nucleus(temperature=0.3, first_temperature=0.0, warming=0.1)
+    assert [round(decoder.at(n).temperature, 9) for n in (1, 2, 3, 10)] == [0.0, 0.3, 0.4, 1.1]
+    assert [round(Cad(temperature=0.2, warming=0.5).at(n).temperature, 9) for n in (1, 2, 4)] == [0.2, 0.2, 1.2]
+
+
 def test_vcd_noises_the_diagram_and_keeps_the_narrative() -> None:
     context = Context(narrative="V1 struck V2.", diagrams=(diagram(),))
     noised = Vcd().contrast_context(context)
