@@ -16,10 +16,12 @@ from sgcad_core.specs import Compass
 def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
     """Each leg in its place, clockwise from north (of a list of which any may be repeated some would be).
 
-    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides.
+    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides, and of four
+    legs that are told the others cross it.
     """
     used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
-    sure = used if pictured else {*used, *(turned(leg, 180) for leg in used)}
+    four = facts.junction.kind == "four_leg" and facts.junction.stated and len(legs) == 4 and bool(used)
+    sure = used if pictured else legs if four else {*used, *(turned(leg, 180) for leg in used)}
     ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
     return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))
 

@@ -57,8 +57,8 @@ _DEEDS: tuple[tuple[str, str], ...] = (
                  r"through|into|moving|forward)|"
                  r"accelerat(?:ed|ing)|crossed|went (?:through|into|straight)|began (?:to|his|her|their|its)|"
                  r"drove (?:into|through)|initiat\w+ (?:a|the|its|his|her|their) (?:\w+ )?turn|"
-                 r"moved (?:forward|into)|continued|attempted to (?:cross|enter|proceed)|(?<!the )(?<!a )crossing|entering|"
-                 r"proceeding|pulling (?:out|into|onto)|"
+                 r"moved (?:forward|into)|continued|attempted to (?:cross|enter|proceed)|entering|"
+                 r"(?<!the )(?<!a )crossing|proceeding|pulling (?:out|into|onto)|"
                  r"traversing|inched|edged|started|exited|exiting|ran (?:the|a|through))\b"),
     ("straight", r"\b(?:going|continu\w+|proceed\w*|travel\w*|went|intending (?:on|to) (?:going|continuing|go|"
                  r"continue|travel\w*)) "

@@ -44,6 +44,15 @@ def repairs(text: str, *legs: Leg, pictured: bool = False) -> list[str]:
     return [f.what for f in findings(text, network(*legs), pictured) if f.severity == "repair"]
 
 
+@pytest.mark.parametrize("pictured", [False, True])
+def test_four_told_legs_are_held_to_their_places_unless_a_diagram_may_show_others(pictured: bool) -> None:
+    text = "V1 was traveling north approaching a four-leg intersection. V2 was northbound. V1 struck the rear of V2."
+    found = findings(text, network(leg("N", 1, 1), leg("S", 1, 1), leg("W", 1, 1)), pictured)
+    holds = next(f for f in found if "four-leg" in f.what).holds
+    placed = [hold.either[0]["bearing"] for hold in holds if hold.at is not None]
+    assert placed == ([] if pictured else [("N",), ("E",), ("S",), ("W",)])
+
+
 @pytest.mark.parametrize("text", [CROSSING, T, PLAIN, ONE_WAY])
 def test_a_network_as_told_has_nothing_to_repair(text: str) -> None:
     written = Template().write(Context(narrative=text), (), (), None, 1)  # type: ignore[arg-type]
