@@ -21,19 +21,27 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.first_answers import as_report, first_answers
+from benchmarks.first_answers import first_answers
+from benchmarks.made import as_report
 from mini.evaluate import fields, source
 from mini.generator.report import Report, make_report
 from sgcad_core.config import Config, load
 from sgcad_core.errors import BadInput, ConfigError, MissingTool
 from sgcad_core.metrics.statistics import holm, ratio_interval, swap_test
-from sgcad_core.records import Floats
+from sgcad_core.records import CrashReport, Floats
 
 FIRST_SEED = 61_000_000
 """Held out from training, and neither those of the card nor those that the gate is calibrated on."""
 MODES = {"text": 2.0, "both": 1.0, "image": 1.0}
-SOURCES = ("text", "diagram", "both", "left out", "guessed")
-COLUMNS = ("told by the text", "shown by the drawing", "both", "to be left out", "to be guessed")
+COLUMNS = {
+    "text": "told by the text",
+    "diagram": "shown by the drawing",
+    "both": "both",
+    "left out": "to be left out",
+    "guessed": "to be guessed",
+}
+"""Who tells a value, or what becomes of one that nobody tells -> head of its column."""
+SOURCES = tuple(COLUMNS)
 LEFT_OUT = {"light", "weather", "surface", "speed", "speed_limit", "lane", "median", "control", "turns", "curve"}
 """Fields that an answer leaves empty where nobody tells them."""
 _MASKED = "decoder={name: cad, beta: 0.1, alpha: %s}"
@@ -51,13 +59,16 @@ ARMS: dict[str, str] = {
 """Name -> what is set in the config; with the plausibility mask of 0.1 unless told otherwise."""
 
 
-def marks(config: Config, reports: Sequence[Report], jobs: int) -> Floats:
-    """(reports, sources, 2): values right and values asked for; a refused report has neither."""
+def marks(config: Config, reports: Sequence[tuple[Report, CrashReport]], jobs: int) -> Floats:
+    """(reports, sources, 2): values right and values asked for; a refused report has neither.
+
+    `reports`: with the truth, and as a config's model sees them.
+    """
     found = np.zeros((len(reports), len(SOURCES), 2))
 
     def one(index: int) -> None:
-        report = reports[index]
-        heard, _ = first_answers(config, as_report(report))
+        report, shown = reports[index]
+        heard, _ = first_answers(config, shown)
         if "road" not in heard:
             return
         answers = [_read(heard[stage].text) if stage in heard else None for stage in ("road", "scenario")]
@@ -89,12 +100,13 @@ def table(found: dict[str, Floats]) -> str:
     kept = {name: counts[answered] for name, counts in found.items()}
     first = next(iter(kept.values()))
     columns = [i for i in range(len(SOURCES)) if first[:, i, 1].sum()]
-    lines = ["| decoder | " + " | ".join(COLUMNS[i] for i in columns) + " |", "|---" * (len(columns) + 1) + "|"]
+    heads = [COLUMNS[SOURCES[i]] for i in columns]
+    lines = ["| decoder | " + " | ".join(heads) + " |", "|---" * (len(columns) + 1) + "|"]
     others = {name: counts for name, counts in kept.items() if counts is not first}
     p = {i: holm({n: swap_test(_pair(first, i), _pair(c, i)) for n, c in others.items()}) for i in columns}
     for name, counts in kept.items():
         lines.append(f"| {name} | " + " | ".join(_cell(counts, i, p[i].get(name)) for i in columns) + " |")
-    n = ", ".join(f"{first[:, i, 1].sum():.0f} {COLUMNS[i]}" for i in columns)
+    n = ", ".join(f"{first[:, i, 1].sum():.0f} {head}" for i, head in zip(columns, heads, strict=True))
     kept_of = f"{int(answered.sum())} of {len(answered)} reports, those that every arm answers in full"
     return "\n".join([f"{kept_of}; values: {n}.", "", *lines])
 
@@ -119,7 +131,8 @@ def main() -> None:
     parser.add_argument("--arms", nargs="+", default=list(ARMS), choices=list(ARMS), help="the first is the reference")
     parser.add_argument("--jobs", type=int, default=8, help="reports asked at once")
     told = parser.parse_args()
-    reports = [make_report(seed, True, 0.6, MODES) for seed in range(FIRST_SEED, FIRST_SEED + told.count)]
+    made = (make_report(seed, True, 0.6, MODES) for seed in range(FIRST_SEED, FIRST_SEED + told.count))
+    reports = [(report, as_report(report)) for report in made]
     found: dict[str, Floats] = {}
     for name in told.arms:
         started = time.perf_counter()

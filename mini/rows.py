@@ -110,9 +110,9 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
     fact, shown = tags.fact_of(path, report.crash)
     alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
-    leg = tags.TEXT[shown] if fact == "legs" else -1  # told in parts, by those who use a leg
+    legs = {tags.TEXT[shown]} if fact == "legs" else set()  # told in parts, by those who use a leg
     told = zip(row.text_tags, report.sentences, strict=True)
-    found = [at for (at, said), (_, facts) in told if alike & facts or leg in said]
+    found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found

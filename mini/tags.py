@@ -103,10 +103,10 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
     return sorted({TEXT[name] for name in names if name in TEXT})
 
 
-def _used(crash: Crash, facts: Set[str], known: Set[str]) -> list[int]:
+def _used(crash: Crash, facts: Set[str], known: Set[str]) -> set[int]:
     """Legs that those whom a sentence tells of come from or go to, as far as they are known by then."""
     moved = [a for a in crash.actors if any(f"{key}.{a.id}" in facts for key in ("heading", "man", "exit"))]
-    return [leg for actor in moved if f"heading.{actor.id}" in known for leg in driven(actor, known)]
+    return driven(moved, known)
 
 
 def _of_leg(key: str, leg: Leg) -> list[str]:
@@ -182,8 +182,7 @@ def fact_of(path: tuple[Any, ...], crash: Crash) -> tuple[str, str]:
 
 def _deciding(crash: Crash, bearing: int) -> int:
     """The leg that decides which legs stand in an answer: of three the stem, whose place no other leg tells."""
-    stems = [leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)]
-    return stems[0] if len(stems) == 1 else bearing
+    return crash.stems[0].bearing if len(crash.stems) == 1 else bearing
 
 
 # ------------------------------------------------------------------ drawings

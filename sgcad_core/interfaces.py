@@ -87,7 +87,7 @@ class Decoder(Plugin):
         return self.needs_prior
 
     def at(self, attempt: int) -> Decoder:
-        """The decoder of an attempt, from 1: the same one, unless it draws first attempts otherwise."""
+        """The decoder of an attempt, from 1: the same one, unless attempts are drawn differently."""
         return self
 
     def draw(self, scores: Any, generator: Any) -> Any:

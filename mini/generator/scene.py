@@ -39,11 +39,10 @@ class SceneMixin(RoadsMixin):
             return self.scene_junction()
         if slot in ("light", "wx", "surf"):
             return self._condition(slot)
-        if slot in ("axis", "axis2", "through", "ending"):
-            from_main = crash.main if slot in ("through", "ending") else self._first
-            axis = (from_main + 2 * (slot in ("axis2", "ending"))) % 4
-            self.told.add(f"{AXIS}.{axis}")
-            return words.axis(rng, axis)
+        if slot in ("axis", "axis2"):
+            return self._run(self._first + 2 * (slot == "axis2"))
+        if slot in ("through", "ending"):
+            return self._run(crash.main + 2 * (slot == "ending"))
         if slot in ("lim", "lim2"):
             return self._limit(slot)
         if slot == "curve":
@@ -51,12 +50,17 @@ class SceneMixin(RoadsMixin):
             return self._leg_of(v).curve if self._leg_of(v).curve != "none" else "left"
         return self._scene_slot2(slot)
 
+    def _run(self, bearing: int) -> str:
+        """How the road of a bearing runs: "north/south"."""
+        self.told.add(f"{AXIS}.{bearing % 4}")
+        return words.axis(self.rng, bearing % 4)
+
     def _scene_slot2(self, slot: str) -> str:
         crash, rng = self.crash, self.rng
         if slot == "radius":
             return str(rng.randint(60, 900))
         if slot in ("stemdir", "opposite"):
-            stem = next(leg for leg in crash.legs if not crash.is_main(leg.bearing))
+            stem = crash.stems[0]
             self.told |= {"layout", STEM}
             return WORDS[(stem.bearing + 4 * (slot == "opposite")) % 8]
         if slot == "tcd":

@@ -6,7 +6,7 @@ of them has how many lanes; that takes a direction of travel beside a road, or t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 
 from mini.generator.grammar import HINT
 from mini.generator.world import TURN_OF, Actor, Crash, Leg
@@ -41,7 +41,7 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     }
     if _legs(crash, told, tied):
         return out
-    stems = {leg.bearing % 4 for leg in crash.legs if not crash.is_main(leg.bearing)}
+    stems = {leg.bearing % 4 for leg in crash.stems}
     return out | {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
 
 
@@ -75,7 +75,7 @@ def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
     """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
     if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
         return True
-    used = {leg % 4 for actor in _headed(crash, told) for leg in driven(actor, told)}
+    used = {leg % 4 for leg in driven(crash.actors, told)}
     return axis in used or f"{FLOW}.{axis}" in told
 
 
@@ -93,9 +93,9 @@ def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     """Whether the text tells which legs there are."""
     if crash.layout in ("plain", "four"):
         return tied or bool(_headed(crash, told))
-    found = {leg for actor in _headed(crash, told) for leg in driven(actor, told)}
+    found = driven(crash.actors, told)
     found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
-    stem = {leg.bearing for leg in crash.legs if not crash.is_main(leg.bearing)}
+    stem = {leg.bearing for leg in crash.stems}
     if stem <= found and crash.layout != "t":
         return tied
     return STEM in told or {leg.bearing for leg in crash.legs} <= found
@@ -106,10 +106,11 @@ def _headed(crash: Crash, told: set[str]) -> list[Actor]:
     return [actor for actor in crash.actors if f"heading.{actor.id}" in told]
 
 
-def driven(actor: Actor, told: set[str]) -> list[int]:
-    """Legs that an actor with a known heading uses, as bearings."""
-    out = actor.exit_of(told) if f"man.{actor.id}" in told else None
-    return [actor.leg, *([] if out is None else [out])]
+def driven(actors: Iterable[Actor], told: Set[str]) -> set[int]:
+    """Legs that those of these actors use whose heading is told, as bearings."""
+    headed = [actor for actor in actors if f"heading.{actor.id}" in told]
+    outs = {actor.exit_of(told) for actor in headed if f"man.{actor.id}" in told}
+    return {actor.leg for actor in headed} | {out for out in outs if out is not None}
 
 
 def _led_to(leg: Leg) -> list[int]:

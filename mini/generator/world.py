@@ -123,6 +123,11 @@ class Crash:
         """Whether a leg belongs to the main road."""
         return bearing % 4 == self.main % 4
 
+    @property
+    def stems(self) -> list[Leg]:
+        """Legs that do not belong to the main road: two where roads cross, else one or none."""
+        return [leg for leg in self.legs if not self.is_main(leg.bearing)]
+
 
 def pick(rng: Random, weights: dict[str, float]) -> str:
     """One key, by weight."""

@@ -25,7 +25,6 @@ class Sampled(Decoder):
     first_temperature: float | None = Field(
         None, ge=0.0, le=5.0, description="of first attempts, if another: 0 and chance only draws what findings ask for"
     )
-
     warming: float = Field(
         0.0, ge=0.0, le=1.0, description="added to the temperature with every attempt after the second"
     )

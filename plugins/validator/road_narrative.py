@@ -18,7 +18,7 @@ from sgcad_core.holds import SOME_LANES
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.paths import legs_used, turns_off
+from sgcad_core.narrative.paths import ahead, legs_used, turns_off
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
@@ -236,10 +236,8 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 
 def _alone(facts: RoadFacts) -> bool:
     """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
-    legs, vehicles = legs_used(facts), facts.crash.vehicles
-    straight = [v for v in vehicles if v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
-    ahead = [v.heading for v in straight if v.heading]
-    through = {*legs, *ahead}
+    vehicles = facts.crash.vehicles
+    through = {*legs_used(facts), *ahead(vehicles)}
     return len(through) <= 3 and len(facts.streets) == len(facts.roads) and not any(v.origin for v in vehicles)
 
 

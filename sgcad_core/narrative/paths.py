@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
@@ -41,10 +43,15 @@ def _crossing(crash: CrashFacts) -> list[Compass]:
     """Headings of the first two that touch, if both are told to go straight on and their ways cross squarely."""
     first = crash.contacts[0] if crash.contacts and crash.contacts[0].stated else None
     pair = [crash.vehicle(name) for name in (first.striker, first.struck)] if first else []
-    sure = [v.heading for v in pair if v and v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
-    found = [heading for heading in sure if heading]
+    found = ahead(v for v in pair if v)
     square = len(found) == 2 and between(found[0], found[1]) % 180 == 90
     return found if square else []
+
+
+def ahead(vehicles: Iterable[VehicleFacts]) -> list[Compass]:
+    """Headings of those that are told to go straight on, and which way."""
+    sure = [v for v in vehicles if v.heading_stated and v.maneuver_stated and v.maneuver == "straight"]
+    return [v.heading for v in sure if v.heading]
 
 
 def turns_off(v: VehicleFacts) -> bool:

@@ -73,7 +73,8 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
         for road in _streets(roads):
             if not _counted(road.lanes):
                 road.lanes = merged(road.lanes, mention.lanes)
-            road.lanes = replace(road.lanes, one_lane=road.lanes.one_lane or mention.lanes.one_lane)
+            elif mention.lanes.one_lane:
+                road.lanes = replace(road.lanes, one_lane=True)
     for road in roads:
         if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
             road.lanes = replace(road.lanes, total=1)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks import decoders
+from benchmarks.made import as_report
 from mini.generator.report import make_report
 from sgcad_core.config import load
 
@@ -57,7 +58,8 @@ def test_a_report_that_one_arm_refuses_counts_for_none(right: list[int], refused
 @pytest.mark.slow
 def test_the_embedded_model_is_asked_and_its_values_are_counted_by_source() -> None:
     reports = [make_report(seed, True, 0.6, {"text": 1.0}) for seed in range(61_000_000, 61_000_003)]
-    found = decoders.marks(load("mini.yaml", (decoders.ARMS["greedy"],)), reports, 2)
+    pairs = [(report, as_report(report)) for report in reports]
+    found = decoders.marks(load("mini.yaml", (decoders.ARMS["greedy"],)), pairs, 2)
     assert found.shape == (3, len(decoders.SOURCES), 2)
     assert (found[..., 0] <= found[..., 1]).all()
     told = decoders.SOURCES.index("text")
