@@ -32,8 +32,10 @@ HELD_OUT_BASE = 50_000_000
 
 MIXED = {"both": 38.0, "image": 25.0, "text": 25.0, "none": 8.0, "thin": 2.5, "no_crash": 2.0, "conflict": 1.5}
 """More rows that are drawings alone than are measured (`MODES`): they are short, and drawings are learned slowest."""
-STAGES: dict[str, dict[str, float]] = {"text": TEXT_MODES, "pictures": {"image": 1.0}, "all": MIXED}
-"""What a stage of training shows: narratives only, drawings only, or everything."""
+WORDS = {"text": 66.0, "both": 14.0, "image": 8.0, "none": 5.0, "thin": 3.0, "no_crash": 2.0, "conflict": 2.0}
+"""Mostly narratives, with so many drawings that these are not unlearned."""
+STAGES: dict[str, dict[str, float]] = {"text": TEXT_MODES, "pictures": {"image": 1.0}, "words": WORDS, "all": MIXED}
+"""What a stage of training shows: narratives only, drawings only, mostly narratives, or everything."""
 
 
 PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))

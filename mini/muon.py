@@ -16,9 +16,10 @@ from torch import Tensor, nn
 A, B, C = 3.4445, -4.7750, 2.0315
 
 
-def orthogonal(g: Tensor, steps: int = 5) -> Tensor:
-    """The nearest semi-orthogonal matrices to a stack (..., m, n), roughly (singular values 0.7 to 1.2)."""
-    x = g.to(torch.bfloat16)
+def orthogonal(g: Tensor, steps: int = 5, dtype: torch.dtype = torch.bfloat16) -> Tensor:
+    """The nearest semi-orthogonal matrices to a stack (..., m, n), roughly (singular values 0.7 to 1.2); computed in
+    `dtype`, given in that of `g`."""
+    x = g.to(dtype)
     tall = x.shape[-2] > x.shape[-1]
     x = x.mT if tall else x
     x = x / (x.norm(dim=(-2, -1), keepdim=True) + 1e-7)
@@ -81,14 +82,14 @@ class Optimizer:
 
     def _muon(self, keys: list[str], scale: float) -> None:
         """All matrices of one shape at once."""
-        grads = []
+        grads, dtype = [], self.live[keys[0]].dtype
         for key in keys:
             grad, momentum = self.matrices[key].grad, self.momentum[key]
             assert grad is not None  # noqa: S101 - step() chose these
             momentum.lerp_(grad, 0.05)
             grads.append(grad.lerp(momentum, 0.95).flatten(1))
         rows, columns = grads[0].shape
-        updates = orthogonal(torch.stack(grads))
+        updates = orthogonal(torch.stack(grads), dtype=dtype)
         rate = self.muon_lr * scale
         for key, update in zip(keys, updates, strict=True):
             p = self.matrices[key]

@@ -15,6 +15,8 @@ class Options:
     out: Path
     budget: float
     device: str = "cpu"
+    dtype: str = ""
+    """"bfloat16" or "float32", of the arithmetic (masters are fp32); not given: what the device is fast in."""
     call: float = 1e9
     """Seconds after which this call stops, whatever the budget."""
     seed: int = 0
@@ -38,8 +40,8 @@ class Options:
     hold: float = 0.4
     """Share of the budget with the full learning rate."""
     stage: str = "auto"
-    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the vision tower alone), "all", or all of
-    these in turn ("auto")."""
+    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the tower alone), "all", all of these
+    in turn ("auto"), or "words" (everything, but mostly narratives)."""
     eyes: str = ""
     """Exported weights whose eye and vision tower are taken in place of those of `start`."""
     fixed_eyes: int = 0

@@ -142,9 +142,10 @@ def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], repo
 def _goes_on(number: str, options: tuple[str, ...]) -> bool:
     """Whether more digits might follow a number, so that its end is a choice too ("5", where "51" may be written).
 
-    A decoder that goes by tokens, not by the options of a walk, asks there.
+    A decoder that goes by tokens, not by the options of a walk, asks there; behind a point it always does ("40.0").
     """
-    return number.isdigit() and any(other.startswith(number) and other != number for other in options)
+    longer = any(other.startswith(number) and other != number for other in options)
+    return "." in number or (number.isdigit() and longer)
 
 
 def positions(row: Row) -> Ints:

@@ -29,6 +29,7 @@ from mini.eye import Eye
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
 from mini.grow import deepened
+from mini.layers import arithmetic
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
@@ -85,7 +86,7 @@ class Trainer:
         others = {"heads": self.taggers, "eye": self.eye}
         self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)
         for part in (self.model, *others.values()):
-            part.to(torch.bfloat16)
+            part.to(getattr(torch, options.dtype) if options.dtype else arithmetic(options.device))
         self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
         self.pool_progress: float | None = None
         self._resume()

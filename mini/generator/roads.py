@@ -145,6 +145,10 @@ def merge(rng: Random, main: int) -> list[Leg]:
     return sorted([*legs, ramp], key=lambda leg: leg.bearing)
 
 
+NEAR_JUNCTIONS = 0.25
+"""Share of the driveways near junctions that drawings show although no text tells of them."""
+
+
 def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     """Now and then a driveway or side road away from the hub."""
     if rng.random() > 0.07:
@@ -160,14 +164,18 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     ]
 
 
-def mouths(rng: Random, crash: Crash) -> Crash:
-    """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth."""
+def mouths(rng: Random, crash: Crash, told: bool = True) -> Crash:
+    """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth.
+
+    Around junctions investigators rarely draw any; where the text does not tell of them (`told`), most are left out.
+    """
     if crash.area_word == "highway":
         return crash
-    found = [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
+    bare = crash.layout in ("t", "four") and not told and rng.random() > NEAR_JUNCTIONS
+    found = [] if bare else [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
     free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
     stem = next((leg.bearing for leg in crash.legs if leg.kind == "driveway"), None)
-    odds = 0.35 if found or stem is not None else 0.03
+    odds = 0.35 if found or stem is not None else 0.0 if bare else 0.03
     while free and len(found) < MAX_ACCESSES and rng.random() < odds:
         leg = free.pop(rng.randrange(len(free)))
         side = rng.choice(("left", "right"))

@@ -42,13 +42,22 @@ def load(name: str, revision: str | None, options: Mapping[str, Any], device: st
     tf.utils.logging.disable_progress_bar()
     place = _place(name)
     tokenizer = _tokenizer(place, revision)
-    model = _model(place, revision, dict(options), quantization)
+    model = _model(place, revision, _with_dtype(options, device), quantization)
     if not options.get("device_map") and quantization == "none":
         model = model.to(_device(device))
     model.eval()
     sees = hasattr(model.config, "vision_config")
     prepare = _prepare(place, revision) if sees else None
     return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare)
+
+
+def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
+    """The options with a dtype of torch in place of "native"."""
+    if options.get("dtype") != "native":
+        return dict(options)
+    from mini.layers import arithmetic
+
+    return {**options, "dtype": arithmetic("cuda" if options.get("device_map") else _device(device).type)}
 
 
 def _place(name: str) -> str:

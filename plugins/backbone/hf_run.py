@@ -158,10 +158,10 @@ class Running:
 
 
 def options(dtype: str, attention: str, device_map: str | dict[str, int | str] | None) -> dict[str, Any]:
-    """Arguments of from_pretrained."""
+    """Arguments of from_pretrained; the dtype "native" is left for `hf_load.load`, which knows the device."""
     import torch
 
-    found: dict[str, Any] = {"dtype": dtype if dtype == "auto" else getattr(torch, dtype)}
+    found: dict[str, Any] = {"dtype": dtype if dtype in ("auto", "native") else getattr(torch, dtype)}
     found["attn_implementation"] = attention
     return found | ({"device_map": device_map} if device_map is not None else {})
 

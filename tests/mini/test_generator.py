@@ -352,6 +352,17 @@ def test_drawings_show_driveways_that_the_narrative_passes_over() -> None:
         assert not any(access.mouth for access in report.crash.accesses)
 
 
+def test_drawings_of_junctions_rarely_show_driveways_that_no_text_tells_of() -> None:
+    reports = [make_report(s, length=0.1, modes={"image": 1.0}) for s in range(600)]
+    near = [bool(r.road["accesses"]) for r in reports if r.crash.layout in ("t", "four")]
+    along = [bool(r.road["accesses"]) for r in reports if r.crash.layout in ("plain", "driveway")]
+    assert 0 < sum(near) < 0.05 * len(near)
+    assert sum(along) > 0.08 * len(along)
+    for report in (make_report(s, length=1.0, modes={"both": 1.0}) for s in range(300)):
+        if report.crash.layout in ("t", "four") and "access" in report.told:
+            assert report.crash.accesses
+
+
 def test_who_turns_has_often_stopped_or_slowed_before() -> None:
     """Of turning vehicles in real narratives two in five had stopped; then it is told that they went."""
     waited = {True: 0, False: 0}

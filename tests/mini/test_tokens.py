@@ -73,3 +73,13 @@ def test_where_more_digits_might_follow_the_end_of_a_number_is_learned(coder: Co
         assert all(coder.tokenizer.decode([row.ids[at - 1]]).isdigit() for at in ends)
         seen += len(ends)
     assert seen > 3
+
+
+def test_a_distance_ends_behind_its_decimals(coder: Coder) -> None:
+    reports = [r for r in (make_report(seed, modes={"text": 1.0}) for seed in range(300)) if r.road.get("accesses")]
+    assert reports
+    for report in reports:
+        row = training_row(coder, report, None)
+        learned = "".join(coder.tokenizer.decode([row.ids[at]]) for at, _ in row.picks)
+        for access in report.road["accesses"]:
+            assert f'{access["distance_m"]},"kind":' in learned

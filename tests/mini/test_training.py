@@ -8,8 +8,9 @@ import torch
 
 from mini.decode import Answerer
 from mini.eye import Eye
-from mini.feed import Feed, drawing
+from mini.feed import STAGES, WORDS, Feed, drawing
 from mini.generator.report import make_report
+from mini.layers import arithmetic
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
 from mini.options import parse
@@ -84,9 +85,32 @@ def test_a_narrower_softmax_keeps_the_ranking(coder: Coder, forward: Forward) ->
 
 def test_newton_schulz_makes_matrices_orthogonal() -> None:
     torch.manual_seed(0)
-    found = orthogonal(torch.randn(3, 16, 40))
-    spread = torch.linalg.svdvals(found.float())
-    assert 0.5 < spread.min() <= spread.max() < 1.4
+    given = torch.randn(3, 16, 40)
+    for dtype in (torch.bfloat16, torch.float32):
+        spread = torch.linalg.svdvals(orthogonal(given, dtype=dtype).float())
+        assert 0.5 < spread.min() <= spread.max() < 1.4
+
+
+@pytest.mark.parametrize(("bf16", "amx"), [(False, False), (True, False), (False, True)])
+def test_arithmetic_is_what_the_device_is_fast_in(monkeypatch: pytest.MonkeyPatch, bf16: bool, amx: bool) -> None:
+    monkeypatch.setattr(torch.cpu, "_is_avx512_bf16_supported", lambda: bf16)
+    monkeypatch.setattr(torch.cpu, "_is_amx_tile_supported", lambda: amx)
+    assert arithmetic("cpu") == (torch.bfloat16 if bf16 or amx else torch.float32)
+    assert arithmetic("cuda:0") == torch.bfloat16
+
+
+@pytest.mark.parametrize("dtype", ["float32", "bfloat16"])
+def test_the_arithmetic_may_be_told(tmp_path: Path, dtype: str) -> None:
+    trainer = Trainer(parse([*options(tmp_path, 1), "--dtype", dtype]))
+    assert trainer.forward.dtype == trainer.eye.across.weight.dtype == getattr(torch, dtype)
+    assert all(master.dtype == torch.float32 for master in trainer.optimizer.master.values())
+
+
+def test_mostly_narratives_are_shown_when_words_are_trained() -> None:
+    assert sum(WORDS.values()) == pytest.approx(100)
+    modes = [make_report(seed, length=0.0, modes=STAGES["words"]).mode for seed in range(200)]
+    assert 0.5 < modes.count("text") / len(modes) < 0.8
+    assert {"both", "image", "none"} < set(modes)
 
 
 def test_the_learning_rate_decays_to_a_fiftieth() -> None:

@@ -279,6 +279,18 @@ def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> 
         HfVision(**{**backbones["llava"].model_dump(), "device": "gpu7"}).generate(folders.context(), QUERY, Cad())
 
 
+@pytest.mark.parametrize(("able", "dtype"), [(True, torch.bfloat16), (False, torch.float32)])
+def test_native_is_the_dtype_that_the_processor_multiplies_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, able: bool, dtype: torch.dtype
+) -> None:
+    monkeypatch.setattr(torch.cpu, "_is_avx512_bf16_supported", lambda: able)
+    monkeypatch.setattr(torch.cpu, "_is_amx_tile_supported", lambda: False)
+    folder = str(folders.save("qwen2_5_vl", tmp_path))
+    backbone = HfVision(model=folder, device="cpu", dtype="native", max_new_tokens=200)
+    valid(backbone.generate(folders.context(), QUERY, Greedy()))
+    assert backbone._loaded().engine.model.dtype == dtype
+
+
 def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Path) -> None:
     folder = str(folders.save("qwen2_5_vl", tmp_path))
     first, second = (HfVision(model=folder, device="cpu", dtype="float32", max_new_tokens=n) for n in (200, 150))
