@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from flows.chain import ask_of, context_of
 from sgcad_core.config import Config
-from sgcad_core.errors import ConfigError, InvalidOutput, Refused
+from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
 from sgcad_core.records import Context, CrashReport, Generation, Query
 
 
 def first_answers(config: Config, report: CrashReport) -> tuple[dict[str, Generation], bool]:
     """The answers by stage ("road", and "scenario" where the road could be drawn), and whether one is a refusal."""
-    if config.backbone is None or config.decoder is None:
-        raise ConfigError(f"{config.name}: no backbone or no decoder, so there is no model to ask; use mini.yaml")
     heard: dict[str, Generation] = {}
     context = context_of(report)
     try:

@@ -23,6 +23,7 @@ from pathlib import Path
 from benchmarks.first_answers import first_answers
 from benchmarks.gate_sweep import Sample, Score, area, choose, halves, refused, score, sweep
 from flows.cases import cases_in
+from mini.generator.report import make_report
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of
 from sgcad_core import settings
@@ -40,8 +41,7 @@ FIRST_MADE = 60_000_000
 # ------------------------------------------------------------------ reports
 def made(count: int) -> Iterator[CrashReport]:
     """Reports of mini's generator with text, and mostly with a drawing; phrases that no training saw."""
-    from benchmarks.made import as_report
-    from mini.generator.report import make_report
+    from benchmarks.made import as_report  # loads torch, and --help should not wait for it
 
     for seed in range(FIRST_MADE, FIRST_MADE + count):
         yield as_report(make_report(seed, True, 0.6, {"both": 3.0, "text": 1.0}))

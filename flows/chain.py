@@ -228,7 +228,8 @@ def ask_of(config: Config) -> Ask:
     """How writers of this config speak to its model; a later attempt draws with another seed."""
     backbone, decoder = config.backbone, config.decoder
     if backbone is None or decoder is None:  # config.build refuses this pairing
-        raise ConfigError(f"{config.name}: a writer asks a model, but there is no backbone or no decoder")
+        lack = "backbone" if backbone is None else "decoder"
+        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}; name one, as configs/mini.yaml does")
 
     def ask(context: Context, query: Query) -> Generation:
         return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)

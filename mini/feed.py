@@ -1,8 +1,8 @@
 """Training rows without end, made in worker processes: seed number n gives the same row everywhere.
 
-The curriculum goes by stage (narratives, drawings, then everything) and by progress (0 to 1) of the budget: short
-texts first, longer ones later. A row's seed, mode and length follow from its number and the progress, so a resumed
-run goes on where it stopped.
+The curriculum goes by stage (drawings, narratives, then everything; or mostly narratives) and by progress (0 to 1) of
+the budget: short texts first, longer ones later. A row's seed, mode and length follow from its number and the progress,
+so a resumed run goes on where it stopped.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MIXED = {"both": 38.0, "image": 25.0, "text": 25.0, "none": 8.0, "thin": 2.5, "n
 WORDS = {"text": 66.0, "both": 14.0, "image": 8.0, "none": 5.0, "thin": 3.0, "no_crash": 2.0, "conflict": 2.0}
 """Mostly narratives, with so many drawings that these are not unlearned."""
 STAGES: dict[str, dict[str, float]] = {"text": TEXT_MODES, "pictures": {"image": 1.0}, "words": WORDS, "all": MIXED}
-"""What a stage of training shows: narratives only, drawings only, mostly narratives, or everything."""
+"""Weights of the modes that a stage of training shows."""
 
 
 PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))

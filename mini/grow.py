@@ -19,6 +19,11 @@ def depth(weights: Mapping[str, Tensor], prefix: str = LAYERS) -> int:
     )
 
 
+def places(found: int, layers: int) -> list[int]:
+    """Where `found` old layers stand among `layers`: in order, spread evenly, the first and the last at the ends."""
+    return [i * (layers - 1) // max(1, found - 1) for i in range(found)]
+
+
 def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -> dict[str, Tensor]:
     """`weights` by parameter name, with `layers` text layers, at least as many as there are; their names start with
     `prefix` and a number.
@@ -32,14 +37,14 @@ def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -
     found = depth(weights, prefix)
     if layers < found:
         raise ValueError(f"weights of {found} text layers cannot begin a model of {layers}: start from smaller ones")
-    places = [i * (layers - 1) // max(1, found - 1) for i in range(found)]
+    old = places(found, layers)
     grown = {name: value for name, value in weights.items() if not name.startswith(prefix)}
     for place in range(layers):
-        source = max(i for i in range(found) if places[i] <= place)
+        source = max(i for i in range(found) if old[i] <= place)
         own = f"{prefix}{source}."
         for name, value in weights.items():
             if name.startswith(own):
                 part = name.removeprefix(own)
-                silent = part in SILENT and places[source] != place
+                silent = part in SILENT and old[source] != place
                 grown[f"{prefix}{place}.{part}"] = torch.zeros_like(value) if silent else value.clone()
     return grown

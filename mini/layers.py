@@ -8,13 +8,6 @@ import torch
 from torch import Tensor
 
 
-def arithmetic(device: str) -> torch.dtype:
-    """What a device multiplies fast in: bf16 on a GPU and on CPUs that have instructions for it, elsewhere fp32 (a CPU
-    that must imitate bf16 takes nine times as long)."""
-    able = (torch.cpu._is_avx512_bf16_supported, torch.cpu._is_amx_tile_supported)
-    return torch.bfloat16 if not device.startswith("cpu") or any(has() for has in able) else torch.float32
-
-
 def rotate(x: Tensor, cos: Tensor, sin: Tensor) -> Tensor:
     """Rotary embedding of (..., L, D); cos and sin are (..., L, D / 2)."""
     first, second = x.chunk(2, dim=-1)

@@ -16,7 +16,7 @@ from torch import Tensor, nn
 A, B, C = 3.4445, -4.7750, 2.0315
 
 
-def orthogonal(g: Tensor, steps: int = 5, dtype: torch.dtype = torch.bfloat16) -> Tensor:
+def orthogonal(g: Tensor, dtype: torch.dtype, steps: int = 5) -> Tensor:
     """The nearest semi-orthogonal matrices to a stack (..., m, n), roughly (singular values 0.7 to 1.2); computed in
     `dtype`, given in that of `g`."""
     x = g.to(dtype)
@@ -89,7 +89,7 @@ class Optimizer:
             momentum.lerp_(grad, 0.05)
             grads.append(grad.lerp(momentum, 0.95).flatten(1))
         rows, columns = grads[0].shape
-        updates = orthogonal(torch.stack(grads), dtype=dtype)
+        updates = orthogonal(torch.stack(grads), dtype)
         rate = self.muon_lr * scale
         for key, update in zip(keys, updates, strict=True):
             p = self.matrices[key]

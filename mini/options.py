@@ -16,7 +16,7 @@ class Options:
     budget: float
     device: str = "cpu"
     dtype: str = ""
-    """"bfloat16" or "float32", of the arithmetic (masters are fp32); not given: what the device is fast in."""
+    """Of the arithmetic (masters are fp32): "bfloat16" or "float32"; not given: what the device is fast in."""
     call: float = 1e9
     """Seconds after which this call stops, whatever the budget."""
     seed: int = 0
@@ -40,8 +40,8 @@ class Options:
     hold: float = 0.4
     """Share of the budget with the full learning rate."""
     stage: str = "auto"
-    """What is shown: "text" (narratives), "pictures" (drawings, no answers: the tower alone), "all", all of these
-    in turn ("auto"), or "words" (everything, but mostly narratives)."""
+    """What is shown: "pictures" (drawings, no answers: the tower alone), "text" (narratives), "all", these in turn
+    ("auto"), or "words" (everything, but mostly narratives)."""
     eyes: str = ""
     """Exported weights whose eye and vision tower are taken in place of those of `start`."""
     fixed_eyes: int = 0
@@ -54,6 +54,9 @@ class Options:
     """Weight of what the tokens of drawings show."""
 
 
+CHOICES = {"dtype": ("", "bfloat16", "float32"), "stage": ("auto", "pictures", "text", "words", "all")}
+
+
 def parse(arguments: list[str] | None = None, description: str | None = None) -> Options:
     """Options from the command line; DEVICE and BUDGET in the environment are defaults."""
     parser = argparse.ArgumentParser(prog="python -m mini.train", description=description)
@@ -63,7 +66,7 @@ def parse(arguments: list[str] | None = None, description: str | None = None) ->
     for field in fields(Options):
         if field.name not in ("out", "budget", "device"):
             flag = f"--{field.name.replace('_', '-')}"
-            parser.add_argument(flag, type=type(field.default), default=field.default)
+            parser.add_argument(flag, type=type(field.default), default=field.default, choices=CHOICES.get(field.name))
     return suited(Options(**vars(parser.parse_args(arguments))))
 
 

@@ -29,10 +29,10 @@ from mini.eye import Eye
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
 from mini.grow import deepened
-from mini.layers import arithmetic
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
+from mini.precision import native_dtype
 from mini.ranks import Ranks
 from mini.rows import Row, collate
 from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
@@ -86,7 +86,7 @@ class Trainer:
         others = {"heads": self.taggers, "eye": self.eye}
         self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)
         for part in (self.model, *others.values()):
-            part.to(getattr(torch, options.dtype) if options.dtype else arithmetic(options.device))
+            part.to(getattr(torch, options.dtype) if options.dtype else native_dtype(options.device))
         self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
         self.pool_progress: float | None = None
         self._resume()
@@ -108,6 +108,10 @@ class Trainer:
             self._begin()
             return
         state = torch.load(path, map_location=self.options.device, weights_only=True)
+        if state["optimizer"]["master"].keys() != self.optimizer.master.keys():
+            raise ValueError(
+                f"{path} is of a model with other layers: train in another folder, --start {self.options.out}/export"
+            )
         self.optimizer.load_state_dict(state["optimizer"])
         self.spent, self.steps, self.rows, self.pool = (state[k] for k in ("spent", "steps", "rows", "pool"))
         self.used, self.pool_progress = state.get("used", 0), state.get("pool_progress")

@@ -146,7 +146,7 @@ def merge(rng: Random, main: int) -> list[Leg]:
 
 
 NEAR_JUNCTIONS = 0.25
-"""Share of the driveways near junctions that drawings show although no text tells of them."""
+"""Share of the drawings of junctions that show driveways, where there are some, although no text tells of them."""
 
 
 def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
@@ -164,10 +164,10 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     ]
 
 
-def mouths(rng: Random, crash: Crash, told: bool = True) -> Crash:
+def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth.
 
-    Around junctions investigators rarely draw any; where the text does not tell of them (`told`), most are left out.
+    Around junctions investigators rarely draw any: where no text tells of them (not `told`), most have none.
     """
     if crash.area_word == "highway":
         return crash
@@ -175,8 +175,8 @@ def mouths(rng: Random, crash: Crash, told: bool = True) -> Crash:
     found = [] if bare else [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
     free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
     stem = next((leg.bearing for leg in crash.legs if leg.kind == "driveway"), None)
-    odds = 0.35 if found or stem is not None else 0.0 if bare else 0.03
-    while free and len(found) < MAX_ACCESSES and rng.random() < odds:
+    odds = 0.35 if found or stem is not None else 0.03
+    while free and not bare and len(found) < MAX_ACCESSES and rng.random() < odds:
         leg = free.pop(rng.randrange(len(free)))
         side = rng.choice(("left", "right"))
         if stem is not None and rng.random() < 0.6:

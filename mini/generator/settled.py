@@ -52,7 +52,7 @@ def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool
     headed = [{f"{ROAD}.{actor.leg % 4}", f"heading.{actor.id}"} for actor in crash.actors]
     if crash.layout in ("four", "t"):
         return any(pair <= facts for facts in sentences for pair in headed)
-    return bool(_headed(crash, told))
+    return bool(_headed(crash.actors, told))
 
 
 def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentences: list[frozenset[str]]) -> bool:
@@ -92,7 +92,7 @@ def _value(key: str, leg: Leg) -> tuple[object, ...]:
 def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     """Whether the text tells which legs there are."""
     if crash.layout in ("plain", "four"):
-        return tied or bool(_headed(crash, told))
+        return tied or bool(_headed(crash.actors, told))
     found = driven(crash.actors, told)
     found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
     stem = {leg.bearing for leg in crash.stems}
@@ -101,14 +101,14 @@ def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     return STEM in told or {leg.bearing for leg in crash.legs} <= found
 
 
-def _headed(crash: Crash, told: set[str]) -> list[Actor]:
-    """Actors whose heading is told."""
-    return [actor for actor in crash.actors if f"heading.{actor.id}" in told]
+def _headed(actors: Iterable[Actor], told: Set[str]) -> list[Actor]:
+    """Those whose heading is told."""
+    return [actor for actor in actors if f"heading.{actor.id}" in told]
 
 
 def driven(actors: Iterable[Actor], told: Set[str]) -> set[int]:
-    """Legs that those of these actors use whose heading is told, as bearings."""
-    headed = [actor for actor in actors if f"heading.{actor.id}" in told]
+    """Bearings of the legs that are used by those of `actors` whose heading is told."""
+    headed = _headed(actors, told)
     outs = {actor.exit_of(told) for actor in headed if f"man.{actor.id}" in told}
     return {actor.leg for actor in headed} | {out for out in outs if out is not None}
 

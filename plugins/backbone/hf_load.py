@@ -55,9 +55,9 @@ def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
     """The options with a dtype of torch in place of "native"."""
     if options.get("dtype") != "native":
         return dict(options)
-    from mini.layers import arithmetic
+    from mini.precision import native_dtype
 
-    return {**options, "dtype": arithmetic("cuda" if options.get("device_map") else _device(device).type)}
+    return {**options, "dtype": native_dtype(_device("auto" if options.get("device_map") else device).type)}
 
 
 def _place(name: str) -> str:

@@ -88,7 +88,8 @@ class Running:
             raise ConfigError(f"{self.name}: {fault}; use quantization, device_map or a smaller model") from fault
         except records.EngineFault as fault:
             raise ConfigError(f"{self.name}: {fault}") from fault
-        return self._generation(found, [*self.prompter.notes, *note]), tuple(found.ids)
+        computed = f"computed in {str(self.engine.model.dtype).removeprefix('torch.')}"
+        return self._generation(found, [*self.prompter.notes, *note, computed]), tuple(found.ids)
 
     def _grammar(self, schema: Mapping[str, Any] | None) -> Grammar | None:
         from plugins.backbone.engine.grammar import collisions

@@ -35,7 +35,7 @@ class HfVision(Backbone):
     device: str = Field("auto", description="auto, cpu, cuda:0, ...; device_map goes first")
     device_map: str | dict[str, int | str] | None = Field(None, description="spread over devices; needs accelerate")
     dtype: Literal["auto", "native", "float32", "bfloat16", "float16"] = Field(
-        "auto", description="auto: as stored; native: bfloat16, or float32 on a CPU that has no instructions for it"
+        "auto", description="auto: as stored; native: bfloat16 where the device has instructions for it, else float32"
     )
     quantization: Literal["none", "int8", "int4"] = "none"
     attn_implementation: Literal["sdpa", "eager"] = "sdpa"

@@ -7,7 +7,7 @@ from mini.batch import Batch
 from mini.eye import Eye
 from mini.feed import drawing
 from mini.generator.report import make_report
-from mini.grow import deepened
+from mini.grow import deepened, places
 from mini.model import Forward, make_config, make_model
 from mini.rows import collate, training_row
 from mini.tokens import Coder, train_tokenizer
@@ -55,6 +55,14 @@ def test_new_layers_learn_from_the_first_step(coder: Coder) -> None:
     for weight in (new.self_attn.o_proj.weight, new.mlp.down_proj.weight):
         assert not weight.detach().any()
         assert weight.grad.abs().max() > 0
+
+
+@pytest.mark.parametrize("old", [6, 8, 10, 12])
+def test_two_layers_more_leave_tags_and_pointers_at_their_old_layers(old: int) -> None:
+    middle, grown = (round(0.6 * layers) for layers in (old, old + 2))
+    stand = places(old, old + 2)
+    assert stand[middle - 1] == grown - 1  # the last before sentences are asked
+    assert stand[middle] == grown  # the first behind it, whose attention points
 
 
 def test_a_model_does_not_shrink(coder: Coder) -> None:

@@ -10,10 +10,10 @@ from mini.decode import Answerer
 from mini.eye import Eye
 from mini.feed import STAGES, WORDS, Feed, drawing
 from mini.generator.report import make_report
-from mini.layers import arithmetic
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
 from mini.options import parse
+from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
 from mini.train import Trainer, schedule
@@ -87,16 +87,20 @@ def test_newton_schulz_makes_matrices_orthogonal() -> None:
     torch.manual_seed(0)
     given = torch.randn(3, 16, 40)
     for dtype in (torch.bfloat16, torch.float32):
-        spread = torch.linalg.svdvals(orthogonal(given, dtype=dtype).float())
+        spread = torch.linalg.svdvals(orthogonal(given, dtype).float())
         assert 0.5 < spread.min() <= spread.max() < 1.4
 
 
 @pytest.mark.parametrize(("bf16", "amx"), [(False, False), (True, False), (False, True)])
-def test_arithmetic_is_what_the_device_is_fast_in(monkeypatch: pytest.MonkeyPatch, bf16: bool, amx: bool) -> None:
+def test_a_dtype_is_native_where_there_are_instructions_for_it(
+    monkeypatch: pytest.MonkeyPatch, bf16: bool, amx: bool
+) -> None:
     monkeypatch.setattr(torch.cpu, "_is_avx512_bf16_supported", lambda: bf16)
     monkeypatch.setattr(torch.cpu, "_is_amx_tile_supported", lambda: amx)
-    assert arithmetic("cpu") == (torch.bfloat16 if bf16 or amx else torch.float32)
-    assert arithmetic("cuda:0") == torch.bfloat16
+    assert native_dtype("cpu") == (torch.bfloat16 if bf16 or amx else torch.float32)
+    monkeypatch.setattr(torch.cuda, "is_bf16_supported", lambda including_emulation: bf16 or including_emulation)
+    assert native_dtype("cuda:0") == (torch.bfloat16 if bf16 else torch.float32)
+    assert native_dtype("mps") == torch.bfloat16
 
 
 @pytest.mark.parametrize("dtype", ["float32", "bfloat16"])
@@ -111,6 +115,23 @@ def test_mostly_narratives_are_shown_when_words_are_trained() -> None:
     modes = [make_report(seed, length=0.0, modes=STAGES["words"]).mode for seed in range(200)]
     assert 0.5 < modes.count("text") / len(modes) < 0.8
     assert {"both", "image", "none"} < set(modes)
+
+
+@pytest.mark.parametrize("told", [("--dtype", "bf16"), ("--stage", "word")])
+def test_what_no_training_knows_is_refused_at_once(told: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        parse(list(told))
+    assert f"argument {told[0]}: invalid choice: '{told[1]}'" in capsys.readouterr().err
+
+
+def test_a_folder_of_another_depth_is_not_resumed(tmp_path: Path) -> None:
+    trainer = Trainer(parse(options(tmp_path, 1)))
+    trainer.save()
+    state = torch.load(tmp_path / "state.pt", weights_only=True)
+    state["optimizer"]["master"].popitem()
+    torch.save(state, tmp_path / "state.pt")
+    with pytest.raises(ValueError, match=r"state\.pt is of a model with other layers: .* --start .*export"):
+        Trainer(parse(options(tmp_path, 1)))
 
 
 def test_the_learning_rate_decays_to_a_fiftieth() -> None:

@@ -72,13 +72,14 @@ class MiniLM:
         import torch
         from transformers import AutoModel, AutoTokenizer
 
+        from mini.precision import native_dtype
+
         folder = minilm_folder()
         check_digest(folder / "model.safetensors", MINILM_SHA256)
         self._torch = torch
         self._tokens = AutoTokenizer.from_pretrained(folder, local_files_only=True)
         self._model = AutoModel.from_pretrained(folder, local_files_only=True).eval()
-        if torch.ops.mkldnn._is_mkldnn_bf16_supported():  # half the processor time; cosine to float32 above 0.9999
-            self._model = self._model.to(torch.bfloat16)
+        self._model = self._model.to(native_dtype("cpu"))  # half the processor time; cosine to float32 above 0.9999
 
     def embed(self, texts: Sequence[str]) -> Vectors:
         """Mean of the token vectors, as the model was trained; texts of like length share a batch."""

@@ -201,7 +201,7 @@ def test_a_model_without_a_chat_template_gets_a_plain_prompt_and_a_note(tmp_path
     plain = HfVision(model=str(folders.save("qwen2_5_vl", tmp_path, None)), device="cpu", max_new_tokens=200)
     generation = plain.generate(folders.context(), QUERY, Cad())
     valid(generation)
-    assert generation.notes == ("the model has no chat template: its prompt is plain text",)
+    assert generation.notes == ("the model has no chat template: its prompt is plain text", "computed in float32")
 
 
 def test_a_template_for_texts_only_still_shows_the_pictures(tmp_path: Path) -> None:
@@ -279,16 +279,17 @@ def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> 
         HfVision(**{**backbones["llava"].model_dump(), "device": "gpu7"}).generate(folders.context(), QUERY, Cad())
 
 
-@pytest.mark.parametrize(("able", "dtype"), [(True, torch.bfloat16), (False, torch.float32)])
-def test_native_is_the_dtype_that_the_processor_multiplies_in(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, able: bool, dtype: torch.dtype
+@pytest.mark.parametrize("dtype", [torch.bfloat16, torch.float32])
+def test_native_is_the_dtype_that_the_device_multiplies_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dtype: torch.dtype
 ) -> None:
-    monkeypatch.setattr(torch.cpu, "_is_avx512_bf16_supported", lambda: able)
-    monkeypatch.setattr(torch.cpu, "_is_amx_tile_supported", lambda: False)
+    monkeypatch.setattr("mini.precision.native_dtype", lambda device: dtype if device == "cpu" else None)
     folder = str(folders.save("qwen2_5_vl", tmp_path))
     backbone = HfVision(model=folder, device="cpu", dtype="native", max_new_tokens=200)
-    valid(backbone.generate(folders.context(), QUERY, Greedy()))
+    found = backbone.generate(folders.context(), QUERY, Greedy())
+    valid(found)
     assert backbone._loaded().engine.model.dtype == dtype
+    assert f"computed in {str(dtype).removeprefix('torch.')}" in found.notes
 
 
 def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Path) -> None:
