@@ -229,7 +229,7 @@ def ask_of(config: Config) -> Ask:
     backbone, decoder = config.backbone, config.decoder
     if backbone is None or decoder is None:  # config.build refuses this pairing
         lack = "backbone" if backbone is None else "decoder"
-        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}; name one, as configs/mini.yaml does")
+        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}: name one, as mini.yaml does")
 
     def ask(context: Context, query: Query) -> Generation:
         return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)
