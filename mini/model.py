@@ -90,8 +90,6 @@ class Forward:
         self.heads = model.config.text_config.num_attention_heads
         self.kv = model.config.text_config.num_key_value_heads
         self.text_inv = self.text.rotary_emb.original_inv_freq.float().clone()
-        self.eyes_fixed = False
-        """Whether eye and vision tower are only looked through, not trained."""
         self.middle = max(1, round(len(self.text.layers) * 0.6))
         """Layers after which a sentence's end is asked what it told; the rest carry it to the answers. Of a model that
         grew by two layers (`mini.grow`), an even number, they end with the same old one as before."""
@@ -110,8 +108,7 @@ class Forward:
         """Tokens of all pictures in the order of `patch_index`, (sum of picture tokens, hidden)."""
         if not batch.sheets:
             return torch.zeros(0, self.model.lm_head.weight.shape[1], dtype=self.dtype, device=batch.ids.device)
-        with torch.set_grad_enabled(torch.is_grad_enabled() and not self.eyes_fixed):
-            found = self.pictures(self.patches(batch), batch.grids, batch.lengths)
+        found = self.pictures(self.patches(batch), batch.grids, batch.lengths)
         return found.reshape(-1, found.shape[-1])[batch.patch_index]
 
     def patches(self, batch: Batch) -> Tensor:

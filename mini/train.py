@@ -79,7 +79,8 @@ class Trainer:
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
         self.eye = Eye().to(options.device)
         self.forward = Forward(self.model, self.eye)
-        self.forward.eyes_fixed = bool(options.fixed_eyes)
+        for part in (self.eye, self.forward.vision) if options.fixed_eyes else ():
+            part.requires_grad_(False)  # without gradients of their own, which ranks would share as zeros and decay
         self.answer_tokens = answer_tokens(self.coder)
         self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
         self.taggers.to(options.device)

@@ -84,9 +84,9 @@ def make_report(
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
-    if mode in ("both", "image", "none") and not held_out:  # context-free rows too, else contrast invents driveways
+    if mode in ("both", "image", "none") and not held_out:  # without context no fewer, else contrast invents driveways
         told_of = mode == "both" and any("access" in facts for _, facts in sentences)
-        crash = mouths(Random(f"{seed} mouths"), crash, told_of)
+        crash = mouths(Random(f"{seed} mouths"), crash, told_of or mode == "none")
     drawn, shown = drawn_facts(crash, control, arrows, bool(crash.accesses)), None
     if mode == "both" and not held_out and half is None and rng.random() < CARELESS:
         shown = misdrawn(rng, crash)

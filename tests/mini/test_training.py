@@ -1,6 +1,8 @@
 """The model and its training: the fast forward is transformers' own, a resumed run is the unbroken run."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -184,6 +186,22 @@ def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
     first = torch.load(tmp_path / "first" / "state.pt", weights_only=True)["optimizer"]["master"]
     for key, value in first.items():
         assert torch.allclose(value, second.optimizer.master[key], atol=0.01 * float(value.abs().max()) + 1e-6), key
+
+
+@pytest.mark.slow
+def test_two_ranks_leave_fixed_eyes_as_they_are(tmp_path: Path) -> None:
+    told = options(tmp_path, 2)
+    told[told.index("--ranks") + 1] = "2"
+    begun = Trainer(parse(options(tmp_path, 0)))  # the same seed, so the same weights to begin with
+    before = {name: master.detach().clone() for name, master in begun.optimizer.master.items()}
+    command = [sys.executable, "-m", "mini.train", *told, "--fixed-eyes", "1"]
+    subprocess.run(command, cwd=settings.ROOT, check=True, capture_output=True, timeout=200)
+    after = torch.load(tmp_path / "state.pt", weights_only=True)["optimizer"]["master"]
+    fixed = {name for name in before if name.startswith(("eye.", "model.visual."))}
+    assert len(fixed) > 20
+    assert all(torch.equal(after[name], before[name]) for name in fixed)
+    trained = "model.language_model.layers.0.mlp.up_proj.weight"
+    assert not torch.equal(after[trained], before[trained])
 
 
 def test_a_dead_worker_is_told_at_once() -> None:
