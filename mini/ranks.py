@@ -24,10 +24,14 @@ class Ranks:
             dist.init_process_group("gloo", init_method=f"file://{meeting}", rank=rank, world_size=count)
 
     def average(self, parameters: Iterable[nn.Parameter]) -> None:
-        """Gradients to their mean over the ranks, in place."""
+        """Gradients to their mean over the ranks, in place; what has none on any rank gets none, since an optimizer
+        decays whatever has one."""
         if self.count == 1:
             return
-        owners = [p for p in parameters if p.requires_grad]
+        asked = [p for p in parameters if p.requires_grad]
+        having = torch.tensor([float(p.grad is not None) for p in asked])
+        dist.all_reduce(having)
+        owners = [p for p, ranks in zip(asked, having.tolist(), strict=True) if ranks]
         for p in owners:
             p.grad = torch.zeros_like(p) if p.grad is None else p.grad
         flat = torch.cat([p.grad.float().flatten() for p in owners])  # type: ignore[union-attr]

@@ -144,8 +144,9 @@ def _goes_on(number: str, options: tuple[str, ...]) -> bool:
 
     A decoder that goes by tokens, not by the options of a walk, asks there; behind a point it always does ("40.0").
     """
-    longer = any(other.startswith(number) and other != number for other in options)
-    return "." in number or (number.isdigit() and longer)
+    if "." in number:
+        return True
+    return number.isdigit() and any(other.startswith(number) and other != number for other in options)
 
 
 def positions(row: Row) -> Ints:

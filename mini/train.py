@@ -79,8 +79,9 @@ class Trainer:
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
         self.eye = Eye().to(options.device)
         self.forward = Forward(self.model, self.eye)
-        for part in (self.eye, self.forward.vision) if options.fixed_eyes else ():
-            part.requires_grad_(False)  # without gradients of their own, which ranks would share as zeros and decay
+        if options.fixed_eyes:
+            self.eye.requires_grad_(False)
+            self.forward.vision.requires_grad_(False)
         self.answer_tokens = answer_tokens(self.coder)
         self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
         self.taggers.to(options.device)

@@ -58,8 +58,8 @@ def test_new_layers_learn_from_the_first_step(coder: Coder) -> None:
 
 
 @pytest.mark.parametrize("old", [6, 8, 10, 12])
-def test_two_layers_more_leave_tags_and_pointers_at_their_old_layers(old: int) -> None:
-    middle, grown = (round(0.6 * layers) for layers in (old, old + 2))
+def test_two_layers_more_leave_tags_and_pointers_at_their_old_layers(coder: Coder, old: int) -> None:
+    middle, grown = (model_of(coder, layers).middle for layers in (old, old + 2))
     stand = places(old, old + 2)
     assert stand[middle - 1] == grown - 1  # the last before sentences are asked
     assert stand[middle] == grown  # the first behind it, whose attention points

@@ -14,7 +14,7 @@ from mini.feed import STAGES, WORDS, Feed, drawing
 from mini.generator.report import make_report
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
-from mini.options import parse
+from mini.options import CHOICES, parse
 from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
@@ -113,6 +113,7 @@ def test_the_arithmetic_may_be_told(tmp_path: Path, dtype: str) -> None:
 
 
 def test_mostly_narratives_are_shown_when_words_are_trained() -> None:
+    assert set(CHOICES["stage"]) == {"auto", *STAGES}
     assert sum(WORDS.values()) == pytest.approx(100)
     modes = [make_report(seed, length=0.0, modes=STAGES["words"]).mode for seed in range(200)]
     assert 0.5 < modes.count("text") / len(modes) < 0.8
@@ -189,19 +190,27 @@ def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_two_ranks_leave_fixed_eyes_as_they_are(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("how", "still", "moved"),
+    [
+        (["--fixed-eyes", "1"], ("eye.", "model.visual."), "model.language_model.layers.0.mlp.up_proj.weight"),
+        (["--stage", "pictures"], ("model.language_model.layers.",), "model.visual.blocks.0.mlp.up_proj.weight"),
+    ],
+)
+def test_two_ranks_leave_what_is_not_trained_as_it_is(
+    tmp_path: Path, how: list[str], still: tuple[str, ...], moved: str
+) -> None:
     told = options(tmp_path, 2)
     told[told.index("--ranks") + 1] = "2"
     begun = Trainer(parse(options(tmp_path, 0)))  # the same seed, so the same weights to begin with
     before = {name: master.detach().clone() for name, master in begun.optimizer.master.items()}
-    command = [sys.executable, "-m", "mini.train", *told, "--fixed-eyes", "1"]
+    command = [sys.executable, "-m", "mini.train", *told, *how]
     subprocess.run(command, cwd=settings.ROOT, check=True, capture_output=True, timeout=200)
     after = torch.load(tmp_path / "state.pt", weights_only=True)["optimizer"]["master"]
-    fixed = {name for name in before if name.startswith(("eye.", "model.visual."))}
+    fixed = {name for name in before if name.startswith(still)}
     assert len(fixed) > 20
     assert all(torch.equal(after[name], before[name]) for name in fixed)
-    trained = "model.language_model.layers.0.mlp.up_proj.weight"
-    assert not torch.equal(after[trained], before[trained])
+    assert not torch.equal(after[moved], before[moved])
 
 
 def test_a_dead_worker_is_told_at_once() -> None:
