@@ -41,7 +41,7 @@ def sheet(image: Image.Image) -> tuple[Floats, float]:
 
 
 class NorthFinder(nn.Module):
-    """A map of scores, one for each quarter turn, over places of STRIDE pixels; the best place speaks for the sheet."""
+    """A map of scores, one for each quarter turn, over places of STRIDE pixels."""
 
     def __init__(self, width: int = 8) -> None:
         super().__init__()
@@ -60,15 +60,16 @@ class NorthFinder(nn.Module):
         return self.layers(sheets[:, None])  # type: ignore[no-any-return]
 
     def scores(self, sheets: Tensor) -> Tensor:
-        """Evidence for each quarter turn, (B, 4): the highest log-odds of an arrow anywhere."""
+        """Log-odds of an arrow at each quarter turn, (B, 4), summed over places; against 0 for no arrow anywhere."""
         logits: Tensor = self(sheets)
-        return (logits[:, :4] - logits[:, 4:]).flatten(2).amax(dim=2)
+        return (logits[:, :4] - logits[:, 4:]).flatten(2).logsumexp(dim=2)
 
     @torch.inference_mode()
     def quarters(self, image: Image.Image) -> int:
-        """Quarter turns counter-clockwise by which a drawing is turned; 0 where no arrow is found."""
-        found = self.scores(torch.from_numpy(sheet(image)[0])[None])[0]
-        return int((found + torch.tensor(PRIOR).log()).argmax()) if float(found.max()) > 0 else 0
+        """Quarter turns counter-clockwise by which a drawing is turned; one without an arrow counts as upright."""
+        found = self.scores(torch.from_numpy(sheet(image)[0])[None])[0] + torch.tensor(PRIOR).log()
+        found[0] = torch.logaddexp(found[0], torch.zeros(()))
+        return int(found.argmax())
 
     def upright(self, image: Image.Image) -> Image.Image:
         """The drawing with north up, as far as quarter turns reach."""

@@ -13,7 +13,7 @@ from mini import north
 from mini.generator.report import make_report
 from mini.picture import quarters_of, turn_points, turn_upright
 from mini.renderer.draw import draw_labeled
-from mini.train_north import accuracy, lesson, loss_of, train
+from mini.train_north import _best, accuracy, lesson, loss_of, train
 
 WEIGHTS = Path(__file__).parents[2] / "mini" / "weights"
 
@@ -58,6 +58,30 @@ def test_a_few_steps_of_training_lower_the_loss(tmp_path: Path) -> None:
     again = north.load(tmp_path)
     assert again is not None
     assert torch.equal(again.layers[0].weight, found.layers[0].weight)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_the_best_place_is_asked_among_all_of_its_sheet(seed: int) -> None:
+    torch.manual_seed(seed)
+    logits, wanted = torch.randn(2, 5, 6, 6), torch.full((2, 6, 6), 4)
+    wanted[0, 1:4, 1:4] = -1
+    wanted[0, 2, 2] = 3  # an arrow turned by three quarters, and the places too near to tell
+    every, right = torch.ones(()), torch.zeros(())
+    for quarter in range(4):
+        odds = (logits[0, quarter] - logits[0, 4]).exp()
+        near = wanted[0] == -1 if quarter == 3 else torch.zeros(6, 6, dtype=torch.bool)
+        every = every + odds[~near].sum()
+        right = odds[2, 2] if quarter == 3 else right
+    none = -torch.log(1 / (1 + (logits[1, :4] - logits[1, 4:]).exp().sum()))
+    assert torch.allclose(_best(logits, wanted), (none - torch.log(right / every)) / 2, atol=1e-4)
+
+
+def test_a_drawing_without_an_arrow_counts_as_upright() -> None:
+    finder = north.NorthFinder().eval()
+    for scores, quarters in (((-9.0, -3.0, -9.0, -9.0), 0), ((-9.0, 6.0, -9.0, 1.0), 1), ((1.0, 2.0, -9.0, -9.0), 0)):
+        finder.scores = lambda _, found=scores: torch.tensor([found])  # type: ignore[method-assign]
+        assert finder.quarters(Image.new("RGB", (40, 30), "white")) == quarters
 
 
 def test_a_folder_without_the_network_is_no_fault(tmp_path: Path) -> None:
