@@ -13,6 +13,7 @@ from typing import Literal
 
 from sgcad_core.narrative.median import divided_and_median
 from sgcad_core.narrative.text import NUMBERS
+from sgcad_core.narrative.turn_lanes import spelled_out
 from sgcad_core.specs import Compass, Median
 
 Side = Literal["left", "right"]
@@ -133,9 +134,6 @@ _ORDINALS = {"second": 2, "third": 3, "fourth": 4, "fifth": 5}
 _NUMBERED_TURN = re.compile(
     rf"\bthe ({'|'.join(_ORDINALS)}) ({BOUND}) lane,? (?:which|that) (?:was|is) an? (left|right)[ -]turn(?:[ -]only)?"
     r"[ -]lane", re.I)  # fmt: skip
-_EACH_WITH_TURN = re.compile(
-    rf"\b({NUM})[ -](?:(?:through|travel|traffic)[ -])?lanes? (?:and|plus|with) (?:an?|one) (left|right)[ -]turn[ -]"
-    r"lane (?:in|for|on) (?:each|both|either) (?:direction|way|side|approach)s?\b", re.I)  # fmt: skip
 _ONE_LANE = re.compile(r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) "
                        rf"(?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))", re.I)
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
@@ -155,7 +153,7 @@ class _Item:
 
 def lane_facts(text: str) -> LaneFacts:
     """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
-    marked = _CENTER_TURN.sub(" CENTERLANE ", _NUMBERED_TURN.sub(r"the \1 \2 lane", _spelled_out(text)))
+    marked = _CENTER_TURN.sub(" CENTERLANE ", _NUMBERED_TURN.sub(r"the \1 \2 lane", spelled_out(text)))
     each = _EACH.search(marked)
     own = _OWN.search(marked)
     marked = _OWN.sub(" ", marked)
@@ -177,11 +175,6 @@ def lane_facts(text: str) -> LaneFacts:
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
         one_lane=bool(_ONE_LANE.search(text)), own=number(own[1]) if own else None,
     )  # fmt: skip
-
-
-def _spelled_out(text: str) -> str:
-    """ "two lanes and a left turn lane in each direction": both are told for each direction."""
-    return _EACH_WITH_TURN.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)
 
 
 def _numbered_turns(text: str, toward: dict[str, int], turns: dict[str, tuple[Side, ...]]) -> None:
