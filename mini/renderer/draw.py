@@ -16,7 +16,7 @@ from PIL import Image
 from mini import tags
 from mini.generator.report import Report
 from mini.generator.world import Crash
-from mini.renderer import accesses
+from mini.renderer import accesses, icons
 from mini.renderer.around import Shape, captions, north_arrow, scan
 from mini.renderer.lines import Ground, Points
 from mini.renderer.pen import BLACK, Color, Pen
@@ -157,7 +157,7 @@ def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> None:
         if i and arrows and i <= track.contact:
             _link(pen, track.poses[i - 1], track.poses[i], track.size[0])
         ghost = style == "icon" and i != track.contact and rng.random() < 0.3
-        _vehicle(rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghost)
+        icons.vehicle(rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghost)
     if rng.random() < 0.12 and tracks:
         x, y = pen.px(np.array([[tracks[0].poses[tracks[0].contact].x, tracks[0].poses[tracks[0].contact].y]]))[0]
         pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
@@ -187,69 +187,6 @@ def _link(pen: Pen, before: Pose, after: Pose, length: float) -> None:
     if gap > 2.6 * margin:
         u = (b - a) / gap
         pen.arrow(a + u * margin, b - u * margin, width=1 if pen.scale < 6 else 2, head=max(6.0, 1.1 * pen.scale))
-
-
-def _vehicle(
-    rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, style: str, label: bool, ghost: bool
-) -> None:
-    kind, size = track.actor.kind, track.size
-    if kind in ("object", "pedestrian"):
-        _round(pen, pose, size, color, track.actor.id if kind == "pedestrian" else rng.choice(("", "tree", "pole")))
-        return
-    light: Color = (235, 235, 235)
-    fill = light if ghost else color
-    if kind == "truck":
-        _truck(pen, pose, size, fill)
-    else:
-        pen.polygon(corners(pose, size), fill, BLACK, 1)
-    if style == "icon":
-        for along in (0.16, -0.3):
-            _part(pen, pose, size, along, 0.1, 0.72, (255, 255, 255) if fill != (255, 255, 255) else (120, 120, 120))
-    if style == "box" or kind in ("motorcycle", "bicycle"):
-        _triangle(pen, pose, size, (255, 255, 255) if sum(fill) < 650 else BLACK)
-    if label:
-        x, y = pen.px(
-            np.array(
-                [(pose.x - 0.12 * size[0] * math.cos(pose.heading), pose.y - 0.12 * size[0] * math.sin(pose.heading))]
-            )
-        )[0]
-        ink = (255, 255, 255) if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
-        angle = math.degrees(pose.heading + pen.turn)
-        pen.text(
-            x,
-            y,
-            track.actor.id,
-            max(7, int(size[1] * 0.62 * pen.scale)),
-            ink,
-            angle if abs(math.cos(math.radians(angle))) > 0.2 else 90,
-        )
-
-
-def _part(
-    pen: Pen, pose: Pose, size: tuple[float, float], along: float, length: float, width: float, color: Color
-) -> None:
-    x, y = pose.x + along * size[0] * math.cos(pose.heading), pose.y + along * size[0] * math.sin(pose.heading)
-    pen.polygon(corners(Pose(x, y, pose.heading), (size[0] * length, size[1] * width)), color, BLACK, 1)
-
-
-def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> None:
-    c, s = math.cos(pose.heading), math.sin(pose.heading)
-    shape = np.array([(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]) * size
-    pen.polygon(shape @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y), color, None)
-
-
-def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
-    """Tractor and trailer."""
-    _part(pen, pose, size, 0.4, 0.2, 1.0, fill)
-    _part(pen, pose, size, -0.12, 0.76, 1.0, fill)
-
-
-def _round(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: str) -> None:
-    x, y = pen.px(np.array([(pose.x, pose.y)]))[0]
-    r = max(5.0, size[0] * pen.scale * 0.6)
-    pen.draw.ellipse((x - r, y - r, x + r, y + r), fill=color, outline=BLACK)
-    if text:
-        pen.text(x, y + r + 7, text, 11)
 
 
 __all__ = ["Drawing", "Points", "Shape", "draw_labeled", "draw_report", "scan"]

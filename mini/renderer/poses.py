@@ -22,12 +22,13 @@ SIZES = {
     "van": (5.1, 2.1),
     "truck": (13.0, 2.7),
     "bus": (11.0, 2.7),
-    "motorcycle": (2.6, 1.1),
-    "bicycle": (2.2, 0.9),
+    "motorcycle": (3.4, 1.5),
+    "bicycle": (3.0, 1.3),
     "pedestrian": (1.2, 1.2),
     "object": (1.4, 1.4),
     "trailer": (10.0, 2.6),
 }
+"""Length and width in metres as drawn: what is small is drawn larger than it is, or nobody could tell what it is."""
 SIDE = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}
 KEEPS = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
 

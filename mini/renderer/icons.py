@@ -1,0 +1,155 @@
+"""Vehicles, people and things at one pose: boxes, car icons, and symbols for what is small.
+
+A motorcycle to scale has five pixels across on the sheet that the model sees, and a box of that size could as well be a
+bicycle; investigators draw a symbol there and write its name beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import numpy as np
+
+from mini.renderer.lines import Points
+from mini.renderer.pen import BLACK, Color, Pen
+from mini.renderer.poses import Pose, Track, corners
+
+WHITE: Color = (255, 255, 255)
+TWO_WHEELS = ("motorcycle", "bicycle")
+NAME = 11
+"""Pixels of a name beside a symbol."""
+
+
+def vehicle(
+    rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, style: str, label: bool, ghost: bool
+) -> None:
+    """One actor at one of its poses; `ghost`: paler than at the others."""
+    kind, size = track.actor.kind, track.size
+    if kind == "object":
+        _thing(pen, pose, size, color, rng.choice(("", "tree", "pole")))
+        return
+    if kind == "pedestrian":
+        _person(pen, pose, size, color, track.actor.id)
+        return
+    fill: Color = (235, 235, 235) if ghost else color
+    if kind in TWO_WHEELS:
+        _two_wheels(pen, pose, size, fill, kind)
+        if label:
+            _beside(pen, pose, size, track.actor.id)
+        return
+    if kind == "truck":
+        _truck(pen, pose, size, fill)
+    else:
+        pen.polygon(corners(pose, size), fill, BLACK, 1)
+    if kind == "bus":
+        _windows(pen, pose, size, fill)
+    elif style == "icon":
+        for along in (0.16, -0.3):
+            _part(pen, pose, size, (along, 0.0), (0.1, 0.72), WHITE if fill != WHITE else (120, 120, 120))
+    if style == "box":
+        _triangle(pen, pose, size, WHITE if sum(fill) < 650 else BLACK)
+    if label:
+        _name(pen, track, pose, fill, style)
+
+
+def _name(pen: Pen, track: Track, pose: Pose, fill: Color, style: str) -> None:
+    """An actor's name on its box, along it unless that stands on end."""
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    x, y = pen.px(_at(pose, (-0.12 * track.size[0] * c, -0.12 * track.size[0] * s)))[0]
+    ink = WHITE if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
+    angle = math.degrees(pose.heading + pen.turn)
+    lies = abs(math.cos(math.radians(angle))) > 0.2
+    pen.text(x, y, track.actor.id, max(7, int(track.size[1] * 0.62 * pen.scale)), ink, angle if lies else 90)
+
+
+def _beside(pen: Pen, pose: Pose, size: tuple[float, float], name: str) -> None:
+    """A name to the left of what is too small to bear it."""
+    away = size[1] / 2 + 0.8 * NAME / pen.scale
+    x, y = pen.px(_at(pose, (-away * math.sin(pose.heading), away * math.cos(pose.heading))))[0]
+    pen.text(x, y, name, NAME)
+
+
+def _at(pose: Pose, offset: tuple[float, float]) -> Points:
+    return np.array([(pose.x + offset[0], pose.y + offset[1])])
+
+
+def _local(pose: Pose, size: tuple[float, float], points: list[tuple[float, float]]) -> Points:
+    """World points of shares of a box: ahead and to the left of its middle."""
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    laid: Points = np.array(points) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
+    return laid
+
+
+def _part(
+    pen: Pen,
+    pose: Pose,
+    size: tuple[float, float],
+    middle: tuple[float, float],
+    share: tuple[float, float],
+    color: Color,
+) -> None:
+    """A box within a box, in shares of it."""
+    x, y = _local(pose, size, [middle])[0]
+    pen.polygon(corners(Pose(x, y, pose.heading), (size[0] * share[0], size[1] * share[1])), color, BLACK, 1)
+
+
+def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> None:
+    pen.polygon(_local(pose, size, [(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]), color, None)
+
+
+def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
+    """Tractor and trailer."""
+    _part(pen, pose, size, (0.4, 0.0), (0.2, 1.0), fill)
+    _part(pen, pose, size, (-0.12, 0.0), (0.76, 1.0), fill)
+
+
+def _windows(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
+    """Windows along both sides of a bus, and its windshield."""
+    pane = WHITE if sum(fill) < 650 else (120, 120, 120)
+    for along in (-0.38, -0.22, -0.06, 0.1, 0.26):
+        for side in (-0.36, 0.36):
+            _part(pen, pose, size, (along, side), (0.1, 0.18), pane)
+    _part(pen, pose, size, (0.44, 0.0), (0.05, 0.8), pane)
+
+
+def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, kind: str) -> None:
+    """Handlebars ahead; a motorcycle with a body between dark wheels, a bicycle of two rings and a bar."""
+    bars = pen.px(_local(pose, size, [(0.24, 0.5), (0.24, -0.5)]))
+    if kind == "motorcycle":
+        for along in (-0.38, 0.38):
+            _part(pen, pose, size, (along, 0.0), (0.24, 0.36), BLACK)
+        pen.polygon(
+            _local(pose, size, [(0.3, 0.1), (0.1, 0.36), (-0.3, 0.3), (-0.3, -0.3), (0.1, -0.36), (0.3, -0.1)]), fill
+        )
+        width = 2
+    else:
+        radius = max(3.0, 0.24 * size[0] * pen.scale)
+        ends = pen.px(_local(pose, size, [(-0.3, 0.0), (0.3, 0.0)]))
+        pen.draw.line([tuple(p) for p in ends], fill=fill if sum(fill) < 650 else BLACK, width=2)
+        for x, y in ends:
+            pen.draw.ellipse((x - radius, y - radius, x + radius, y + radius), outline=BLACK)
+        width = 1
+    pen.draw.line([tuple(p) for p in bars], fill=BLACK, width=width)
+
+
+def _thing(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: str) -> None:
+    """A tree or a pole: a disk with a cross in it."""
+    (x, y), r = pen.px(_at(pose, (0.0, 0.0)))[0], max(5.0, size[0] * pen.scale * 0.6)
+    pen.draw.ellipse((x - r, y - r, x + r, y + r), fill=color, outline=BLACK)
+    arm = 0.7 * r
+    for way in (-1, 1):
+        pen.draw.line([(x - arm, y - way * arm), (x + arm, y + way * arm)], fill=WHITE, width=1)
+    if text:
+        pen.text(x, y + r + 7, text, NAME)
+
+
+def _person(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, name: str) -> None:
+    """A figure of strokes, upright on the sheet however that is turned."""
+    (x, y), r = pen.px(_at(pose, (0.0, 0.0)))[0], max(7.0, size[0] * pen.scale * 0.8)
+    head = 0.34 * r
+    strokes = [((0, -0.4), (0, 0.3)), ((-0.55, -0.1), (0.55, -0.1)), ((0, 0.3), (-0.4, 1.0)), ((0, 0.3), (0.4, 1.0))]
+    for start, end in strokes:
+        pen.draw.line([(x + r * a, y + r * b) for a, b in (start, end)], fill=color, width=2)
+    pen.draw.ellipse((x - head, y - r, x + head, y - r + 2 * head), fill=color, outline=BLACK)
+    pen.text(x, y + r + 7, name, NAME)
