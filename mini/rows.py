@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,7 +52,11 @@ class Row:
 
 def evidence(coder: Coder, narrative: str, image: Image.Image | None, view: int = 0) -> Row:
     """The prompt without its task; the drawing in one of its views."""
-    row = Row(coder.text(narrative.strip()), [])
+    return _shown(coder, Row(coder.text(narrative.strip()), []), image, view)
+
+
+def _shown(coder: Coder, row: Row, image: Image.Image | None, view: int) -> Row:
+    """A row with a drawing behind what it has."""
     if image is not None:
         row.sheet, row.grid = picture.look(image, view)
         row.image_start = len(row.ids) + 1
@@ -69,12 +74,11 @@ def road_ids(road: answers.Any) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*legs, *outer, *ends]))
 
 
-def tag_text(coder: Coder, row: Row, report: Report) -> None:
-    """Note at the end of every sentence what it tells."""
-    ends = np.array([end for _, end in coder.offsets(report.narrative)])
-    before: set[str] = set()
+def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
+    """Note at the end of every sentence what it tells; `ends` are the letters behind the narrative's tokens."""
+    behind, before = np.array(ends), set[str]()
     for end, facts in report.sentences:
-        row.text_tags.append((int(np.searchsorted(ends, end)), tags.told(report.crash, facts, before)))
+        row.text_tags.append((int(np.searchsorted(behind, end)), tags.told(report.crash, facts, before)))
         before |= facts
 
 
@@ -92,11 +96,18 @@ def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int
 
 
 def training_row(
-    coder: Coder, report: Report, image: Image.Image | None, shapes: Sequence[Shape] = (), view: int = 0
+    coder: Coder,
+    report: Report,
+    image: Image.Image | None,
+    shapes: Sequence[Shape] = (),
+    view: int = 0,
+    worn: tuple[float, float] = (0.0, 0.0),
 ) -> Row:
-    """Evidence and both answers, and the tags of both sources."""
-    row = evidence(coder, report.narrative, image, view)
-    tag_text(coder, row, report)
+    """Evidence and both answers, and the tags of both sources; `worn`: shares of the narrative's tokens that are broken
+    up and of its words to spare that are left out."""
+    ids, ends = coder.worn(report.narrative, *worn, Random(f"{report.seed} worn"))
+    row = _shown(coder, Row(ids, []), image, view)
+    tag_text(row, report, ends)
     if image is not None:
         tag_picture(row, image, shapes, view)
     _answer(coder, row, ROAD, answers.write(answers.road_walk(), report.road), report)
@@ -113,6 +124,8 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     legs = {tags.TEXT[shown]} if fact == "legs" else set()  # told in parts, by those who use a leg
     told = zip(row.text_tags, report.sentences, strict=True)
     found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
+    if fact.startswith("lane.") and fact in report.doubtful:
+        found = []  # "the left lane" of nobody tells how many: the drawing does
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found

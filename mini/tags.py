@@ -13,7 +13,7 @@ from typing import Any
 
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
-from mini.generator.settled import STEM, driven
+from mini.generator.settled import FROM_LEFT, STEM, driven, lanes_beside
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
@@ -86,6 +86,8 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
             names.append(f"{key}={rest}")
         elif key == "layout" and STEM not in facts and crash.layout not in ("plain", "four"):
             continue  # three legs, and no telling which
+        elif key == "lane" and f"{FROM_LEFT}.{rest}" in facts and not _countable(crash, rest, before | facts):
+            continue
         elif key in ("layout", "control", "curve"):
             names += [name for leg in crash.legs for name in _of_leg(key, leg)]
         elif key in ("lanes", "turns", "median", "limit"):
@@ -101,6 +103,11 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
         else:
             names += [n for actor in crash.actors if actor.id == rest for n in _of_actor(key, actor)]
     return sorted({TEXT[name] for name in names if name in TEXT})
+
+
+def _countable(crash: Crash, actor: str, known: Set[str]) -> bool:
+    """Whether a lane that is named from the left can be numbered by then."""
+    return all(lanes_beside(crash, own) <= known for own in crash.actors if own.id == actor)
 
 
 def _used(crash: Crash, facts: Set[str], known: Set[str]) -> set[int]:

@@ -7,9 +7,11 @@ token. Trained on the generator's narratives only. Knows no model.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
+from random import Random
 
 from tokenizers import AddedToken, Regex, Tokenizer, decoders, models, pre_tokenizers, trainers
 from transformers import PreTrainedTokenizerFast
@@ -21,6 +23,12 @@ VISION_START, VISION_END, IMAGE, VIDEO = "<|vision_start|>", "<|vision_end|>", "
 SPECIAL = (PAD, END, ROAD, SCENARIO, VISION_START, VISION_END, IMAGE, VIDEO)
 SPLIT = r"\d{1,2}| ?[A-Za-z]+| ?[^\sA-Za-z\d]+|\s+"
 VOCABULARY = 2048
+
+_SPARE = re.compile(
+    r"\s(?:a|an|the|its|his|her|own|of|in|at|to|and|then|also|had|that|which|turn(?!s?\s+lane)|turning|lanes?|road|roadway|"
+    r"street|highway|side|direction|travel|traveling|approach)(?![A-Za-z])"
+)
+"""A word without which its sentence tells the same, to who knows how such sentences go."""
 
 CHAT_TEMPLATE = """\
 {%- set ns = namespace(task='') -%}
@@ -130,17 +138,52 @@ class Coder:
         self.raw = tokenizer.backend_tokenizer
         self.special = {name: tokenizer.convert_tokens_to_ids(name) for name in SPECIAL}
         self.piece = cache(self._piece)
+        self.halves = _halves(self.raw)
 
     def _piece(self, text: str) -> tuple[int, ...]:
         return tuple(self.raw.encode(text, add_special_tokens=False).ids)
 
-    def offsets(self, text: str) -> list[tuple[int, int]]:
-        """First letter and the letter after the last of every token of a narrative without special tokens."""
-        return list(self.raw.encode(text, add_special_tokens=False).offsets)
-
     def text(self, text: str) -> list[int]:
         """Ids of a narrative; words that look like special tokens are kept as text."""
         return list(self.raw.encode(text.replace("<|", "< |"), add_special_tokens=False).ids)
+
+    def worn(self, text: str, broken: float, dropped: float, rng: Random) -> tuple[list[int], list[int]]:
+        """Ids of a narrative without special tokens as a careless copy has it, and the letter behind each (of the first
+        parts of a broken token the letter that it begins with).
+
+        Of its tokens the share `broken` (0 to 1) is broken into what they were merged from, so that forms of a word
+        that never trained are read by their parts (after Provilkov et al. 2020, "BPE-Dropout", from the finished token
+        downwards so that a seed gives one result). Of the words that can be spared the share `dropped` is left out, so
+        that what is left of an idiom tells it ("making a left" without its turn).
+        """
+        found = self.raw.encode(text, add_special_tokens=False)
+        ids: list[int] = []
+        ends: list[int] = []
+        gap = 0
+        for token, (start, end) in zip(found.ids, found.offsets, strict=True):
+            if start >= gap and (spare := _SPARE.match(text, start)) and rng.random() < dropped:
+                gap = spare.end()
+            if end <= gap:
+                continue
+            parts = self._parts(token, broken, rng)
+            ids += parts
+            ends += [start] * (len(parts) - 1) + [end]
+        return ids, ends
+
+    def _parts(self, token: int, share: float, rng: Random) -> list[int]:
+        if token not in self.halves or rng.random() >= share:
+            return [token]
+        return [part for half in self.halves[token] for part in self._parts(half, share, rng)]
+
+
+def _halves(tokenizer: Tokenizer) -> dict[int, tuple[int, int]]:
+    """Both tokens that each merged token of letters came from; pairs of digits are copied whole and stay so."""
+    ids: dict[str, int] = tokenizer.get_vocab()
+    found: dict[int, tuple[int, int]] = {}
+    for left, right in json.loads(tokenizer.to_str())["model"]["merges"]:
+        if not any(letter.isdigit() for letter in left + right):
+            found.setdefault(ids[left + right], (ids[left], ids[right]))
+    return found
 
 
 def load_tokenizer(folder: Path) -> PreTrainedTokenizerFast:

@@ -21,6 +21,10 @@ STEM = f"{HINT}stem"
 FLOW = f"{HINT}flow"
 """With an axis: a sentence says which way the one-way road of that axis leads."""
 
+FROM_LEFT = f"{HINT}left"
+"""With an actor: a sentence names its lane from the left or by use ("the left lane", "the through lane"), which tells
+its number, counted from the right, only beside the lanes of that approach."""
+
 BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 """Facts of one road; "ways" is whether it is one-way, of however many lanes."""
 
@@ -39,10 +43,27 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
         for fact in facts
         if fact.partition(".")[0] in BY_AXIS and not _placed(crash, fact, facts, tied, sentences)
     }
-    if _legs(crash, told, tied):
-        return out
-    stems = {leg.bearing % 4 for leg in crash.stems}
-    return out | {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
+    if not _legs(crash, told, tied):
+        stems = {leg.bearing % 4 for leg in crash.stems}
+        out |= {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
+    return out | _uncounted(crash, sentences, told - out)
+
+
+def _uncounted(crash: Crash, sentences: Iterable[frozenset[str]], known: Set[str]) -> set[str]:
+    """Lanes named from the left by every sentence that names them, on an approach whose lanes are not `known`."""
+    out = set()
+    for actor in crash.actors:
+        lane = f"lane.{actor.id}"
+        named = [f"{FROM_LEFT}.{actor.id}" in facts for facts in sentences if lane in facts]
+        if named and all(named) and not lanes_beside(crash, actor) <= known:
+            out.add(lane)
+    return out
+
+
+def lanes_beside(crash: Crash, actor: Actor) -> set[str]:
+    """The facts that who counts lanes from the right must know to number one that is named from the left."""
+    leg = crash.leg(actor.leg)
+    return {f"{key}.{actor.leg % 4}" for key in ("lanes", *(("turns",) if leg and leg.turns_in else ()))}
 
 
 def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool:

@@ -93,42 +93,45 @@ def lanes(count: int, way: str = "") -> str:
     return f"{NUMBERS[count]} {way}{' ' * bool(way)}lane{'s' * (count > 1)}"
 
 
-def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> str:
-    """The lane's name: by side, number, direction or use."""
+def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> tuple[str, bool]:
+    """The lane's name: by side, number, direction or use; and whether only who knows the lanes beside it can number it,
+    from the right as answers do."""
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
-        return more.phrase(rng, more.LANE[kind], xb=xb, number=NUMBERS[number or 1], ordinal=ORDINALS[number or 1])
+        name = more.phrase(rng, more.LANE[kind], xb=xb, number=NUMBERS[number or 1], ordinal=ORDINALS[number or 1])
+        return name, kind in ("left", "turn_left")
     lanes, use = max(leg.lanes_in, 1), ""
     if leg.turns_in and number:
         use = leg.turns_in[number - 1]
     if use in ("left", "right") and rng.random() < 0.85:
-        return rng.choice(
-            (
-                f"{xb} {use}-turn lane",
-                f"{use} turn lane",
-                f"{use}-turn lane",
-                f"{xb} {use} turn lane",
-                f"dedicated {use} turn lane",
-            )
-        )
+        names = [
+            f"{xb} {use}-turn lane",
+            f"{use} turn lane",
+            f"{use}-turn lane",
+            f"{xb} {use} turn lane",
+            f"dedicated {use} turn lane",
+        ]
+        return rng.choice(names), use == "left"
     through = sum("through" in u for u in leg.turns_in)
     if use == "through" and through == 1 and rng.random() < 0.4:
-        return rng.choice((f"{xb} through-lane", "through lane", f"{xb} through lane"))
+        return rng.choice((f"{xb} through-lane", "through lane", f"{xb} through lane")), True
     if lanes == 1 or number is None:
-        return rng.choice((f"{xb} lane", f"{xb} lane", f"{xb} travel lane", "only lane"))
-    names = [
+        return rng.choice((f"{xb} lane", f"{xb} lane", f"{xb} travel lane", "only lane")), False
+    numbered = [
         f"lane {NUMBERS[number]}",
         f"{ORDINALS[number]} travel lane",
         f"{SHORT_ORDINALS[number]} travel lane",
         f"lane {number}",
         f"{ORDINALS[number]} lane",
     ]
+    sided: list[str] = []
     if number == 1:
-        names += ["right lane", f"right {xb} lane", "right travel lane", "curb lane", "far right lane"] * 2
+        sided = ["right lane", f"right {xb} lane", "right travel lane", "curb lane", "far right lane"] * 2
     elif number == lanes and use != "left":
-        names += ["left lane", f"left {xb} lane", "left travel lane", "passing lane", "inside lane"] * 2
-    elif lanes == 3:
-        names += ["middle lane", "center lane", f"middle {xb} lane"] * 3
-    return rng.choice(names)
+        sided = ["left lane", f"left {xb} lane", "left travel lane", "passing lane", "inside lane"] * 2
+    elif lanes == 3 and number == 2:
+        sided = ["middle lane", "center lane", f"middle {xb} lane"] * 3
+    name = rng.choice(numbered + sided)
+    return name, number == lanes and name in sided
 
 
 def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:

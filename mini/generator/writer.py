@@ -16,6 +16,7 @@ from mini.generator.grammar import HINT, MARK, SLOTS, Told, clause_of, fill, sen
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.scene import SceneMixin
+from mini.generator.settled import FROM_LEFT
 from mini.generator.world import WORDS, Actor, Crash
 
 CIREN_ORDER = (
@@ -162,14 +163,10 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             return WORDS[actor.leg]
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
-            self.told |= {f"lane.{actor.id}"}
-            return words.lane(  # the leg is there: actors stand on legs
-                self.rng,
-                leg,
-                actor.lane,
-                words.bound(self.rng, actor.heading),
-                self.held_out,  # type: ignore[arg-type]
-            )
+            xb = words.bound(self.rng, actor.heading)
+            name, from_left = words.lane(self.rng, leg, actor.lane, xb, self.held_out)  # type: ignore[arg-type]
+            self.told |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if from_left else set())
+            return name  # the leg is there: actors stand on legs
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
         if bearing is not None:
             return words.bound(self.rng, bearing)

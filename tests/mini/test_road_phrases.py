@@ -52,6 +52,20 @@ def test_a_bracket_tells_both_ways_and_what_lies_between(seed: int) -> None:
     assert text[0] + text[-1] == "()" or "(" not in text
 
 
+@pytest.mark.parametrize("held_out", [False, True])
+@pytest.mark.parametrize("turns", [[], ["through_right", "through", "left"], ["right", "through", "left"]])
+def test_a_lane_is_named_for_where_it_lies(held_out: bool, turns: list[str]) -> None:
+    leg = Leg(0, 3, 1, turns)
+    for number in (1, 2, 3):
+        told = [words.lane(Random(i), leg, number, "northbound", held_out) for i in range(400)]
+        for name, from_left in told:
+            assert not re.match(r"(middle|center)\b", name) or number == 2, name
+            assert not re.search(r"^(left|passing|inside|dedicated left)\b", name) or (number == 3 and from_left), name
+            assert not re.search(r"^(right|curb)\b", name) or (number == 1 and not from_left), name
+            numbered = re.fullmatch(r"lane (\w+)|(first|second|third|1st|2nd|3rd) (travel )?lane", name)
+            assert not numbered or not from_left, name
+
+
 def test_the_held_out_side_tells_lanes_as_it_always_did() -> None:
     leg, back = Leg(0, 3, 2, ["right", "through", "left"]), Leg(4, 2, 2)
     told = {words.split(Random(i), leg, back, "southbound", "northbound", True) for i in range(60)}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mini.evaluate import source
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
-from mini.generator.settled import AXIS, FLOW, ROAD, STEM, unsettled
+from mini.generator.settled import AXIS, FLOW, FROM_LEFT, ROAD, STEM, unsettled
 from mini.generator.targets import GUESS, LIKELY, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
 
@@ -79,6 +79,30 @@ def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() 
                 assert "one-way" in report.narrative or "only" in report.narrative.lower()
     assert len(weights) > 10
     assert all(sorted(found) == [LIKELY, SURE] for found in weights)
+
+
+@pytest.mark.parametrize("turns", [[], ["through", "left"]])
+def test_a_lane_named_from_the_left_needs_the_lanes_beside_it(turns: list[str]) -> None:
+    crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
+    crash.leg(0).turns_in = turns  # type: ignore[union-attr]
+    heading, lanes = {"heading.V1", f"{ROAD}.0"}, frozenset({"layout", "lanes.0", f"{AXIS}.0"})
+    named = frozenset({*heading, "lane.V1", f"{FROM_LEFT}.V1"})
+    assert "lane.V1" in unsettled(crash, [named])
+    assert ("lane.V1" in unsettled(crash, [named, lanes])) == bool(turns)
+    assert "lane.V1" not in unsettled(crash, [named, lanes | {"turns.0"}])
+    assert "lane.V1" not in unsettled(crash, [named, frozenset({*heading, "lane.V1"})])  # "lane two"
+
+
+def test_the_left_lane_of_nobody_knows_how_many_is_a_guess() -> None:
+    found = 0
+    for seed in range(600):
+        report = make_report(seed, modes={"text": 1.0})
+        for index, actor in enumerate(report.crash.actors):
+            if f"lane.{actor.id}" in report.doubtful:
+                found += 1
+                assert actor.lane == report.crash.leg(actor.leg).lanes_in or "through" in report.narrative  # type: ignore[union-attr]
+                assert report.weight(("actors", index, "lane")) == GUESS
+    assert found > 5
 
 
 def test_roads_alike_need_no_direction_of_their_own() -> None:

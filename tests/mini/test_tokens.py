@@ -1,6 +1,9 @@
 """The tokenizer: text comes back, fragments are single tokens, pieces join to what the tokenizer would give."""
 
 import json
+import re
+from collections import Counter
+from random import Random
 
 import pytest
 from hypothesis import given, settings
@@ -9,6 +12,12 @@ from hypothesis import strategies as st
 from mini.generator.report import make_report
 from mini.rows import training_row
 from mini.tokens import ROAD, SCENARIO, SPECIAL, Coder, fragments, train_tokenizer
+
+_SPARED = (
+    "a an the its his her own of in at to and then also had that which turn turning lane lanes road roadway street "
+    "highway side direction travel traveling approach"
+)
+SPARED = set(_SPARED.split())
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +52,47 @@ def test_pieces_join_to_the_tokens_of_the_whole_answer(coder: Coder) -> None:
         end = row.ids.index(coder.special[SCENARIO])
         whole = coder.raw.encode(json.dumps(report.road, separators=(",", ":")), add_special_tokens=False).ids
         assert row.ids[start:end] == whole
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_a_copy_without_wear_is_the_narrative(coder: Coder, seed: int) -> None:
+    text = make_report(seed, modes={"text": 1.0}).narrative
+    ids, ends = coder.worn(text, 0.0, 0.0, Random(seed))
+    assert ids == coder.text(text)
+    assert ends == [end for _, end in coder.raw.encode(text, add_special_tokens=False).offsets]
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), broken=st.floats(0, 1))
+def test_broken_tokens_join_to_the_same_text_and_spare_numbers(coder: Coder, seed: int, broken: float) -> None:
+    report = make_report(seed, modes={"text": 1.0}, length=0.3)
+    ids, ends = coder.worn(report.narrative, broken, 0.0, Random(seed))
+    assert (ids, ends) == coder.worn(report.narrative, broken, 0.0, Random(seed))
+    assert coder.tokenizer.decode(ids) == report.narrative
+    assert ends == sorted(ends)
+    assert {end for end, _ in report.sentences} <= set(ends)
+    pairs = [t for t in coder.text(report.narrative) if coder.tokenizer.decode([t]).isdigit()]
+    assert [t for t in ids if coder.tokenizer.decode([t]).isdigit()] == pairs
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_of_words_left_out_none_tells_anything(coder: Coder, seed: int) -> None:
+    report = make_report(seed, modes={"text": 1.0}, length=0.3)
+    ids, ends = coder.worn(report.narrative, 0.0, 1.0, Random(seed))
+    before, after = (Counter(re.findall("[A-Za-z]+", text)) for text in (report.narrative, coder.tokenizer.decode(ids)))
+    assert set(before - after) <= SPARED
+    assert not after - before
+    assert {end for end, _ in report.sentences} <= set(ends)  # full stops stay
+
+
+@pytest.mark.parametrize(("text", "left"), [
+    (" making a left turn.", " making left."), (" in the left turn lane of the road", " left turn"),
+    (" was struck by V1 from the north", " was struck by V1 from north"), (" two-lane", " two-lane"),
+])  # fmt: skip
+def test_what_is_left_of_an_idiom_tells_it(coder: Coder, text: str, left: str) -> None:
+    assert coder.tokenizer.decode(coder.worn(text, 0.0, 1.0, Random(0))[0]) == left
 
 
 def test_the_template_puts_evidence_first_and_the_task_last(coder: Coder) -> None:
