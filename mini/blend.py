@@ -20,8 +20,8 @@ from mini import eye
 from mini.grow import deepened, depth
 
 MODEL = "model.safetensors"
-LAYERS = "model.layers."
-"""What a saved model calls its text layers."""
+STACKS = ("model.layers.", "visual.blocks.")
+"""What a saved model calls its text layers and the blocks of its vision tower."""
 
 
 def blended(before: Mapping[str, Tensor], after: Mapping[str, Tensor], share: float) -> dict[str, Tensor]:
@@ -30,8 +30,10 @@ def blended(before: Mapping[str, Tensor], after: Mapping[str, Tensor], share: fl
     Raises:
         ValueError: both are not weights of one architecture, however deep.
     """
-    layers = depth(after, LAYERS)
-    early = deepened(before, layers, LAYERS) if layers else before
+    early = dict(before)
+    for stack in STACKS:
+        layers = depth(after, stack)
+        early = deepened(early, layers, stack) if layers and depth(early, stack) else early
     if early.keys() != after.keys() or any(early[name].shape != after[name].shape for name in after):
         raise ValueError("the two folders hold weights of different architectures: blend states of one training")
     mean = {name: torch.lerp(early[name].float(), value.float(), share) for name, value in after.items()}

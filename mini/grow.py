@@ -8,12 +8,14 @@ import torch
 from torch import Tensor
 
 LAYERS = "model.language_model.layers."
-SILENT = ("self_attn.o_proj.weight", "mlp.down_proj.weight")
+BLOCKS = "model.visual.blocks."
+"""What a model calls its text layers and the blocks of its vision tower."""
+SILENT = ("self_attn.o_proj.weight", "attn.proj.weight", "attn.proj.bias", "mlp.down_proj.weight", "mlp.down_proj.bias")
 """What a layer adds to its input comes through these."""
 
 
 def depth(weights: Mapping[str, Tensor], prefix: str = LAYERS) -> int:
-    """Text layers in weights by name; 0 where no name starts with `prefix` and a number."""
+    """Layers in weights by name; 0 where no name starts with `prefix` and a number."""
     return 1 + max(
         (int(name[len(prefix) :].partition(".")[0]) for name in weights if name.startswith(prefix)), default=-1
     )
@@ -25,8 +27,8 @@ def places(found: int, layers: int) -> list[int]:
 
 
 def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -> dict[str, Tensor]:
-    """`weights` by parameter name, with `layers` text layers, at least as many as there are; their names start with
-    `prefix` and a number.
+    """`weights` by parameter name, with `layers` layers, at least as many as there are; their names start with `prefix`
+    and a number.
 
     The old layers keep their order and spread evenly; each new one copies the one before it and adds nothing yet
     (its outputs are zero), so that the answers stay the same and gradients find features at once.
@@ -36,7 +38,9 @@ def deepened(weights: Mapping[str, Tensor], layers: int, prefix: str = LAYERS) -
     """
     found = depth(weights, prefix)
     if layers < found:
-        raise ValueError(f"weights of {found} text layers cannot begin a model of {layers}: start from smaller ones")
+        raise ValueError(
+            f"weights of {found} layers ({prefix}) cannot begin a model of {layers}: start from smaller ones"
+        )
     old = places(found, layers)
     grown = {name: value for name, value in weights.items() if not name.startswith(prefix)}
     for place in range(layers):

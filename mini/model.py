@@ -23,8 +23,8 @@ MERGE = 2
 
 
 def make_config(vocabulary: int, special: dict[str, int], size: str = "mini") -> Qwen2_5_VLConfig:
-    """The config of a size: "mini" (about 6.5 M parameters) or "tiny" for tests."""
-    hidden, layers, heads, inner, depth, vision = {"mini": (192, 12, 4, 512, 4, 128), "tiny": (64, 2, 2, 96, 1, 32)}[
+    """The config of a size: "mini" (about 8.5 M parameters) or "tiny" for tests."""
+    hidden, layers, heads, inner, depth, vision = {"mini": (192, 16, 4, 512, 6, 128), "tiny": (64, 2, 2, 96, 1, 32)}[
         size
     ]
     head = hidden // heads
@@ -90,9 +90,10 @@ class Forward:
         self.heads = model.config.text_config.num_attention_heads
         self.kv = model.config.text_config.num_key_value_heads
         self.text_inv = self.text.rotary_emb.original_inv_freq.float().clone()
-        self.middle = max(1, round(len(self.text.layers) * 0.6))
-        """Layers after which a sentence's end is asked what it told; the rest carry it to the answers. Of a model that
-        grew by two layers (`mini.grow`), an even number, they end with the same old one as before."""
+        self.middle = max(1, round(len(self.text.layers) * 0.59))
+        """Layers after which a sentence's end is asked what it told; the rest carry it to the answers. Of six to
+        fourteen layers that grow by two (`mini.grow`), and of twelve that grow by four, they end with the same old one
+        as before."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
 
     @property

@@ -28,7 +28,7 @@ from mini.export import export
 from mini.eye import Eye
 from mini.feed import Feed, moment
 from mini.generator.report import make_report
-from mini.grow import deepened
+from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
@@ -39,6 +39,8 @@ from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
 
 TOKENIZER_BASE = 40_000_000
 HEADS = "tags.safetensors"
+EYES = ("model.visual.", "heads.picture.", "eye.")
+"""How the names of those parameters begin that see drawings."""
 
 
 def schedule(progress: float, hold: float = 0.4) -> float:
@@ -127,9 +129,12 @@ class Trainer:
         found = self._exported(self.options.start)
         if self.options.eyes:
             eyes = self._exported(self.options.eyes)
-            found |= {k: v for k, v in eyes.items() if k.startswith(("model.visual.", "heads.picture.", "eye."))}
+            found = {k: v for k, v in found.items() if not k.startswith(EYES)}  # of a deeper tower nothing may stay
+            found |= {k: v for k, v in eyes.items() if k.startswith(EYES)}
         masters = self.optimizer.master
-        found = deepened(found, self.model.config.text_config.num_hidden_layers)
+        config = self.model.config
+        found = deepened(found, config.text_config.num_hidden_layers)
+        found = deepened(found, config.vision_config.depth, BLOCKS)
         fits = {k: v for k, v in found.items() if v.shape == masters[k].shape or not k.startswith("heads.")}
         with torch.no_grad():
             for key, value in fits.items():

@@ -10,8 +10,10 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from mini import eye
-from mini.blend import LAYERS, MODEL, blend, blended
+from mini.blend import MODEL, STACKS, blend, blended
 from mini.grow import SILENT
+
+LAYERS, BLOCKS = STACKS
 
 
 def weights_of(layers: int, seed: int) -> dict[str, Tensor]:
@@ -39,9 +41,23 @@ def test_a_shallower_one_is_deepened_first() -> None:
     assert torch.allclose(half, after[f"{LAYERS}1.{SILENT[0]}"] / 2)
 
 
+def test_of_towers_too_the_shallower_one_is_deepened_first() -> None:
+    before, after = ({**weights_of(2, k), **_blocks(2 + k, k)} for k in (0, 1))
+    found = blended(before, after, 0.0)
+    assert found.keys() == after.keys()
+    assert torch.equal(found[f"{BLOCKS}2.norm.weight"], before[f"{BLOCKS}1.norm.weight"])
+    assert not any(found[f"{BLOCKS}1.{part}"].any() for part in SILENT)
+
+
+def _blocks(count: int, seed: int) -> dict[str, Tensor]:
+    return {k.replace(LAYERS, BLOCKS): v for k, v in weights_of(count, seed + 9).items() if k.startswith(LAYERS)}
+
+
 def test_weights_of_two_architectures_are_refused() -> None:
     with pytest.raises(ValueError, match="different architectures"):
         blended(weights_of(2, 0), {**weights_of(2, 1), "embed": torch.randn(5, 3)}, 0.5)
+    with pytest.raises(ValueError, match="different architectures"):
+        blended({"embed": torch.randn(4, 3)}, weights_of(2, 1), 0.5)
     with pytest.raises(ValueError, match="start from smaller ones"):
         blended(weights_of(3, 0), weights_of(2, 1), 0.5)
 

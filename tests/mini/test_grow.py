@@ -7,7 +7,7 @@ from mini.batch import Batch
 from mini.eye import Eye
 from mini.feed import drawing
 from mini.generator.report import make_report
-from mini.grow import deepened, places
+from mini.grow import BLOCKS, deepened, places
 from mini.model import Forward, make_config, make_model
 from mini.rows import collate, training_row
 from mini.tokens import Coder, train_tokenizer
@@ -18,8 +18,10 @@ def coder() -> Coder:
     return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(100)))
 
 
-def model_of(coder: Coder, layers: int) -> Forward:
+def model_of(coder: Coder, layers: int, blocks: int = 1) -> Forward:
     config = make_config(len(coder.tokenizer), coder.special, "tiny")
+    config.vision_config.depth = blocks
+    config.vision_config.fullatt_block_indexes = list(range(blocks))
     config.text_config.num_hidden_layers = layers
     config.text_config.layer_types = ["full_attention"] * layers
     torch.manual_seed(layers)
@@ -46,6 +48,18 @@ def test_a_deepened_model_answers_as_the_one_it_grew_from(coder: Coder, old: int
         assert (small.hidden(batch) - large.hidden(batch)).abs().max() < 1e-4
 
 
+@pytest.mark.parametrize(("old", "new"), [(1, 2), (2, 3), (2, 4)])
+def test_a_deepened_tower_sees_what_the_one_saw_that_it_grew_from(coder: Coder, old: int, new: int) -> None:
+    small, large = model_of(coder, 2, old), model_of(coder, 2, new)
+    grown = deepened(dict(small.model.named_parameters()), new, BLOCKS)
+    assert grown.keys() == dict(large.model.named_parameters()).keys()
+    large.model.load_state_dict(grown, strict=False)
+    batch = batch_of(coder)
+    with torch.no_grad():
+        assert small.seen(batch).abs().max() > 0.1
+        assert (small.seen(batch) - large.seen(batch)).abs().max() < 1e-4
+
+
 def test_new_layers_learn_from_the_first_step(coder: Coder) -> None:
     small, large = model_of(coder, 2), model_of(coder, 3)
     large.model.load_state_dict(deepened(dict(small.model.named_parameters()), 3), strict=False)
@@ -57,14 +71,14 @@ def test_new_layers_learn_from_the_first_step(coder: Coder) -> None:
         assert weight.grad.abs().max() > 0
 
 
-@pytest.mark.parametrize("old", [6, 8, 10, 12])
-def test_two_layers_more_leave_tags_and_pointers_at_their_old_layers(coder: Coder, old: int) -> None:
-    middle, grown = (model_of(coder, layers).middle for layers in (old, old + 2))
-    stand = places(old, old + 2)
+@pytest.mark.parametrize(("old", "new"), [(6, 8), (8, 10), (10, 12), (12, 14), (12, 16)])
+def test_growing_leaves_tags_and_pointers_at_their_old_layers(coder: Coder, old: int, new: int) -> None:
+    middle, grown = (model_of(coder, layers).middle for layers in (old, new))
+    stand = places(old, new)
     assert stand[middle - 1] == grown - 1  # the last before sentences are asked
     assert stand[middle] == grown  # the first behind it, whose attention points
 
 
 def test_a_model_does_not_shrink(coder: Coder) -> None:
-    with pytest.raises(ValueError, match="3 text layers cannot begin a model of 2"):
+    with pytest.raises(ValueError, match=r"3 layers .* cannot begin a model of 2"):
         deepened(dict(model_of(coder, 3).model.named_parameters()), 2)

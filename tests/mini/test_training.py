@@ -7,18 +7,20 @@ from pathlib import Path
 
 import pytest
 import torch
+from safetensors.torch import load_file, save_file
 
 from mini.decode import Answerer
 from mini.eye import Eye
 from mini.feed import STAGES, WORDS, Feed, drawing
 from mini.generator.report import make_report
+from mini.grow import deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
 from mini.options import CHOICES, parse
 from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
-from mini.train import Trainer, schedule
+from mini.train import EYES, Trainer, schedule
 from sgcad_core import settings
 
 torch.set_num_threads(1)
@@ -187,6 +189,27 @@ def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
     first = torch.load(tmp_path / "first" / "state.pt", weights_only=True)["optimizer"]["master"]
     for key, value in first.items():
         assert torch.allclose(value, second.optimizer.master[key], atol=0.01 * float(value.abs().max()) + 1e-6), key
+
+
+@pytest.mark.slow
+def test_the_eyes_of_other_weights_come_whole(tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        Trainer(parse(options(tmp_path / name, 1))).run()
+    first, second = (tmp_path / name / "export" for name in ("first", "second"))
+    _deeper(first)
+    third = Trainer(parse([*options(tmp_path / "third", 1), "--start", str(first), "--eyes", str(second)]))
+    want = torch.load(tmp_path / "second" / "state.pt", weights_only=True)["optimizer"]["master"]
+    for key in (key for key in want if key.startswith(EYES)):
+        assert torch.allclose(third.optimizer.master[key], want[key], atol=0.01 * float(want[key].abs().max()) + 1e-6)
+
+
+def _deeper(folder: Path) -> None:
+    """An export whose vision tower has a block more."""
+    config = json.loads((folder / "config.json").read_text())
+    config["vision_config"] |= {"depth": 2, "fullatt_block_indexes": [0, 1]}
+    (folder / "config.json").write_text(json.dumps(config))
+    weights = load_file(folder / "model.safetensors")
+    save_file(deepened(weights, 2, "visual.blocks."), folder / "model.safetensors", metadata={"format": "pt"})
 
 
 @pytest.mark.slow
