@@ -30,6 +30,7 @@ class Fused(RoadWriter):
     """A template, and how the model is asked beside it."""
 
     asks_model: ClassVar[bool] = True
+    version: ClassVar[str] = "2"
 
     template: Template = Template()
     """Its parameters stand for what neither source tells."""

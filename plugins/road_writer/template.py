@@ -31,6 +31,7 @@ class Template(RoadWriter):
     """Scale, lane and speed parameters stand for what a report leaves out."""
 
     asks_model: ClassVar[bool] = False
+    version: ClassVar[str] = "2"
 
     lanes_each_way: Annotated[int, Field(ge=1, le=4)] = 1
     """Where no lanes are stated: most roads of police-reported crashes at that are two-lane, two-way."""

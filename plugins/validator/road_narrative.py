@@ -37,7 +37,7 @@ class RoadNarrative(Validator):
     """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes."""
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "5"
+    version: ClassVar[str] = "6"
     tolerance_deg: float = 35.0
     """Between a road as drawn and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
