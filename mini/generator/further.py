@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from importlib.resources import files
+from math import ceil
 from typing import Any
 
 SHARE = 0.6
@@ -24,7 +25,7 @@ def enlarge(name: str, lists: dict[str, Any]) -> None:
         key, _, inner = heading.partition(".")
         options: list[str] = lists[key][inner] if inner else lists[key]
         trained = [clause for clause in options if not clause.startswith("~")]
-        times = round(len(more) * (1 - SHARE) / SHARE / len(trained))
+        times = ceil(len(more) * (1 - SHARE) / SHARE / len(trained))
         options += trained * max(0, times - 1) + more
 
 
