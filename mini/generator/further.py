@@ -1,8 +1,9 @@
 """More clauses beside those that follow counts of real reports: breadth of English, so that words of reports that
 nobody foresaw have been met in some sentence.
 
-`phrases/NAME.txt` holds `== LIST` or `== LIST.key` lines, below each a clause or phrase a line. They only train: the
-held-out side of a list stays as it is.
+`phrases/NAME.txt` and `phrases/training/NAME.txt` hold `== LIST` or `== LIST.key` lines, below each a clause or phrase
+a line. The held-out side of a list stays as it is; of a list without one the first serve both sides, those of
+`training`, marked with a "+", only train.
 """
 
 from __future__ import annotations
@@ -14,26 +15,43 @@ from typing import Any
 
 SHARE = 0.6
 """How often a choice should fall on what stands in the files, at most; the rest follows the counts."""
+TRAINS = "+"
+"""First letter of clauses that only train, as "~" is of held-out ones."""
 
 
 def enlarge(name: str, lists: dict[str, Any]) -> None:
-    """Put the clauses of a file into the lists of a module, in place.
+    """Put the clauses of the files of a name into the lists of a module, in place.
 
     What was in a list is repeated so often that it keeps its share. Raises KeyError for a list that there is not.
     """
+    counted: dict[str, list[str]] = {}
     for heading, more in _read(name).items():
-        key, _, inner = heading.partition(".")
-        options: list[str] = lists[key][inner] if inner else lists[key]
-        trained = [clause for clause in options if not clause.startswith("~")]
-        times = ceil(len(more) * (1 - SHARE) / SHARE / len(trained))
-        options += trained * max(0, times - 1) + more
+        options = _listed(lists, heading)
+        counted[heading] = [clause for clause in options if not clause.startswith("~")]
+        times = round(_wanted(more, counted[heading]))
+        options += counted[heading] * max(0, times - 1) + more
+    for heading, more in _read(f"training/{name}").items():
+        options = _listed(lists, heading)
+        trained = counted.get(heading) or [clause for clause in options if not clause.startswith("~")]
+        again = trained * ceil(_wanted(more, trained))
+        options += [TRAINS + clause for clause in again + more]
+
+
+def _listed(lists: dict[str, Any], heading: str) -> list[str]:
+    key, _, inner = heading.partition(".")
+    found: list[str] = lists[key][inner] if inner else lists[key]
+    return found
+
+
+def _wanted(more: list[str], counted: list[str]) -> float:
+    """How often the counted clauses must stand beside further ones to keep their share."""
+    return len(more) * (1 - SHARE) / SHARE / len(counted)
 
 
 def _read(name: str) -> dict[str, list[str]]:
     found: dict[str, list[str]] = defaultdict(list)
-    heading = ""
-    text = files("mini.generator").joinpath(f"phrases/{name}.txt").read_text(encoding="utf-8")
-    for line in text.splitlines():
+    heading, file = "", files("mini.generator").joinpath(f"phrases/{name}.txt")
+    for line in file.read_text(encoding="utf-8").splitlines() if file.is_file() else ():
         if line.startswith("== "):
             heading = line.removeprefix("== ")
         elif line:

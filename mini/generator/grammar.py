@@ -44,9 +44,10 @@ def tables(**texts: str) -> dict[str, list[str]]:
 
 
 def families(options: list[str], held_out: bool) -> list[str]:
-    """The clauses of one side of the split; a list without held-out clauses serves both."""
-    kept = [o.lstrip("~") for o in options if o.startswith("~") == held_out]
-    return kept or [o.lstrip("~") for o in options]
+    """The clauses of one side of the split; a list without held-out clauses serves both, but for those marked "+"."""
+    if not held_out:
+        return [o.removeprefix("+") for o in options if not o.startswith("~")] or [o.lstrip("~") for o in options]
+    return [o[1:] for o in options if o.startswith("~")] or [o for o in options if not o.startswith("+")]
 
 
 def choose(rng: Random, clause: str) -> str:

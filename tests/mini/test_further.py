@@ -17,7 +17,7 @@ from mini.generator import (
     clauses_scene,
     further,
 )
-from mini.generator.grammar import SLOTS
+from mini.generator.grammar import SLOTS, families
 
 MODULES: dict[str, ModuleType] = {
     "codes": clauses_codes,
@@ -28,7 +28,12 @@ MODULES: dict[str, ModuleType] = {
     "road": clauses_road,
     "scene": clauses_scene,
 }
-LISTS = [(name, heading) for name in MODULES for heading in further._read(name)]
+LISTS = [
+    (name, folder, heading)
+    for name in MODULES
+    for folder in ("", "training/")
+    for heading in further._read(folder + name)
+]
 RUN = 4
 """Words in a row that no further clause may share with held-out ones alone."""
 ALIKE = {"dir": "from", "surf": "Surf", "road": "Road"}
@@ -63,9 +68,9 @@ def runs(clauses: Iterator[str]) -> set[tuple[str, ...]]:
     return found
 
 
-@pytest.mark.parametrize(("name", "heading"), LISTS)
-def test_further_clauses_say_what_their_list_says_and_nothing_held_out(name: str, heading: str) -> None:
-    more, whole = set(further._read(name)[heading]), listed(name, heading)
+@pytest.mark.parametrize(("name", "folder", "heading"), LISTS)
+def test_further_clauses_say_what_their_list_says_and_nothing_held_out(name: str, folder: str, heading: str) -> None:
+    more, whole = set(further._read(folder + name)[heading]), [c.removeprefix("+") for c in listed(name, heading)]
     own = [clause for clause in whole if clause.lstrip("~") not in more]
     slots = {slot for clause in own for slot in SLOTS.findall(clause)}
     slots |= {other for slot, other in ALIKE.items() if slot in slots}
@@ -81,18 +86,28 @@ def test_further_clauses_say_what_their_list_says_and_nothing_held_out(name: str
         assert not (runs(iter([clause])) & private), clause
 
 
-@pytest.mark.parametrize(("name", "heading"), LISTS)
-def test_the_counted_clauses_keep_their_share(name: str, heading: str) -> None:
-    more, whole = set(further._read(name)[heading]), listed(name, heading)
-    trained = [clause for clause in whole if not clause.startswith("~")]
+@pytest.mark.parametrize(("name", "folder", "heading"), LISTS)
+def test_the_counted_clauses_keep_their_share(name: str, folder: str, heading: str) -> None:
+    more = {clause for part in ("", "training/") for clause in further._read(part + name)[heading]}
+    trained = families(listed(name, heading), False)
     share = sum(clause in more for clause in trained) / len(trained)
-    assert more <= set(trained)
+    assert set(further._read(folder + name)[heading]) <= set(trained)
     assert share <= further.SHARE + 0.15
+
+
+@pytest.mark.parametrize(("name", "folder", "heading"), LISTS)
+def test_what_joined_for_training_is_never_told_when_held_out(name: str, folder: str, heading: str) -> None:
+    held = set(families(listed(name, heading), True))
+    assert held
+    assert not held & set(further._read(f"training/{name}")[heading])
+    assert not any(clause.startswith(("~", "+")) for clause in held | set(families(listed(name, heading), False)))
 
 
 def test_a_clause_is_written_once() -> None:
     for name in MODULES:
-        for heading, more in further._read(name).items():
+        training = further._read(f"training/{name}")
+        for heading in {*further._read(name), *training}:
+            more = [*further._read(name)[heading], *training[heading]]
             assert len(set(more)) == len(more), heading
 
 
