@@ -1,4 +1,4 @@
-"""Symbols of drawn actors: kinds differ at the size that the model sees, and small ones have their names beside them."""
+"""Symbols of drawn actors: kinds differ at the size that the model sees, small ones have their names beside them."""
 
 import math
 from itertools import combinations
