@@ -106,7 +106,7 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
 
 
 def _countable(crash: Crash, actor: str, known: Set[str]) -> bool:
-    """Whether a lane that is named from the left can be numbered by then."""
+    """Whether a lane that is named from the left can be numbered by then, wherever the road may lie."""
     return all(lanes_beside(crash, own) <= known for own in crash.actors if own.id == actor)
 
 

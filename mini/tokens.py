@@ -25,8 +25,8 @@ SPLIT = r"\d{1,2}| ?[A-Za-z]+| ?[^\sA-Za-z\d]+|\s+"
 VOCABULARY = 2048
 
 _SPARE = re.compile(
-    r"\s(?:a|an|the|its|his|her|own|of|in|at|to|and|then|also|had|that|which|turn(?!s?\s+lane)|turning|lanes?|road|roadway|"
-    r"street|highway|side|direction|travel|traveling|approach)(?![A-Za-z])"
+    r"\s(?:a|an|the|its|his|her|own|of|in|at|to|and|then|also|had|that|which|turn(?:ing)?(?!s?[\s-]+lane)|lanes?|road|roadway|"
+    r"street|highway|side|direction|travel|traveling|approach)(?![A-Za-z'-]|\.[a-z])"
 )
 """A word without which its sentence tells the same, to who knows how such sentences go."""
 

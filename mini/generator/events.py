@@ -196,13 +196,12 @@ class EventsMixin:
         """Now and then with a few words before or behind every clause."""
         if self.held_out:
             return options
+        options = families(options, False)
         lead = f"{choose(self.rng, self.rng.choice(told.LEADS))}, " if self.rng.random() < 0.15 else ""
         tail = choose(self.rng, self.rng.choice(told.TAILS)) if self.rng.random() < 0.12 else ""
         if not lead:
             return [clause + tail for clause in options]
-        return [
-            f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith(("~", "["))
-        ]
+        return [f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith("[")]
 
     def _area(self, area: str) -> str:
         return clause_of(self.rng, told.AREA[area], self.held_out)

@@ -16,6 +16,7 @@ from mini.renderer.pen import BLACK, Color, Pen
 from mini.renderer.poses import Pose, Track, corners
 
 WHITE: Color = (255, 255, 255)
+GRAY: Color = (120, 120, 120)
 TWO_WHEELS = ("motorcycle", "bicycle")
 NAME = 11
 """Pixels of a name beside a symbol."""
@@ -46,7 +47,7 @@ def vehicle(
         _windows(pen, pose, size, fill)
     elif style == "icon":
         for along in (0.16, -0.3):
-            _part(pen, pose, size, (along, 0.0), (0.1, 0.72), WHITE if fill != WHITE else (120, 120, 120))
+            _part(pen, pose, size, (along, 0.0), (0.1, 0.72), WHITE if fill != WHITE else GRAY)
     if style == "box":
         _triangle(pen, pose, size, WHITE if sum(fill) < 650 else BLACK)
     if label:
@@ -106,7 +107,7 @@ def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None
 
 def _windows(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
     """Windows along both sides of a bus, and its windshield."""
-    pane = WHITE if sum(fill) < 650 else (120, 120, 120)
+    pane = WHITE if sum(fill) < 650 else GRAY
     for along in (-0.38, -0.22, -0.06, 0.1, 0.26):
         for side in (-0.36, 0.36):
             _part(pen, pose, size, (along, side), (0.1, 0.18), pane)
@@ -126,7 +127,7 @@ def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, ki
     else:
         radius = max(3.0, 0.24 * size[0] * pen.scale)
         ends = pen.px(_local(pose, size, [(-0.3, 0.0), (0.3, 0.0)]))
-        pen.draw.line([tuple(p) for p in ends], fill=fill if sum(fill) < 650 else BLACK, width=2)
+        pen.draw.line([tuple(p) for p in ends], fill=fill if sum(fill) < 650 else GRAY, width=2)
         for x, y in ends:
             pen.draw.ellipse((x - radius, y - radius, x + radius, y + radius), outline=BLACK)
         width = 1

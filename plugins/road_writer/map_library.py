@@ -22,6 +22,7 @@ class MapLibrary(RoadWriter):
     """The nearest map by legs, lanes, shape and control, turned so that its legs lie as told."""
 
     asks_model: ClassVar[bool] = False
+    version: ClassVar[str] = "2"
     folder: Path | None = None
     """Maps of your own (.net.xml, .xodr); the project's twenty where none is named."""
 

@@ -35,6 +35,7 @@ class OsmDirect(RoadWriter):
     """The nearest junction of an index that `sgcad index build EXTRACT --out FOLDER` made."""
 
     asks_model: ClassVar[bool] = False
+    version: ClassVar[str] = "2"
 
     folder: Path = Path("knowledge")
     """The index; relative to the working directory."""

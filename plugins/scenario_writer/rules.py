@@ -25,6 +25,7 @@ class Rules(ScenarioWriter):
     """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
+    version: ClassVar[str] = "2"
 
     def write(
         self,

@@ -13,7 +13,7 @@ from typing import Literal
 
 from sgcad_core.narrative.median import divided_and_median
 from sgcad_core.narrative.text import NUMBERS
-from sgcad_core.narrative.turn_lanes import spelled_out
+from sgcad_core.narrative.turn_lanes import NUM, spelled_out
 from sgcad_core.specs import Compass, Median
 
 Side = Literal["left", "right"]
@@ -23,7 +23,6 @@ DIRECTIONS: dict[str, Compass] = {
 }  # fmt: skip
 DIR = r"(?:north|south)(?:east|west)?(?:bound|erly|ern)?|(?:east|west)(?:bound|erly|ern)?"
 BOUND = r"(?:north|south)(?:east|west)?bound|(?:east|west)bound"
-NUM = rf"(?:\d{{1,2}}|{'|'.join(NUMBERS)}|a single|single)"
 
 
 def compass(word: str) -> Compass:

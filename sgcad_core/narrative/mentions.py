@@ -119,9 +119,13 @@ def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
         return
     for axis in sorted(ways):
         toward = {way: n for way, n in mention.lanes.toward.items() if axis_of(_compass(way)) == axis}
-        turns = {way: t for way, t in mention.lanes.turns.items() if way == "any" or axis_of(_compass(way)) == axis}
+        turns = {way: t for way, t in mention.lanes.turns.items() if way in _NO_WAY or axis_of(_compass(way)) == axis}
         lanes = LaneFacts(toward=toward, turns=turns)
         yield RoadMention(mention.text, "road", axis, None, None, True, (), None, lanes, mention.sentence)
+
+
+_NO_WAY = ("any", "each")
+"""What `LaneFacts.turns` says in place of a direction."""
 
 
 def _compass(word: str) -> Compass:
@@ -135,7 +139,7 @@ def _bare(told: Told, facts: LaneFacts) -> RoadMention:
 
 
 def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
-    ways = {axis_of(_compass(way)) for way in (*facts.toward, *facts.turns) if way != "any"}
+    ways = {axis_of(_compass(way)) for way in (*facts.toward, *facts.turns) if way not in _NO_WAY}
     return next(iter(ways)) if len(ways) == 1 else None
 
 

@@ -71,7 +71,7 @@ def test_new_layers_learn_from_the_first_step(coder: Coder) -> None:
         assert weight.grad.abs().max() > 0
 
 
-@pytest.mark.parametrize(("old", "new"), [(6, 8), (8, 10), (10, 12), (12, 14), (12, 16)])
+@pytest.mark.parametrize(("old", "new"), [(6, 8), (8, 10), (10, 12), (12, 14), (14, 16), (12, 16)])
 def test_growing_leaves_tags_and_pointers_at_their_old_layers(coder: Coder, old: int, new: int) -> None:
     middle, grown = (model_of(coder, layers).middle for layers in (old, new))
     stand = places(old, new)

@@ -45,6 +45,23 @@ def test_the_name_of_a_small_vehicle_stands_beside_it(kind: str, heading: float)
     assert away.max() < 60
 
 
+@pytest.mark.parametrize("kind", [*icons.TWO_WHEELS, "truck", "bus"])
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_a_symbol_shows_which_way_it_faces(kind: str, heading: float) -> None:
+    ink = [255.0 - np.asarray(drawn(kind, turn).image.convert("L"), float) for turn in (heading, heading + math.pi)]
+    assert np.abs(ink[0] - ink[1]).sum() > 0.08 * ink[0].sum()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 2])
+def test_a_symbol_lies_where_its_box_lies_on_a_turned_sheet(kind: str, turn: float) -> None:
+    pen = Pen(Random(0), 160, 160, SCALE, turn, (0.0, 0.0))
+    pose, track = Pose(4.0, 3.0, 0.7), Track(Actor("V2", kind, 0, 4, "straight"), SIZES[kind])
+    icons.vehicle(Random(0), pen, track, pose, (150, 150, 150), "plain", False, False)
+    ink = np.argwhere(np.asarray(pen.image.convert("L")) < 250)[:, ::-1]
+    assert np.abs(ink.mean(axis=0) - pen.px(np.array([(pose.x, pose.y)]))[0]).max() < 8
+
+
 def test_two_that_differ_only_in_kind_stay_apart_on_the_sheet() -> None:
     sheets = [look(drawn(kind, 0.7).image)[0].astype(int) for kind in icons.TWO_WHEELS]
     assert np.abs(sheets[0] - sheets[1]).mean() > 5

@@ -90,6 +90,8 @@ def test_of_words_left_out_none_tells_anything(coder: Coder, seed: int) -> None:
 @pytest.mark.parametrize(("text", "left"), [
     (" making a left turn.", " making left."), (" in the left turn lane of the road", " left turn"),
     (" was struck by V1 from the north", " was struck by V1 from north"), (" two-lane", " two-lane"),
+    (" in the left turning lane", " left turning"), (" left turn-lane", " left turn-lane"),
+    (" the at-fault vehicle at 7 a.m.", " at-fault vehicle 7 a.m."),
 ])  # fmt: skip
 def test_what_is_left_of_an_idiom_tells_it(coder: Coder, text: str, left: str) -> None:
     assert coder.tokenizer.decode(coder.worn(text, 0.0, 1.0, Random(0))[0]) == left

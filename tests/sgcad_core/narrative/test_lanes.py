@@ -42,6 +42,8 @@ def test_lanes_each_way_have_many_spellings(text: str) -> None:
     ("two eastbound lanes, one eastbound lane that was reserved for left turns only", {"E": 3}),
     ("two through lanes eastbound with a left only lane, one lane westbound", {"E": 3, "W": 1}),
     ("an eastbound bay for right-turning traffic and two eastbound lanes", {"E": 3}),
+    ("two northbound lanes. V1 was stopped in a northbound lane for left turning traffic", {"N": 2}),
+    ("two eastbound lanes, with a lane for left turns and through traffic", {"E": 2}),
     ("It had five northbound lanes. The fourth northbound lane, which was a left-turn lane, was empty", {"N": 5}),
     ("in the second northbound lane, which was a left turn lane, of a road with four northbound lanes", {"N": 4}),
     ("the two southbound lanes and the second northbound lane, which was a right turn lane", {"S": 2, "N": 2}),

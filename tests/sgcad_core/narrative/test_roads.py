@@ -292,3 +292,13 @@ def test_a_center_turn_lane_that_is_turned_into_belongs_to_the_other_road() -> N
                    "eastbound. V1 began to turn left into the center turn lane. The front of V2 struck the left side "
                    "of V1.")  # fmt: skip
     assert {leg.bearing: leg.center_turn_lane for leg in found.legs} == {"E": True, "W": True, "S": False}
+
+
+@pytest.mark.parametrize("text", [
+    "There were two lanes and a left turn lane in each direction.",
+    "V1 was northbound on a road. There were a lane for left turns in each direction and two northbound lanes.",
+    "V1 was northbound on a two-lane road. There was one lane for left turns in each direction.",
+])  # fmt: skip
+def test_turn_lanes_in_each_direction_belong_to_no_axis_of_their_own(text: str) -> None:
+    facts = road_facts(text)
+    assert any("left" in turns for road in facts.roads for turns in road.lanes.turns.values())
