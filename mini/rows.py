@@ -123,9 +123,9 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
     legs = {tags.TEXT[shown]} if fact == "legs" else set()  # told in parts, by those who use a leg
     told = zip(row.text_tags, report.sentences, strict=True)
-    found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
     if fact.startswith("lane.") and fact in report.doubtful:
-        found = []  # "the left lane" of nobody tells how many: the drawing does
+        alike = set()  # "the left lane" of nobody tells how many: the drawing does
+    found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found

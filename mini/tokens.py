@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from random import Random
 
@@ -138,7 +138,6 @@ class Coder:
         self.raw = tokenizer.backend_tokenizer
         self.special = {name: tokenizer.convert_tokens_to_ids(name) for name in SPECIAL}
         self.piece = cache(self._piece)
-        self.halves = _halves(self.raw)
 
     def _piece(self, text: str) -> tuple[int, ...]:
         return tuple(self.raw.encode(text, add_special_tokens=False).ids)
@@ -171,19 +170,19 @@ class Coder:
         return ids, ends
 
     def _parts(self, token: int, share: float, rng: Random) -> list[int]:
-        if token not in self.halves or rng.random() >= share:
+        if token not in self._halves or rng.random() >= share:
             return [token]
-        return [part for half in self.halves[token] for part in self._parts(half, share, rng)]
+        return [part for half in self._halves[token] for part in self._parts(half, share, rng)]
 
-
-def _halves(tokenizer: Tokenizer) -> dict[int, tuple[int, int]]:
-    """Both tokens that each merged token of letters came from; pairs of digits are copied whole and stay so."""
-    ids: dict[str, int] = tokenizer.get_vocab()
-    found: dict[int, tuple[int, int]] = {}
-    for left, right in json.loads(tokenizer.to_str())["model"]["merges"]:
-        if not any(letter.isdigit() for letter in left + right):
-            found.setdefault(ids[left + right], (ids[left], ids[right]))
-    return found
+    @cached_property
+    def _halves(self) -> dict[int, tuple[int, int]]:
+        """Both tokens that each merged token of letters came from; pairs of digits are copied whole and stay so."""
+        ids: dict[str, int] = self.raw.get_vocab()
+        found: dict[int, tuple[int, int]] = {}
+        for left, right in json.loads(self.raw.to_str())["model"]["merges"]:
+            if not any(letter.isdigit() for letter in left + right):
+                found.setdefault(ids[left + right], (ids[left], ids[right]))
+        return found
 
 
 def load_tokenizer(folder: Path) -> PreTrainedTokenizerFast:

@@ -184,7 +184,7 @@ class EventsMixin:
         sides = ("left", "right", "left", "right") if options is told.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area)
         ta = contact.struck_area if sides else self._area(contact.struck_area)
-        clause = self.rng.choice(families(self._framed(options), self.held_out))
+        clause = self.rng.choice(self._framed(options))
         head_first = contact.striker_area == "front" != contact.struck_area
         if not MUTUAL.search(clause) or (areas and head_first):
             self.told.add(f"contact.{number}")
@@ -193,10 +193,10 @@ class EventsMixin:
         return self.say([clause], contact.striker, contact.struck, sa=sa, ta=ta)
 
     def _framed(self, options: list[str]) -> list[str]:
-        """Now and then with a few words before or behind every clause."""
+        """The clauses of this side of the split, now and then with a few words before or behind every one."""
+        options = families(options, self.held_out)
         if self.held_out:
             return options
-        options = families(options, False)
         lead = f"{choose(self.rng, self.rng.choice(told.LEADS))}, " if self.rng.random() < 0.15 else ""
         tail = choose(self.rng, self.rng.choice(told.TAILS)) if self.rng.random() < 0.12 else ""
         if not lead:

@@ -13,10 +13,10 @@ from importlib.resources import files
 from math import ceil
 from typing import Any
 
+from mini.generator.grammar import TRAINS, families
+
 SHARE = 0.6
 """How often a choice should fall on what stands in the files, at most; the rest follows the counts."""
-TRAINS = "+"
-"""First letter of clauses that only train, as "~" is of held-out ones."""
 
 
 def enlarge(name: str, lists: dict[str, Any]) -> None:
@@ -27,12 +27,12 @@ def enlarge(name: str, lists: dict[str, Any]) -> None:
     counted: dict[str, list[str]] = {}
     for heading, more in _read(name).items():
         options = _listed(lists, heading)
-        counted[heading] = [clause for clause in options if not clause.startswith("~")]
+        counted[heading] = families(options, False)
         times = round(_wanted(more, counted[heading]))
         options += counted[heading] * max(0, times - 1) + more
     for heading, more in _read(f"training/{name}").items():
         options = _listed(lists, heading)
-        trained = counted.get(heading) or [clause for clause in options if not clause.startswith("~")]
+        trained = counted.get(heading) or families(options, False)
         again = trained * ceil(_wanted(more, trained))
         options += [TRAINS + clause for clause in again + more]
 

@@ -43,11 +43,15 @@ def tables(**texts: str) -> dict[str, list[str]]:
     return {key: phrases(text) for key, text in texts.items()}
 
 
+TRAINS = "+"
+"""First letter of clauses that only train, as "~" is of held-out ones."""
+
+
 def families(options: list[str], held_out: bool) -> list[str]:
-    """The clauses of one side of the split; a list without held-out clauses serves both, but for those marked "+"."""
+    """The clauses of one side of the split; a list without held-out ones serves both, but for those that only train."""
     if not held_out:
-        return [o.removeprefix("+") for o in options if not o.startswith("~")] or [o.lstrip("~") for o in options]
-    return [o[1:] for o in options if o.startswith("~")] or [o for o in options if not o.startswith("+")]
+        return [o.removeprefix(TRAINS) for o in options if not o.startswith("~")] or [o.lstrip("~") for o in options]
+    return [o[1:] for o in options if o.startswith("~")] or [o for o in options if not o.startswith(TRAINS)]
 
 
 def choose(rng: Random, clause: str) -> str:

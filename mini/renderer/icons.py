@@ -9,11 +9,8 @@ from __future__ import annotations
 import math
 from random import Random
 
-import numpy as np
-
-from mini.renderer.lines import Points
 from mini.renderer.pen import BLACK, Color, Pen
-from mini.renderer.poses import Pose, Track, corners
+from mini.renderer.poses import Pose, Track, corners, within
 
 WHITE: Color = (255, 255, 255)
 GRAY: Color = (120, 120, 120)
@@ -56,8 +53,7 @@ def vehicle(
 
 def _name(pen: Pen, track: Track, pose: Pose, fill: Color, style: str) -> None:
     """An actor's name on its box, along it unless that stands on end."""
-    c, s = math.cos(pose.heading), math.sin(pose.heading)
-    x, y = pen.px(_at(pose, (-0.12 * track.size[0] * c, -0.12 * track.size[0] * s)))[0]
+    x, y = pen.px(within(pose, track.size, [(-0.12, 0.0)]))[0]
     ink = WHITE if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
     angle = math.degrees(pose.heading + pen.turn)
     lies = abs(math.cos(math.radians(angle))) > 0.2
@@ -67,19 +63,8 @@ def _name(pen: Pen, track: Track, pose: Pose, fill: Color, style: str) -> None:
 def _beside(pen: Pen, pose: Pose, size: tuple[float, float], name: str) -> None:
     """A name to the left of what is too small to bear it."""
     away = size[1] / 2 + 0.8 * NAME / pen.scale
-    x, y = pen.px(_at(pose, (-away * math.sin(pose.heading), away * math.cos(pose.heading))))[0]
+    x, y = pen.px(within(pose, (1.0, 1.0), [(0.0, away)]))[0]
     pen.text(x, y, name, NAME)
-
-
-def _at(pose: Pose, offset: tuple[float, float]) -> Points:
-    return np.array([(pose.x + offset[0], pose.y + offset[1])])
-
-
-def _local(pose: Pose, size: tuple[float, float], points: list[tuple[float, float]]) -> Points:
-    """World points of shares of a box: ahead and to the left of its middle."""
-    c, s = math.cos(pose.heading), math.sin(pose.heading)
-    laid: Points = np.array(points) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
-    return laid
 
 
 def _part(
@@ -91,12 +76,12 @@ def _part(
     color: Color,
 ) -> None:
     """A box within a box, in shares of it."""
-    x, y = _local(pose, size, [middle])[0]
+    x, y = within(pose, size, [middle])[0]
     pen.polygon(corners(Pose(x, y, pose.heading), (size[0] * share[0], size[1] * share[1])), color, BLACK, 1)
 
 
 def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> None:
-    pen.polygon(_local(pose, size, [(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]), color, None)
+    pen.polygon(within(pose, size, [(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]), color, None)
 
 
 def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:
@@ -116,17 +101,17 @@ def _windows(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> No
 
 def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, kind: str) -> None:
     """Handlebars ahead; a motorcycle with a body between dark wheels, a bicycle of two rings and a bar."""
-    bars = pen.px(_local(pose, size, [(0.24, 0.5), (0.24, -0.5)]))
+    bars = pen.px(within(pose, size, [(0.24, 0.5), (0.24, -0.5)]))
     if kind == "motorcycle":
         for along in (-0.38, 0.38):
             _part(pen, pose, size, (along, 0.0), (0.24, 0.36), BLACK)
         pen.polygon(
-            _local(pose, size, [(0.3, 0.1), (0.1, 0.36), (-0.3, 0.3), (-0.3, -0.3), (0.1, -0.36), (0.3, -0.1)]), fill
+            within(pose, size, [(0.3, 0.1), (0.1, 0.36), (-0.3, 0.3), (-0.3, -0.3), (0.1, -0.36), (0.3, -0.1)]), fill
         )
         width = 2
     else:
         radius = max(3.0, 0.24 * size[0] * pen.scale)
-        ends = pen.px(_local(pose, size, [(-0.3, 0.0), (0.3, 0.0)]))
+        ends = pen.px(within(pose, size, [(-0.3, 0.0), (0.3, 0.0)]))
         pen.draw.line([tuple(p) for p in ends], fill=fill if sum(fill) < 650 else GRAY, width=2)
         for x, y in ends:
             pen.draw.ellipse((x - radius, y - radius, x + radius, y + radius), outline=BLACK)
@@ -136,7 +121,7 @@ def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, ki
 
 def _thing(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: str) -> None:
     """A tree or a pole: a disk with a cross in it."""
-    (x, y), r = pen.px(_at(pose, (0.0, 0.0)))[0], max(5.0, size[0] * pen.scale * 0.6)
+    (x, y), r = pen.px(within(pose, size, [(0.0, 0.0)]))[0], max(5.0, size[0] * pen.scale * 0.6)
     pen.draw.ellipse((x - r, y - r, x + r, y + r), fill=color, outline=BLACK)
     arm = 0.7 * r
     for way in (-1, 1):
@@ -147,7 +132,7 @@ def _thing(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, text: 
 
 def _person(pen: Pen, pose: Pose, size: tuple[float, float], color: Color, name: str) -> None:
     """A figure of strokes, upright on the sheet however that is turned."""
-    (x, y), r = pen.px(_at(pose, (0.0, 0.0)))[0], max(7.0, size[0] * pen.scale * 0.8)
+    (x, y), r = pen.px(within(pose, size, [(0.0, 0.0)]))[0], max(7.0, size[0] * pen.scale * 0.8)
     head = 0.34 * r
     strokes = [((0, -0.4), (0, 0.3)), ((-0.55, -0.1), (0.55, -0.1)), ((0, 0.3), (-0.4, 1.0)), ((0, 0.3), (0.4, 1.0))]
     for start, end in strokes:

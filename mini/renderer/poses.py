@@ -7,6 +7,7 @@ its way; the other is put against it and turned as far as its side demands. Know
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from random import Random
 
@@ -237,6 +238,11 @@ def overlap(first: Pose, size: tuple[float, float], second: Pose, other: tuple[f
 
 def corners(pose: Pose, size: tuple[float, float]) -> Points:
     """The four corners of a box, (4, 2), front left first."""
+    return within(pose, size, [(0.5, 0.5), (0.5, -0.5), (-0.5, -0.5), (-0.5, 0.5)])
+
+
+def within(pose: Pose, size: tuple[float, float], shares: Sequence[tuple[float, float]]) -> Points:
+    """World points (n, 2) of shares of a box: ahead and to the left of its middle."""
     c, s = math.cos(pose.heading), math.sin(pose.heading)
-    box = np.array([(0.5, 0.5), (0.5, -0.5), (-0.5, -0.5), (-0.5, 0.5)]) * size
-    return box @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
+    laid: Points = np.array(shares) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
+    return laid

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.narrative.median import divided_and_median
-from sgcad_core.narrative.text import NUMBERS
-from sgcad_core.narrative.turn_lanes import NUM, spelled_out
+from sgcad_core.narrative.text import NUM, NUMBERS
+from sgcad_core.narrative.turn_lanes import spelled_out
 from sgcad_core.specs import Compass, Median
 
 Side = Literal["left", "right"]

@@ -21,6 +21,8 @@ LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
 _NUMBER = rf"(?:\d{{1,2}}|{'|'.join(NUMBERS)})"
+NUM = rf"(?:{_NUMBER}|a single|single)"
+"""A count of lanes."""
 _COMPASS = r"(?:north|south)(?:[ -]?(?:east|west))?|east|west"
 
 
