@@ -16,7 +16,8 @@ class Batch:
     ids (B, L); positions (3, B, L); sheets (n, 3, H, W) of bytes for every shape of drawing, N drawings in all; grids
     (N, P, 2) row and column of each patch, lengths (N,) real patches; image_index flat places of picture tokens,
     patch_index which tokens stand there; picks (M,) flat places before a value, wanted (M,) its token, weights (M,);
-    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; drawn (sum of picture tokens, D) what
+    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; items (I,) flat places of the ends of
+    items of lists, listed (I, U) what those items tell; drawn (sum of picture tokens, D) what
     each of `patch_index` shows; pointing (Q,) flat places before a value that some source tells, sources (Q, L) where
     in its row.
     """
@@ -33,6 +34,8 @@ class Batch:
     weights: Tensor
     ends: Tensor
     told: Tensor
+    items: Tensor
+    listed: Tensor
     drawn: Tensor
     pointing: Tensor
     sources: Tensor
@@ -45,9 +48,11 @@ class Batch:
 
 @dataclass
 class Pass:
-    """States on one way through: last (B, L, hidden) or (M, hidden), middle (B, L, hidden), seen (tokens, hidden)."""
+    """States on one way through: last (B, L, hidden) or (M, hidden), early and middle (B, L, hidden), seen (tokens,
+    hidden)."""
 
     last: Tensor
+    early: Tensor
     middle: Tensor
     seen: Tensor
     queries: Tensor | None = None
@@ -61,27 +66,31 @@ class Lesson:
     answers: Tensor
     right: Tensor
     sentences: Tensor
+    items: Tensor
     drawings: Tensor
     pointers: Tensor
 
 
 class Taggers(nn.Module):
-    """The heads that ask what a sentence told and what a picture token shows; used in training only."""
+    """The heads that ask what a sentence, an item of a list and a picture token tell; used in training only."""
 
-    def __init__(self, hidden: int, sentence_tags: int, picture_tags: int, blank: float = 0.2) -> None:
+    def __init__(self, hidden: int, sentence_tags: int, item_tags: int, picture_tags: int, blank: float = 0.2) -> None:
         super().__init__()
-        self.sentence, self.picture = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, picture_tags)
+        self.sentence, self.item = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, item_tags)
+        self.picture = nn.Linear(hidden, picture_tags)
         self.blank = blank
         """Weight of a picture token that shows nothing."""
-        for head in (self.sentence, self.picture):
+        for head in (self.sentence, self.item, self.picture):
             nn.init.zeros_(head.weight)
             nn.init.constant_(head.bias, -4.0)
 
     def sentences(self, states: Tensor, told: Tensor) -> Tensor:
         """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
-        if not len(states):
-            return states.sum()
-        return self._loss(self.sentence, states, told).mean()
+        return self._mean(self.sentence, states, told)
+
+    def items(self, states: Tensor, listed: Tensor) -> Tensor:
+        """The same over items of lists; states (I, hidden), listed (I, U)."""
+        return self._mean(self.item, states, listed)
 
     def drawings(self, states: Tensor, drawn: Tensor) -> Tensor:
         """The same over picture tokens, blank ones with less weight; states (N, hidden), drawn (N, D)."""
@@ -89,6 +98,9 @@ class Taggers(nn.Module):
             return states.sum()
         weight = torch.where(drawn.any(dim=1), 1.0, self.blank)
         return (self._loss(self.picture, states, drawn) * weight).sum() / weight.sum()
+
+    def _mean(self, head: nn.Linear, states: Tensor, wanted: Tensor) -> Tensor:
+        return self._loss(head, states, wanted).mean() if len(states) else states.sum()
 
     @staticmethod
     def _loss(head: nn.Linear, states: Tensor, wanted: Tensor) -> Tensor:

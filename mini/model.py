@@ -94,6 +94,8 @@ class Forward:
         """Layers after which a sentence's end is asked what it told; the rest carry it to the answers. Of six to
         fourteen layers that grow by two (`mini.grow`), and of twelve that grow by four, they end with the same old one
         as before."""
+        self.early = max(1, round(self.middle * 0.6))
+        """Layers after which the end of an item of a list is asked, so that the sentence's end may sum the items up."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
 
     @property
@@ -128,7 +130,7 @@ class Forward:
     def run(self, batch: Batch, places: Tensor | None = None) -> Pass:
         """The whole way; last states at flat `places` only, (M, hidden), if they are given."""
         x, seen = self.embedded(batch)
-        middle, queries, keys = x, None, None
+        early, middle, queries, keys = x, x, None, None
         cos, sin = self._rope(batch.positions)
         mask = torch.full((x.shape[1], x.shape[1]), float("-inf"), device=x.device, dtype=x.dtype).triu(1)
         for number, layer in enumerate(self.text.layers, 1):
@@ -139,9 +141,8 @@ class Forward:
             if places is not None and layer is self.text.layers[-1]:
                 x = x.view(-1, x.shape[-1])[places]
             x = x + self._mlp(layer.mlp, norm(layer.post_attention_layernorm, x))
-            if number == self.middle:
-                middle = x
-        return Pass(norm(self.text.norm, x), middle, seen, queries, keys)
+            early, middle = x if number == self.early else early, x if number == self.middle else middle
+        return Pass(norm(self.text.norm, x), early, middle, seen, queries, keys)
 
     def _rope(self, positions: Tensor) -> tuple[Tensor, Tensor]:
         """cos and sin, (B, 1, L, D / 2)."""
@@ -208,11 +209,11 @@ class Forward:
         """The losses of answers, sentences and drawings."""
         way = self.run(batch, batch.picks)
         answers, right = self._answers(batch, way.last, candidates)
-        middle = way.middle.view(-1, way.middle.shape[-1])[batch.ends]
         return Lesson(
             answers,
             right,
-            taggers.sentences(middle, batch.told),
+            taggers.sentences(way.middle.flatten(0, 1)[batch.ends], batch.told),
+            taggers.items(way.early.flatten(0, 1)[batch.items], batch.listed),
             taggers.drawings(way.seen, batch.drawn),
             self._pointers(batch, way),
         )

@@ -7,6 +7,7 @@ answer: one sequence that trains both queries. Knows no model and no optimizer.
 from __future__ import annotations
 
 import json
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from random import Random
@@ -44,6 +45,8 @@ class Row:
     pieces: list[tuple[str, str]] = field(default_factory=list)
     text_tags: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of the last token of each sentence and what the sentence tells, as indices into `tags.TEXT`."""
+    item_tags: list[tuple[int, list[int]]] = field(default_factory=list)
+    """Place of the last token of each item of a list of lanes and what it tells, as indices into `tags.ITEM`."""
     pointers: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of a value and the places that tell it."""
     picture_tags: NDArray[np.uint8] | None = None
@@ -75,11 +78,13 @@ def road_ids(road: answers.Any) -> tuple[str, ...]:
 
 
 def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
-    """Note at the end of every sentence what it tells; `ends` are the letters behind the narrative's tokens."""
+    """Note at the end of every sentence and of every item of a list what it tells; `ends` are the letters behind the
+    narrative's tokens."""
     behind, before = np.array(ends), set[str]()
     for end, facts in report.sentences:
         row.text_tags.append((int(np.searchsorted(behind, end)), tags.told(report.crash, facts, before)))
         before |= facts
+    row.item_tags = [(int(np.searchsorted(behind, end)), tags.listed(item)) for end, item in report.items]
 
 
 def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:
@@ -126,9 +131,23 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     if fact.startswith("lane.") and fact in report.doubtful:
         alike = set()  # "the left lane" of nobody tells how many: the drawing does
     found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
+    found += _listed(row, report, path, found)
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found
+
+
+def _listed(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
+    """Places of the items that tell the value at a path, in those of the `sentences` (their ends) that are lists.
+
+    Lanes that lead away from the hub are those that lead towards it on the other side.
+    """
+    if len(path) < 3 or path[0] != "legs" or path[2] not in ("lanes_in", "lanes_out", "turns_in"):
+        return []
+    leg = (report.crash.legs[path[1]].bearing + 4 * (path[2] == "lanes_out")) % 8
+    ends = [at for at, _ in row.text_tags]
+    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.item_tags if tags.ITEM[f"leg={leg}"] in said]
+    return [at for at, end in placed if end in sentences and at < end]
 
 
 def _closed(path: tuple[Any, ...], report: Report) -> bool:
@@ -183,7 +202,6 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
     ids = np.full((len(rows), longest), coder.special[PAD])
     place = np.zeros((3, len(rows), longest), np.int64)
     picks, wanted, weights = [], [], []
-    ends, told = [], np.zeros((sum(len(row.text_tags) for row in rows), len(tags.TEXT)), np.float32)
     for i, row in enumerate(rows):
         n = len(row.ids)
         ids[i, :n], place[:, i, :n] = row.ids, positions(row)
@@ -191,27 +209,39 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
             picks.append(i * longest + at - 1)
             wanted.append(row.ids[at])
             weights.append(weight)
-        for at, found in row.text_tags:
-            told[len(ends), found] = 1
-            ends.append(i * longest + at)
     pointing = [(i, at, found) for i, row in enumerate(rows) for at, found in row.pointers]
     sources = np.zeros((len(pointing), longest), np.bool_)
     for n, (_, _, found) in enumerate(pointing):
         sources[n, found] = True
     seen = _pictured(rows)
+    ends, told = _asked([row.text_tags for row in rows], len(tags.TEXT), longest)
+    items, listed = _asked([row.item_tags for row in rows], len(tags.ITEM), longest)
     return Batch(
         ids=torch.from_numpy(ids),
         positions=torch.from_numpy(place),
         picks=torch.tensor(picks),
         wanted=torch.tensor(wanted),
         weights=torch.tensor(weights),
-        ends=torch.tensor(ends, dtype=torch.int64),
-        told=torch.from_numpy(told),
+        ends=ends,
+        told=told,
+        items=items,
+        listed=listed,
         drawn=_drawn(seen),
         pointing=torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
         sources=torch.from_numpy(sources),
         **_pictures(seen, longest),
     )
+
+
+def _asked(
+    found: Sequence[Sequence[tuple[int, list[int]]]], tags: int, longest: int
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """Flat places of the tagged tokens of every row, (S,), and the tags of each, (S, tags)."""
+    places = [i * longest + at for i, row in enumerate(found) for at, _ in row]
+    told = np.zeros((len(places), tags), np.float32)
+    for n, said in enumerate(said for row in found for _, said in row):
+        told[n, said] = 1
+    return torch.tensor(places, dtype=torch.int64), torch.from_numpy(told)
 
 
 def _pictured(rows: Sequence[Row]) -> list[tuple[int, Row]]:

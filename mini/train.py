@@ -85,7 +85,8 @@ class Trainer:
             self.eye.requires_grad_(False)
             self.forward.vision.requires_grad_(False)
         self.answer_tokens = answer_tokens(self.coder)
-        self.taggers = Taggers(self.model.config.text_config.hidden_size, len(tags.TEXT), len(tags.PICTURE))
+        asked = (len(some) for some in (tags.TEXT, tags.ITEM, tags.PICTURE))
+        self.taggers = Taggers(self.model.config.text_config.hidden_size, *asked)
         self.taggers.to(options.device)
         others = {"heads": self.taggers, "eye": self.eye}
         self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)
@@ -231,14 +232,14 @@ class Trainer:
             return self.forward.lesson(batch, self._candidates(batch.wanted), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())
-        return Lesson(nothing, nothing, nothing, drawings, nothing)
+        return Lesson(nothing, nothing, nothing, nothing, drawings, nothing)
 
     def _step(self, rows: list[Row]) -> None:
         batch = collate(rows, self.coder).to(self.options.device)
         started = time.monotonic()
         options, lesson = self.options, self._lesson(batch)
-        loss = lesson.answers + options.sentences * lesson.sentences + options.drawings * lesson.drawings
-        loss = loss + options.pointers * lesson.pointers
+        loss = lesson.answers + options.drawings * lesson.drawings + options.pointers * lesson.pointers
+        loss = loss + options.sentences * (lesson.sentences + lesson.items)
         loss.backward()
         self.ranks.average(self.optimizer.live.values())
         self.optimizer.step(schedule(self.progress, self.options.hold))
@@ -252,9 +253,7 @@ class Trainer:
                 rows=self.rows,
                 loss=float(lesson.answers.detach()),
                 right=float(lesson.right),
-                sentences=float(lesson.sentences.detach()),
-                drawings=float(lesson.drawings.detach()),
-                pointers=float(lesson.pointers.detach()),
+                **{key: float(getattr(lesson, key).detach()) for key in ("sentences", "items", "drawings", "pointers")},
                 step_s=took,
                 batch=len(rows),
                 tokens=batch.ids.shape[1],

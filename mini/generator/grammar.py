@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from random import Random
+
+from mini.generator.listed import Item
 
 _CHOICE = re.compile(r"\[([^\[\]]*)\]")
 SLOTS = re.compile(r"\{(\w+)\}")
@@ -111,18 +114,29 @@ class Told(set[str]):
         return fresh
 
 
-def unmark(text: str) -> tuple[str, list[tuple[int, int]]]:
-    """A text without its marks, and (end, number) of every marked sentence."""
-    out, marks = [], []
-    length = 0
+@dataclass
+class Written:
+    """A narrative, where each of its sentences ends and which facts it tells, and where each item of a list ends."""
+
+    narrative: str = ""
+    sentences: list[tuple[int, frozenset[str]]] = field(default_factory=list)
+    items: list[tuple[int, Item]] = field(default_factory=list)
+
+
+def unmark(text: str) -> tuple[str, list[tuple[int, int]], list[tuple[int, Item]]]:
+    """A text without its marks, (end, number) of every marked sentence and (end, item) of every item of a list."""
+    out: list[str] = []
+    marks: list[tuple[int, int]] = []
+    items: list[tuple[int, Item]] = []
     for letter in text:
-        number = ord(letter) - MARK
+        number, item = ord(letter) - MARK, Item.of(letter)
         if 0 <= number < 0x1900:
-            marks.append((length, number))
+            marks.append((len(out), number))
+        elif item:
+            items.append((len(out), item))
         else:
             out.append(letter)
-            length += 1
-    return "".join(out), marks
+    return "".join(out), marks, items
 
 
 def sentence(text: str) -> str:

@@ -13,7 +13,8 @@ from typing import Any
 
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import glanced, sample_crash
-from mini.generator.grammar import HINT, unmark
+from mini.generator.grammar import HINT, Written, unmark
+from mini.generator.listed import Item
 from mini.generator.roads import beside, carriageway, misdrawn, mouths, one_way
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
@@ -55,6 +56,8 @@ class Report:
     drawn: set[str] = field(default_factory=set)
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
+    items: list[tuple[int, Item]] = field(default_factory=list)
+    """Where each item of a list of lanes ends, and which lanes it tells."""
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
     doubtful: set[str] = field(default_factory=set)
@@ -78,9 +81,10 @@ def make_report(
     control, arrows = rng.random() < 0.6, rng.random() < 0.6
     if mode in ("thin", "no_crash", "conflict"):
         return _refused(seed, mode, rng, crash, writer)
-    narrative, sentences = writer.finish(writer.write())
+    written = writer.finish(writer.write())
     if mode == "text" and not held_out:
-        crash, narrative, sentences = _worth_telling(rng, seed, length, (crash, narrative, sentences))
+        crash, written = _worth_telling(rng, seed, length, crash, written)
+    sentences = written.sentences
     half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
@@ -92,7 +96,7 @@ def make_report(
         shown = misdrawn(rng, crash)
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
-        narrative, sentences = "", []
+        written, sentences = Written(), []
     told, doubtful = _told(crash, sentences)
     seen = drawn if mode in ("both", "image") else set()
     targets = Targets(crash, told | doubtful | seen, doubtful - seen, alone=mode == "text")
@@ -102,7 +106,7 @@ def make_report(
         seed,
         mode,
         crash,
-        narrative,
+        written.narrative,
         mode in ("both", "image"),
         targets.road,
         targets.behavior,
@@ -110,6 +114,7 @@ def make_report(
         told,
         drawn,
         sentences,
+        written.items,
         shown,
         doubtful,
     )
@@ -124,20 +129,17 @@ def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0)
     return glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 
-def _worth_telling(
-    rng: Random, seed: int, length: float, found: tuple[Crash, str, Sentences]
-) -> tuple[Crash, str, Sentences]:
+def _worth_telling(rng: Random, seed: int, length: float, crash: Crash, written: Written) -> tuple[Crash, Written]:
     """A report in which a road that nobody describes is, most often, a plain one: writers mention what is unusual."""
     for attempt in range(1, SECOND_THOUGHTS + 1):
-        crash, _, sentences = found
-        told = {fact for _, facts in sentences for fact in facts}
+        told = {fact for _, facts in written.sentences for fact in facts}
         rare = [leg for leg in crash.legs if not _plain(leg, told) and f"lanes.{leg.bearing % 4}" not in told]
         if rng.random() < (UNUSUAL if all(leg.two_way for leg in rare) else UNUSUAL_ONE_WAY) or not rare:
             break
         crash = _sample(rng, seed, False, "text", attempt)
         writer = Writer(rng, crash, False, length)
-        found = (crash, *writer.finish(writer.write()))
-    return found
+        written = writer.finish(writer.write())
+    return crash, written
 
 
 def _plain(leg: Leg, told: set[str]) -> bool:
@@ -174,14 +176,14 @@ def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) ->
         narrative = unmark(_conflicting(rng, crash, writer))[0]
         return Report(seed, mode, crash, narrative, False, refusal(2), None, None, set())
     narrative = " ".join(([] if mode == "thin" else writer.place()) + writer.aftermath())
-    narrative, sentences = writer.finish(narrative)
-    told, doubtful = _told(crash, sentences)
+    written = writer.finish(narrative)
+    told, doubtful = _told(crash, written.sentences)
     if mode == "no_crash":
         targets = Targets(crash, told | doubtful, doubtful)
         known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"
         road = targets.road if known else refusal(0)
-        return Report(seed, mode, crash, narrative, False, road, refusal(1) if known else None, targets, told)
-    return Report(seed, mode, crash, narrative, False, refusal(0), None, None, told)
+        return Report(seed, mode, crash, written.narrative, False, road, refusal(1) if known else None, targets, told)
+    return Report(seed, mode, crash, written.narrative, False, refusal(0), None, None, told)
 
 
 def _conflicting(rng: Random, crash: Crash, writer: Writer) -> str:

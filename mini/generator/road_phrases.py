@@ -9,6 +9,7 @@ from random import Random
 from mini.generator import clauses_road as more
 from mini.generator import words
 from mini.generator.grammar import Told
+from mini.generator.listed import Item
 from mini.generator.settled import AXIS, FLOW, ROAD
 from mini.generator.world import Crash, Leg
 
@@ -140,12 +141,21 @@ class RoadsMixin:
             return self._flowing(leg, xb, text)
         if leg.lanes_in != leg.lanes_out:
             self.told.add(f"{AXIS}.{axis}")
-            a, b = words.lanes(leg.lanes_in, to), words.lanes(leg.lanes_out, fro)
+            a, b = self._sides(leg, to, fro)
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
             return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
         options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
         median = more.phrase(rng, more.MEDIAN[leg.median]) + NAMED if leg.median in more.MEDIAN else ""
         return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
+
+    @staticmethod
+    def _sides(leg: Leg, to: str, fro: str) -> list[str]:
+        """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and of those who leave by it."""
+        back = (leg.bearing + 4) % 8
+        return [
+            words.lanes(leg.lanes_in, to) + Item(leg.bearing, "through", leg.lanes_in).mark,
+            words.lanes(leg.lanes_out, fro) + Item(back, "through", leg.lanes_out).mark,
+        ]
 
     def _counted(self, n: str, ways: str, word: str) -> str:
         """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
@@ -202,10 +212,10 @@ class RoadsMixin:
                     f"a {kind}{word} of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
                 )
             )
-        sides = [(leg.lanes_in, words.bound(rng, leg.bearing + 4)), (leg.lanes_out, words.bound(rng, leg.bearing))]
-        rng.shuffle(sides)
+        to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
+        lanes = self._sides(leg, to, fro)
+        rng.shuffle(lanes)
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        lanes = [words.lanes(n, xb) for n, xb in sides]
         return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:

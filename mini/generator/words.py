@@ -6,6 +6,7 @@ from __future__ import annotations
 from random import Random
 
 from mini.generator import clauses_road as more
+from mini.generator.listed import Item
 from mini.generator.world import WORDS, Crash, Leg
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
@@ -216,19 +217,18 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
         return ""
     left, right = leg.turns_in.count("left"), leg.turns_in.count("right")
     plain = leg.lanes_in - left - right
-    parts = [f"one {xb} left-turn lane"] * bool(left)
+    parts = [f"one {xb} left-turn lane{Item(leg.bearing, 'left', 1).mark}"] * bool(left)
     if plain:
         word = "through-lane" if leg.turns_in and rng.random() < 0.5 else "lane"
-        parts.append(
-            rng.choice(
-                (
-                    f"{NUMBERS[plain]} {xb} {word}",
-                    f"{NUMBERS[plain]} {word}{'s' * (plain > 1)} {xb}",
-                    f"{NUMBERS[plain]} {xb} {word}{'s' * (plain > 1)}",
-                )
+        some = rng.choice(
+            (
+                f"{NUMBERS[plain]} {xb} {word}",
+                f"{NUMBERS[plain]} {word}{'s' * (plain > 1)} {xb}",
+                f"{NUMBERS[plain]} {xb} {word}{'s' * (plain > 1)}",
             )
         )
-    parts += [f"one {xb} right-turn lane"] * bool(right)
+        parts.append(some + Item(leg.bearing, "through", plain).mark)
+    parts += [f"one {xb} right-turn lane{Item(leg.bearing, 'right', 1).mark}"] * bool(right)
     return ", ".join(parts)
 
 
@@ -260,7 +260,8 @@ def _further_lanes(rng: Random, leg: Leg, xb: str) -> str:
             number = rng.choice(
                 (NUMBERS[count], NUMBERS[count], str(count), *(("a", "a single") if count == 1 else ()))
             )
-            parts.append(f"{number} {word} {xb}" if behind else f"{number} {xb} {word}")
+            some = f"{number} {word} {xb}" if behind else f"{number} {xb} {word}"
+            parts.append(some + Item(leg.bearing, use or "through", count).mark)
     return ", ".join(parts)
 
 

@@ -12,7 +12,7 @@ from mini.generator import clauses_motion as motion
 from mini.generator import words
 from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
-from mini.generator.grammar import HINT, MARK, SLOTS, Told, clause_of, fill, sentence, unmark
+from mini.generator.grammar import HINT, MARK, SLOTS, Told, Written, clause_of, fill, sentence, unmark
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.scene import SceneMixin
@@ -89,10 +89,10 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             head = head[1:] if not opening else head
         return head, breaks
 
-    def finish(self, text: str) -> tuple[str, list[tuple[int, frozenset[str]]]]:
-        """The plain text, and the facts of each of its sentences with the place where it ends."""
-        plain, marks = unmark(text)
-        return plain, [(end, self.sentences[number]) for end, number in marks]
+    def finish(self, text: str) -> Written:
+        """The plain text and what it tells where."""
+        plain, marks, items = unmark(text)
+        return Written(plain, [(end, self.sentences[number]) for end, number in marks], items)
 
     # -------------------------------------------------------------- parts, for depleted reports
     def aftermath(self) -> list[str]:

@@ -73,7 +73,7 @@ def test_told_hands_out_repeated_facts_too() -> None:
 
 
 def test_marks_are_taken_out_with_their_places() -> None:
-    assert unmark(f"One.{chr(MARK)} Two.{chr(MARK + 7)}") == ("One. Two.", [(4, 0), (9, 7)])
+    assert unmark(f"One.{chr(MARK)} Two.{chr(MARK + 7)}") == ("One. Two.", [(4, 0), (9, 7)], [])
 
 
 @pytest.mark.parametrize("seed", range(0, 60, 6))
@@ -126,7 +126,7 @@ def test_a_shape_is_tagged_where_it_lies(coder: Coder) -> None:
 
 def test_heads_learn_what_states_tell() -> None:
     torch.manual_seed(0)
-    heads = Taggers(16, 5, 7)
+    heads = Taggers(16, 5, 4, 7)
     states, told = torch.randn(40, 16), torch.zeros(40, 5)
     told[:, 1] = (states[:, 0] > 0).float()
     before = float(heads.sentences(states, told).detach())
@@ -186,7 +186,7 @@ def test_pointers_lead_to_what_tells_the_value(seed: int) -> None:
     row = training_row(_any_coder(), report, *labeled(report))
     places = {at for at, _ in row.pointers}
     assert places <= {at for at, weight in row.picks if weight >= 1}
-    ends = {at for at, _ in row.text_tags}
+    ends = {at for at, _ in row.text_tags + row.item_tags}
     shown = range(row.image_start, row.image_start + len(row.picture_tags if row.picture_tags is not None else ()))
     for at, sources in row.pointers:
         assert all(source in ends for source in sources) or all(source in shown for source in sources)
@@ -259,7 +259,7 @@ def test_attention_on_the_right_place_costs_nothing(coder: Coder) -> None:
     places, length = len(batch.pointing), batch.ids.shape[1]
     assert places
     queries, keys = torch.zeros(1, 2, length, 4), torch.zeros(1, length, 4)
-    way = Pass(torch.zeros(0), torch.zeros(0), torch.zeros(0), queries, keys)
+    way = Pass(*[torch.zeros(0)] * 4, queries, keys)
     even = Forward._pointers(batch, way)
     reach = batch.pointing.float() + 1
     assert float(even) == pytest.approx(float((reach.log() - batch.sources.sum(1).float().log()).mean()), rel=1e-4)
