@@ -1,17 +1,19 @@
 """Items of lists of lanes: what "two northbound through lanes" tells, noted behind its words while a report is written.
 
 A list tells the lanes of an approach item by item, and where it ends its sentence has told a dozen numbers at once.
-Whoever learns to read it is asked behind every item. Knows no sentences.
+Whoever learns to read it is asked behind every item.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 USES = ("left", "through", "right")
 MOST = 15
-_FIRST = 0xF0000
-"""Private-use letters from here on are the marks."""
+_FIRST, _KINDS = 0xF0000, 8 * len(USES) * (MOST + 1)
+"""So many private-use letters from here on are the marks."""
+MARKS = "".join(chr(_FIRST + number) for number in range(_KINDS))
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,19 @@ class Item:
     def of(letter: str) -> Item | None:
         """The item that a letter marks."""
         number = ord(letter) - _FIRST
-        if not 0 <= number < 8 * len(USES) * (MOST + 1):
+        if not 0 <= number < _KINDS:
             return None
         kind, lanes = divmod(number, MOST + 1)
         return Item(kind // len(USES), USES[kind % len(USES)], lanes)
+
+
+def placed(text: str, ways: Mapping[int, str]) -> str:
+    """A sentence without the marks of items that stand before the words for their way ("two lanes eastbound" may be
+    asked for its leg, "two lanes and a left turn lane for eastbound traffic" may not); `ways`: those words by leg."""
+    low = text.lower()
+    begun = {leg: low.find(way.lower()) for leg, way in ways.items()}
+    return "".join(
+        letter
+        for at, letter in enumerate(text)
+        if not (item := Item.of(letter)) or item.leg not in begun or 0 <= begun[item.leg] < at
+    )

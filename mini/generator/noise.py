@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from random import Random
 
+from mini.generator.listed import MARKS
+
 SLIPS = {
     "road": "raod", "east": "easr", "hospital": "hosptial", "because": "becuase", "waiting": "waitng", "avoid": "avid",
     "approximately": "approxiamtely", "driver": "drdiver", "its": "it's", "through": "thru", "losing": "loosing", "roadway": "trafficway",
@@ -17,9 +19,10 @@ def slips(rng: Random, text: str, per_word: float = 0.003) -> str:
     """Words replaced by misspellings, letters swapped or doubled words; never inside numbers or names."""
     words = text.split(" ")
     for i, word in enumerate(words):
-        if rng.random() > per_word or not word.isalpha() or not word.islower():
+        bare = word.rstrip(MARKS)
+        if rng.random() > per_word or not bare.isalpha() or not bare.islower():
             continue
-        words[i] = slip(rng, word)
+        words[i] = slip(rng, bare) + word[len(bare) :]
     return " ".join(words)
 
 

@@ -9,6 +9,7 @@ from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
+from mini.generator.listed import placed
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg
@@ -198,7 +199,8 @@ class SceneMixin(RoadsMixin):
             return [self._alike(one, axis, ab, bb)]
         lists = {"alist": words.lane_phrase(rng, one), "blist": words.lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]
-        return [self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)]
+        text = self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)
+        return [placed(text, {one.bearing: ab, other.bearing: bb})]
 
     def _alike(self, leg: Leg, axis: int, ab: str, bb: str) -> str:
         """A road with as many lanes the one way as the other."""

@@ -272,14 +272,16 @@ def lane_phrase(rng: Random, leg: Leg) -> str:
     uses = [use for use in ("left", "right") if use in leg.turns_in]
     plain = leg.lanes_in - len(uses)
     number = rng.choice((NUMBERS[leg.lanes_in], NUMBERS[leg.lanes_in], str(leg.lanes_in)))
+    straight = Item(leg.bearing, "through", plain).mark
     if not uses:
-        return rng.choice((f"{number} lane", "one lane", "a single lane") if plain == 1 else (f"{number} lanes",) * 3)
-    through = f"{NUMBERS[plain]} through lane{'s' * (plain > 1)}"
+        some = rng.choice((f"{number} lane", "one lane", "a single lane") if plain == 1 else (f"{number} lanes",) * 3)
+        return some + straight
+    through = f"{NUMBERS[plain]} through lane{'s' * (plain > 1)}{straight}"
     if not plain or rng.random() < 0.2:
         return f"{number} lane{'s' * (leg.lanes_in > 1)}, one of them for " + " and one for ".join(
             f"{u} turns" for u in uses
         )
-    parts = [f"a {use}{rng.choice((' ', '-'))}turn lane" for use in uses]
+    parts = [f"a {use}{rng.choice((' ', '-'))}turn lane{Item(leg.bearing, use, 1).mark}" for use in uses]
     parts.insert(rng.choice((0, len(parts))), through)
     listed = ", ".join(parts[:-1]) + f" and {parts[-1]}"
     return f"{number} lanes, {listed}" if rng.random() < 0.25 else listed

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from random import Random
 
 import pytest
 import torch
@@ -11,7 +12,8 @@ from hypothesis import strategies as st
 from mini import tags
 from mini.batch import Taggers
 from mini.generator.grammar import MARK, unmark
-from mini.generator.listed import MOST, USES, Item
+from mini.generator.listed import MOST, USES, Item, placed
+from mini.generator.noise import slips
 from mini.generator.report import Report, make_report
 from mini.generator.words import NUMBERS
 from mini.generator.world import WORDS
@@ -74,8 +76,9 @@ def test_items_say_what_their_words_say(held_out: bool) -> None:
             assert item.lanes == count
             assert ("left" in words["rest"]) == (item.use == "left")
             assert ("right" in words["rest"]) == (item.use == "right")
-            way = WORDS[(item.leg + 4) % 8]
-            slips += way not in words["rest"] and f"{way[0]}b" not in re.sub("[/-]", "", words["rest"])
+            way, begun = WORDS[(item.leg + 4) % 8], max((e for e, _ in report.sentences if e < end), default=0)
+            before = re.sub("[/-]", "", report.narrative[begun:end].lower())
+            slips += way not in before and f"{way[0]}b" not in before
             seen += 1
     assert seen > 150
     assert slips < 0.02 * seen  # a slip of the pen
@@ -92,6 +95,31 @@ def test_items_of_an_approach_sum_up_to_its_lanes(seed: int) -> None:
             assert told % leg.lanes_in == 0  # a road may be described twice
             uses = {item.use for item in own}
             assert {"left", "right"} & uses == {"left", "right"} & set(leg.turns_in)
+
+
+@given(
+    parts=st.lists(st.sampled_from(["two lanes", "eastbound", "Westbound", "one lane", " and "]), max_size=6),
+    marked=st.lists(st.sampled_from([2, 6]), max_size=6),
+)
+def test_items_before_the_words_for_their_way_lose_their_marks(parts: list[str], marked: list[int]) -> None:
+    pieces = [f"{part} " for part in parts]
+    for at, leg in zip(range(len(pieces)), marked, strict=False):
+        pieces[at] += Item(leg, "through", 2).mark
+    text = "".join(pieces)
+    plain, _, kept = unmark(placed(text, {6: "eastbound", 2: "westbound"}))
+    assert plain == unmark(text)[0]
+    for end, item in unmark(text)[2]:
+        told = ("eastbound" if item.leg == 6 else "westbound") in plain[:end].lower()
+        assert ((end, item) in kept) == told
+
+
+def test_slips_of_the_pen_fall_as_if_no_mark_were_there() -> None:
+    words = ["two lanes", "one eastbound lane", "a left turn lane and"] * 40
+    marked = " ".join(some + Item(6, "left", 1).mark for some in words)
+    for seed in range(20):
+        slipped = slips(Random(seed), marked, 0.2)
+        assert unmark(slipped)[0] == slips(Random(seed), " ".join(words), 0.2)
+        assert len(unmark(slipped)[2]) == len(words)
 
 
 def test_the_tagged_token_ends_the_item(coder: Coder) -> None:
