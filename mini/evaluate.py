@@ -51,17 +51,19 @@ def answers_of(
     batch: int = 24,
     views: int = 1,
 ) -> list[Answer]:
-    """Greedy answers, reports sorted by length within the call; each drawing read in so many views."""
-    order = sorted(range(len(reports)), key=lambda i: len(reports[i].narrative))
+    """Greedy answers, narratives alone first (they need one view), then by length; each drawing read in so many
+    views."""
+    seeing = [not blind and report.has_image for report in reports]
+    order = sorted(range(len(reports)), key=lambda i: (seeing[i], len(reports[i].narrative)))
     found: dict[int, Answer] = {}
     answerer = Answerer(forward, coder)
     for start in range(0, len(order), batch):
         some = order[start : start + batch]
-        drawings = [None if blind else drawing(reports[i]) for i in some]
+        drawings = [drawing(reports[i]) if seeing[i] else None for i in some]
         upright = [sight.upright(image) if image else None for image in drawings]
         rows, *others = (
             [evidence(coder, reports[i].narrative, image, view) for i, image in zip(some, upright, strict=True)]
-            for view in range(1 if blind else views)
+            for view in range(views if any(upright) else 1)
         )
         found |= dict(zip(some, answerer.answer(rows, views=others), strict=True))
     return [found[i] for i in range(len(reports))]
