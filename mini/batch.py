@@ -16,10 +16,9 @@ class Batch:
     ids (B, L); positions (3, B, L); sheets (n, 3, H, W) of bytes for every shape of drawing, N drawings in all; grids
     (N, P, 2) row and column of each patch, lengths (N,) real patches; image_index flat places of picture tokens,
     patch_index which tokens stand there; picks (M,) flat places before a value, wanted (M,) its token, weights (M,);
-    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; items (I,) flat places of the ends of
-    items of lists, listed (I, U) what those items tell; drawn (sum of picture tokens, D) what
-    each of `patch_index` shows; pointing (Q,) flat places before a value that some source tells, sources (Q, L) where
-    in its row.
+    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; phrases (R,) flat places of the ends
+    of noted phrases, noted (R, U) what those tell; drawn (sum of picture tokens, D) what each of `patch_index` shows;
+    pointing (Q,) flat places before a value that some source tells, sources (Q, L) where in its row.
     """
 
     ids: Tensor
@@ -34,8 +33,8 @@ class Batch:
     weights: Tensor
     ends: Tensor
     told: Tensor
-    items: Tensor
-    listed: Tensor
+    phrases: Tensor
+    noted: Tensor
     drawn: Tensor
     pointing: Tensor
     sources: Tensor
@@ -66,21 +65,28 @@ class Lesson:
     answers: Tensor
     right: Tensor
     sentences: Tensor
-    items: Tensor
+    phrases: Tensor
     drawings: Tensor
     pointers: Tensor
 
+    @property
+    def figures(self) -> dict[str, float]:
+        """What a log says of it."""
+        named = {"loss": self.answers, **vars(self)}
+        return {key: float(value.detach()) for key, value in named.items() if key != "answers"}
+
 
 class Taggers(nn.Module):
-    """The heads that ask what a sentence, an item of a list and a picture token tell; used in training only."""
+    """The heads that ask what a sentence, a phrase and a picture token tell; used in training only."""
 
-    def __init__(self, hidden: int, sentence_tags: int, item_tags: int, picture_tags: int, blank: float = 0.2) -> None:
+    def __init__(self, hidden: int, sentence: int, phrase: int, picture: int, blank: float = 0.2) -> None:
+        """`hidden` numbers a state; so many tags of a sentence, a phrase and a picture token."""
         super().__init__()
-        self.sentence, self.item = nn.Linear(hidden, sentence_tags), nn.Linear(hidden, item_tags)
-        self.picture = nn.Linear(hidden, picture_tags)
+        self.sentence, self.phrase = nn.Linear(hidden, sentence), nn.Linear(hidden, phrase)
+        self.picture = nn.Linear(hidden, picture)
         self.blank = blank
         """Weight of a picture token that shows nothing."""
-        for head in (self.sentence, self.item, self.picture):
+        for head in (self.sentence, self.phrase, self.picture):
             nn.init.zeros_(head.weight)
             nn.init.constant_(head.bias, -4.0)
 
@@ -88,9 +94,9 @@ class Taggers(nn.Module):
         """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
         return self._mean(self.sentence, states, told)
 
-    def items(self, states: Tensor, listed: Tensor) -> Tensor:
-        """The same over items of lists; states (I, hidden), listed (I, U)."""
-        return self._mean(self.item, states, listed)
+    def phrases(self, states: Tensor, noted: Tensor) -> Tensor:
+        """The same over noted phrases; states (R, hidden), noted (R, U)."""
+        return self._mean(self.phrase, states, noted)
 
     def drawings(self, states: Tensor, drawn: Tensor) -> Tensor:
         """The same over picture tokens, blank ones with less weight; states (N, hidden), drawn (N, D)."""

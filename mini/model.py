@@ -95,7 +95,8 @@ class Forward:
         fourteen layers that grow by two (`mini.grow`), and of twelve that grow by four, they end with the same old one
         as before."""
         self.early = max(1, round(self.middle * 0.6))
-        """Layers after which the end of an item of a list is asked, so that the sentence's end may sum the items up."""
+        """Layers after which the end of a phrase is asked, so that the sentence's end may put phrases together. A model
+        that grows (`mini.grow`) may be asked at another old layer than before."""
         self.vision_inv = self.vision.rotary_pos_emb.original_inv_freq.float().clone()
 
     @property
@@ -141,7 +142,8 @@ class Forward:
             if places is not None and layer is self.text.layers[-1]:
                 x = x.view(-1, x.shape[-1])[places]
             x = x + self._mlp(layer.mlp, norm(layer.post_attention_layernorm, x))
-            early, middle = x if number == self.early else early, x if number == self.middle else middle
+            early = x if number == self.early else early
+            middle = x if number == self.middle else middle
         return Pass(norm(self.text.norm, x), early, middle, seen, queries, keys)
 
     def _rope(self, positions: Tensor) -> tuple[Tensor, Tensor]:
@@ -206,14 +208,14 @@ class Forward:
         return self._answers(batch, self.run(batch, batch.picks).last, candidates)
 
     def lesson(self, batch: Batch, candidates: Tensor | None, taggers: Taggers) -> Lesson:
-        """The losses of answers, sentences and drawings."""
+        """The losses of answers, sentences, phrases, drawings and pointers."""
         way = self.run(batch, batch.picks)
         answers, right = self._answers(batch, way.last, candidates)
         return Lesson(
             answers,
             right,
             taggers.sentences(way.middle.flatten(0, 1)[batch.ends], batch.told),
-            taggers.items(way.early.flatten(0, 1)[batch.items], batch.listed),
+            taggers.phrases(way.early.flatten(0, 1)[batch.phrases], batch.noted),
             taggers.drawings(way.seen, batch.drawn),
             self._pointers(batch, way),
         )

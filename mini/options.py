@@ -47,7 +47,7 @@ class Options:
     fixed_eyes: int = 0
     """1: eye and vision tower are not trained."""
     sentences: float = 0.1
-    """Weight of what sentences and items of lists tell, beside the answers."""
+    """Weight of what sentences and phrases tell, beside the answers."""
     pointers: float = 0.1
     """Weight of where an answer looks for what it is to say, beside the answers."""
     drawings: float = 0.1

@@ -20,6 +20,7 @@ from PIL import Image, ImageDraw
 
 from mini import answers, picture, tags
 from mini.batch import Batch
+from mini.generator.notes import IDS, NOTES
 from mini.generator.report import Report
 from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
 
@@ -45,8 +46,8 @@ class Row:
     pieces: list[tuple[str, str]] = field(default_factory=list)
     text_tags: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of the last token of each sentence and what the sentence tells, as indices into `tags.TEXT`."""
-    item_tags: list[tuple[int, list[int]]] = field(default_factory=list)
-    """Place of the last token of each item of a list of lanes and what it tells, as indices into `tags.ITEM`."""
+    notes: list[tuple[int, list[int]]] = field(default_factory=list)
+    """Place of the last token of each noted phrase and what it tells, as indices into `NOTES`."""
     pointers: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of a value and the places that tell it."""
     picture_tags: NDArray[np.uint8] | None = None
@@ -78,13 +79,17 @@ def road_ids(road: answers.Any) -> tuple[str, ...]:
 
 
 def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
-    """Note at the end of every sentence and of every item of a list what it tells; `ends` are the letters behind the
+    """Note at the end of every sentence and of every noted phrase what it tells; `ends` are the letters behind the
     narrative's tokens."""
     behind, before = np.array(ends), set[str]()
     for end, facts in report.sentences:
         row.text_tags.append((int(np.searchsorted(behind, end)), tags.told(report.crash, facts, before)))
         before |= facts
-    row.item_tags = [(int(np.searchsorted(behind, end)), tags.listed(item)) for end, item in report.items]
+    for end, names in report.notes:
+        at = int(np.searchsorted(behind, end))
+        row.notes.append(
+            (at - bool(behind[at] > end), [NOTES[name] for name in names])
+        )  # its last word may be left out
 
 
 def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:
@@ -131,23 +136,34 @@ def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     if fact.startswith("lane.") and fact in report.doubtful:
         alike = set()  # "the left lane" of nobody tells how many: the drawing does
     found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
-    found += _listed(row, report, path, found)
+    found += _noted(row, report, path, found)
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
     return found
 
 
-def _listed(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
-    """Places of the items that tell the value at a path, in those of the `sentences` (their ends) that are lists.
-
-    Lanes that lead away from the hub are those that lead towards it on the other side.
-    """
-    if len(path) < 3 or path[0] != "legs" or path[2] not in ("lanes_in", "lanes_out", "turns_in"):
-        return []
-    leg = (report.crash.legs[path[1]].bearing + 4 * (path[2] == "lanes_out")) % 8
-    ends = [at for at, _ in row.text_tags]
-    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.item_tags if tags.ITEM[f"leg={leg}"] in said]
+def _noted(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
+    """Places of the noted phrases that tell the value at a path, within the `sentences` (their ends) that tell it."""
+    wanted, ends = {NOTES[name] for name in _notes(report, path)}, [at for at, _ in row.text_tags]
+    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if wanted and wanted <= set(said)]
     return [at for at, end in placed if end in sentences and at < end]
+
+
+def _notes(report: Report, path: tuple[Any, ...]) -> tuple[str, ...]:
+    """Names that all stand behind a phrase that tells a value: an item of a list of lanes, a side; () for others.
+
+    Lanes that lead away from the hub are those that lead straight towards it on the other side.
+    """
+    key = str(path[-1])
+    if path[0] == "legs" and len(path) > 2 and path[2] in ("lanes_in", "turns_in"):
+        return (f"leg={report.crash.legs[path[1]].bearing}",)
+    if path[0] == "legs" and key == "lanes_out":
+        return f"leg={(report.crash.legs[path[1]].bearing + 4) % 8}", "use=through"
+    if path[0] == "contacts" and key.endswith("_area") and path[1] < len(report.crash.contacts):
+        contact = report.crash.contacts[path[1]]
+        actor = report.crash.actors[getattr(contact, key.removesuffix("_area"))].id
+        return (f"{actor}.area={getattr(contact, key)}",) if actor in IDS else ()
+    return ()
 
 
 def _closed(path: tuple[Any, ...], report: Report) -> bool:
@@ -215,7 +231,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         sources[n, found] = True
     seen = _pictured(rows)
     ends, told = _asked([row.text_tags for row in rows], len(tags.TEXT), longest)
-    items, listed = _asked([row.item_tags for row in rows], len(tags.ITEM), longest)
+    phrases, noted = _asked([row.notes for row in rows], len(NOTES), longest)
     return Batch(
         ids=torch.from_numpy(ids),
         positions=torch.from_numpy(place),
@@ -224,8 +240,8 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         weights=torch.tensor(weights),
         ends=ends,
         told=told,
-        items=items,
-        listed=listed,
+        phrases=phrases,
+        noted=noted,
         drawn=_drawn(seen),
         pointing=torch.tensor([i * longest + at - 1 for i, at, _ in pointing], dtype=torch.int64),
         sources=torch.from_numpy(sources),
@@ -234,11 +250,11 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
 
 
 def _asked(
-    found: Sequence[Sequence[tuple[int, list[int]]]], tags: int, longest: int
+    found: Sequence[Sequence[tuple[int, list[int]]]], kinds: int, longest: int
 ) -> tuple[torch.Tensor, torch.Tensor]:
-    """Flat places of the tagged tokens of every row, (S,), and the tags of each, (S, tags)."""
+    """Flat places of the tagged tokens of every row, (S,), and the tags of each, (S, kinds)."""
     places = [i * longest + at for i, row in enumerate(found) for at, _ in row]
-    told = np.zeros((len(places), tags), np.float32)
+    told = np.zeros((len(places), kinds), np.float32)
     for n, said in enumerate(said for row in found for _, said in row):
         told[n, said] = 1
     return torch.tensor(places, dtype=torch.int64), torch.from_numpy(told)

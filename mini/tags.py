@@ -2,7 +2,7 @@
 
 Answers alone teach slowly: one value of a long answer must find, through all layers, the one clause or the one
 spot of the drawing that tells it. While training, small heads that are thrown away afterwards also ask at the
-end of every sentence which facts it told, behind every item of a list of lanes which lanes those are, and at
+end of every sentence which facts it told, behind every noted phrase (`notes`) what it tells by itself, and at
 every token of a drawing what is drawn there. Knows reports; knows no tokens and no model.
 """
 
@@ -13,13 +13,12 @@ from typing import Any
 
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
-from mini.generator.listed import MOST, USES, Item
+from mini.generator.notes import IDS
 from mini.generator.settled import FROM_LEFT, STEM, driven, lanes_beside
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
 LANES = range(6)
-IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
 POSES = ("before", "contact", "after")
 KINDS_OF_LEG = ("road", "driveway", "ramp")
 CURVES = ("left", "right")
@@ -71,14 +70,8 @@ def _picture_tags() -> dict[str, int]:
     return {name: i for i, name in enumerate(names)}
 
 
-def _item_tags() -> dict[str, int]:
-    names = [f"leg={b}" for b in BEARINGS] + [f"use={use}" for use in USES] + [f"lanes={n}" for n in range(MOST + 1)]
-    return {name: i for i, name in enumerate(names)}
-
-
 TEXT = _text_tags()
 PICTURE = _picture_tags()
-ITEM = _item_tags()
 
 
 def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[int]:
@@ -160,11 +153,6 @@ def _of_actor(key: str, actor: Actor) -> list[str]:
         "kind": [f"{actor.id}.kind={actor.kind}"],
         "speed": [f"{actor.id}.speed={speed}"],
     }.get(key, [])
-
-
-def listed(item: Item) -> list[int]:
-    """Indices into `ITEM` of what an item of a list of lanes tells."""
-    return [ITEM[f"leg={item.leg}"], ITEM[f"use={item.use}"], ITEM[f"lanes={item.lanes}"]]
 
 
 # ------------------------------------------------------------------ answers

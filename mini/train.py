@@ -27,6 +27,7 @@ from mini.batch import Batch, Lesson, Taggers
 from mini.export import export
 from mini.eye import Eye
 from mini.feed import Feed, moment
+from mini.generator.notes import NOTES
 from mini.generator.report import make_report
 from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
@@ -85,7 +86,7 @@ class Trainer:
             self.eye.requires_grad_(False)
             self.forward.vision.requires_grad_(False)
         self.answer_tokens = answer_tokens(self.coder)
-        asked = (len(some) for some in (tags.TEXT, tags.ITEM, tags.PICTURE))
+        asked = (len(some) for some in (tags.TEXT, NOTES, tags.PICTURE))
         self.taggers = Taggers(self.model.config.text_config.hidden_size, *asked)
         self.taggers.to(options.device)
         others = {"heads": self.taggers, "eye": self.eye}
@@ -115,7 +116,8 @@ class Trainer:
         state = torch.load(path, map_location=self.options.device, weights_only=True)
         if state["optimizer"]["master"].keys() != self.optimizer.master.keys():
             raise ValueError(
-                f"{path} is of a model with other layers: train in another folder, --start {self.options.out}/export"
+                f"{path} is of a model with other layers or heads: train in another folder, "
+                f"--start {self.options.out}/export"
             )
         self.optimizer.load_state_dict(state["optimizer"])
         self.spent, self.steps, self.rows, self.pool = (state[k] for k in ("spent", "steps", "rows", "pool"))
@@ -239,7 +241,7 @@ class Trainer:
         started = time.monotonic()
         options, lesson = self.options, self._lesson(batch)
         loss = lesson.answers + options.drawings * lesson.drawings + options.pointers * lesson.pointers
-        loss = loss + options.sentences * (lesson.sentences + lesson.items)
+        loss = loss + options.sentences * (lesson.sentences + lesson.phrases)
         loss.backward()
         self.ranks.average(self.optimizer.live.values())
         self.optimizer.step(schedule(self.progress, self.options.hold))
@@ -251,9 +253,7 @@ class Trainer:
                 step=self.steps,
                 seconds=self.spent,
                 rows=self.rows,
-                loss=float(lesson.answers.detach()),
-                right=float(lesson.right),
-                **{key: float(getattr(lesson, key).detach()) for key in ("sentences", "items", "drawings", "pointers")},
+                **lesson.figures,
                 step_s=took,
                 batch=len(rows),
                 tokens=batch.ids.shape[1],

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from random import Random
 
-from mini.generator.listed import Item
+from mini.generator.notes import name_of
 
 _CHOICE = re.compile(r"\[([^\[\]]*)\]")
 SLOTS = re.compile(r"\{(\w+)\}")
@@ -116,27 +116,27 @@ class Told(set[str]):
 
 @dataclass
 class Written:
-    """A narrative, where each of its sentences ends and which facts it tells, and where each item of a list ends."""
+    """A narrative, where each of its sentences ends and which facts it tells, and where each noted phrase ends."""
 
     narrative: str = ""
     sentences: list[tuple[int, frozenset[str]]] = field(default_factory=list)
-    items: list[tuple[int, Item]] = field(default_factory=list)
+    notes: list[tuple[int, list[str]]] = field(default_factory=list)
 
 
-def unmark(text: str) -> tuple[str, list[tuple[int, int]], list[tuple[int, Item]]]:
-    """A text without its marks, (end, number) of every marked sentence and (end, item) of every item of a list."""
+def unmark(text: str) -> tuple[str, list[tuple[int, int]], list[tuple[int, list[str]]]]:
+    """A text without its marks, (end, number) of every marked sentence and (end, names) of every noted phrase."""
     out: list[str] = []
     marks: list[tuple[int, int]] = []
-    items: list[tuple[int, Item]] = []
+    notes: dict[int, list[str]] = {}
     for letter in text:
-        number, item = ord(letter) - MARK, Item.of(letter)
+        number, name = ord(letter) - MARK, name_of(letter)
         if 0 <= number < 0x1900:
             marks.append((len(out), number))
-        elif item:
-            items.append((len(out), item))
+        elif name:
+            notes.setdefault(len(out), []).append(name)
         else:
             out.append(letter)
-    return "".join(out), marks, items
+    return "".join(out), marks, list(notes.items())
 
 
 def sentence(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from random import Random
 
-from mini.generator.listed import MARKS
+from mini.generator.notes import MARKS
 
 SLIPS = {
     "road": "raod", "east": "easr", "hospital": "hosptial", "because": "becuase", "waiting": "waitng", "avoid": "avid",

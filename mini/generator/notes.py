@@ -1,51 +1,104 @@
-"""Items of lists of lanes: what "two northbound through lanes" tells, noted behind its words while a report is written.
+"""Notes behind phrases: who a mention means, whose side a word names, which lanes an item of a list tells.
 
-A list tells the lanes of an approach item by item, and where it ends its sentence has told a dozen numbers at once.
-Whoever learns to read it is asked behind every item.
+While a report is written, marks stand behind the words of a phrase; taken out again they say where it ends and what it
+tells by itself, whatever sentence it stands in. A list tells the lanes of an approach item by item, and a clause that
+never trained speaks of "the nose of V2" as every other does: whoever learns to read is asked behind every phrase.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Container, Iterable, Mapping
 
+from mini.answers import AREAS
+from mini.generator.world import Actor
+
+IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
 USES = ("left", "through", "right")
 MOST = 15
-_FIRST, _KINDS = 0xF0000, 8 * len(USES) * (MOST + 1)
-"""So many private-use letters from here on are the marks."""
-MARKS = "".join(chr(_FIRST + number) for number in range(_KINDS))
+"""Lanes that an item can tell."""
 
 
-@dataclass(frozen=True)
-class Item:
-    """So many lanes (0 to 15) with one use towards the hub, on the leg of a bearing (0 to 7)."""
+def _names() -> list[str]:
+    names = [f"leg={b}" for b in range(8)] + [f"use={use}" for use in USES] + [f"lanes={n}" for n in range(MOST + 1)]
+    names += [f"id={i}" for i in IDS] + [f"{i}.area={a}" for i in IDS for a in AREAS]
+    return names + [f"heading={b}" for b in range(8)]
 
-    leg: int
-    use: str
-    lanes: int
 
-    @property
-    def mark(self) -> str:
-        """The letter that stands behind its words until `Item.of` finds it."""
-        return chr(_FIRST + (self.leg * len(USES) + USES.index(self.use)) * (MOST + 1) + min(self.lanes, MOST))
+NOTES = {name: index for index, name in enumerate(_names())}
+_FIRST = 0xF0000
+"""Private-use letters from here on are the marks, one for every name of `NOTES`."""
+_NAMES = {chr(_FIRST + index): name for name, index in NOTES.items()}
+MARKS = "".join(_NAMES)
+_RUN = re.compile(f"[{MARKS}]+")
+_LEG = re.compile(f"[{MARKS[:8]}]")
+_TAIL = re.compile(r"[\s,.;:]*$")
+_ONE, _OTHER = ("V", "Vf", "Vi", "S", "sa"), ("W", "T", "U", "ta")
+"""Slots of the one that a clause is about and of the other."""
+OWNERS = {"sa": "S", "ta": "T"}
+"""Slots of sides and of those whose sides they are."""
 
-    @staticmethod
-    def of(letter: str) -> Item | None:
-        """The item that a letter marks."""
-        number = ord(letter) - _FIRST
-        if not 0 <= number < _KINDS:
-            return None
-        kind, lanes = divmod(number, MOST + 1)
-        return Item(kind // len(USES), USES[kind % len(USES)], lanes)
+
+def noted(text: str, names: Iterable[str]) -> str:
+    """A phrase with marks behind its words, before what punctuation it ends with."""
+    marks = "".join(chr(_FIRST + NOTES[name]) for name in names if name in NOTES)
+    end = _TAIL.search(text).start()  # type: ignore[union-attr] - it matches every text
+    return text[:end] + marks + text[end:] if end else text
+
+
+def lanes(text: str, leg: int, use: str, count: int) -> str:
+    """An item of a list with its note: so many lanes with one use, on the way of traffic from the leg of a bearing,
+    whether there is such a leg or not; "through" where no use is said."""
+    return noted(text, (f"leg={leg}", f"use={use}", f"lanes={min(count, MOST)}"))
+
+
+def name_of(letter: str) -> str | None:
+    """What a letter marks; None for letters of the text."""
+    return _NAMES.get(letter)
 
 
 def placed(text: str, ways: Mapping[int, str]) -> str:
-    """A sentence without the marks of items that stand before the words for their way ("two lanes eastbound" may be
-    asked for its leg, "two lanes and a left turn lane for eastbound traffic" may not); `ways`: those words by leg."""
+    """A sentence in which both ways of a road have lists, without the notes of items that cannot be told yet from those
+    of the other way: behind "eastbound traffic has" they can, before "for eastbound traffic" and behind "eastbound and
+    westbound traffic have" they cannot. `ways`: the words for the way of each leg."""
     low = text.lower()
-    begun = {leg: low.find(way.lower()) for leg, way in ways.items()}
-    return "".join(
-        letter
-        for at, letter in enumerate(text)
-        if not (item := Item.of(letter)) or item.leg not in begun or 0 <= begun[item.leg] < at
-    )
+
+    def kept(run: re.Match[str]) -> str:
+        leg = _LEG.search(run[0])
+        last = max(ways, key=lambda way: low.rfind(ways[way].lower(), 0, run.start()))
+        known = leg and leg[0] == MARKS[last] and ways[last].lower() in low[: run.start()]
+        return run[0] if not leg or known else ""
+
+    return _RUN.sub(kept, text)
+
+
+class Slots:
+    """What the slots of one clause tell, asked from left to right as they are filled.
+
+    A side is told where both it and its owner are named: behind "the nose of V2", behind "its nose" once V2 was named.
+    """
+
+    def __init__(self, clause: str, one: Actor, other: Actor, areas: Mapping[str, str], given: Container[str]) -> None:
+        """`areas`: the sides that the slots `sa` and `ta` name, where they name those of an impact; `given`: slots that
+        are filled with words of another meaning than theirs."""
+        self.areas = areas
+        self.actors = dict.fromkeys(_ONE, one) | dict.fromkeys(_OTHER, other)
+        self.actors = {slot: actor for slot, actor in self.actors.items() if slot in areas or slot not in given}
+        headings = {"dir": one.heading, "xb": one.heading, "from": one.heading, "opp": one.leg}
+        self.headings = {slot: heading for slot, heading in headings.items() if slot not in given}
+        self.joined = {a for a, o in OWNERS.items() if re.search(rf"\{{{a}\}}[^{{}}.;,]{{0,16}}\{{{o}\}}", clause)}
+        """Sides whose owner follows them ("the {sa} of {S}")."""
+        self.filled: set[str] = set()
+        self.open: set[str] = set()
+
+    def next(self, slot: str) -> list[str]:
+        """Names of what the next slot tells."""
+        actor = self.actors[slot].id if slot in self.actors else ""
+        names = [f"id={actor}"] * (slot not in OWNERS) + [f"heading={self.headings.get(slot)}"]
+        told = {side for side in self.open if OWNERS[side] == slot}
+        if slot in self.areas:
+            at_once = OWNERS[slot] in self.filled and slot not in self.joined
+            told, self.open = ({slot}, self.open) if at_once else (set(), self.open | {slot})
+        self.open -= told
+        self.filled.add(slot)
+        return names + [f"{actor}.area={self.areas[side]}" for side in told]

@@ -14,7 +14,6 @@ from typing import Any
 from mini.answers import MISSING, REASONS
 from mini.generator.crash import glanced, sample_crash
 from mini.generator.grammar import HINT, Written, unmark
-from mini.generator.listed import Item
 from mini.generator.roads import beside, carriageway, misdrawn, mouths, one_way
 from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
@@ -56,8 +55,8 @@ class Report:
     drawn: set[str] = field(default_factory=set)
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
-    items: list[tuple[int, Item]] = field(default_factory=list)
-    """Where each item of a list of lanes ends, and which lanes it tells."""
+    notes: list[tuple[int, list[str]]] = field(default_factory=list)
+    """Where each noted phrase of the narrative ends and what it tells, as names of `notes.NOTES`."""
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
     doubtful: set[str] = field(default_factory=set)
@@ -114,7 +113,7 @@ def make_report(
         told,
         drawn,
         sentences,
-        written.items,
+        written.notes,
         shown,
         doubtful,
     )

@@ -7,9 +7,8 @@ import re
 from random import Random
 
 from mini.generator import clauses_road as more
-from mini.generator import words
+from mini.generator import notes, words
 from mini.generator.grammar import Told
-from mini.generator.listed import Item
 from mini.generator.settled import AXIS, FLOW, ROAD
 from mini.generator.world import Crash, Leg
 
@@ -153,8 +152,8 @@ class RoadsMixin:
         """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and of those who leave by it."""
         back = (leg.bearing + 4) % 8
         return [
-            words.lanes(leg.lanes_in, to) + Item(leg.bearing, "through", leg.lanes_in).mark,
-            words.lanes(leg.lanes_out, fro) + Item(back, "through", leg.lanes_out).mark,
+            notes.lanes(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
+            notes.lanes(words.lanes(leg.lanes_out, fro), back, "through", leg.lanes_out),
         ]
 
     def _counted(self, n: str, ways: str, word: str) -> str:

@@ -9,7 +9,7 @@ from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
-from mini.generator.listed import placed
+from mini.generator.notes import placed
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg

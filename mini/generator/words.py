@@ -6,7 +6,7 @@ from __future__ import annotations
 from random import Random
 
 from mini.generator import clauses_road as more
-from mini.generator.listed import Item
+from mini.generator import notes
 from mini.generator.world import WORDS, Crash, Leg
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
@@ -217,7 +217,7 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
         return ""
     left, right = leg.turns_in.count("left"), leg.turns_in.count("right")
     plain = leg.lanes_in - left - right
-    parts = [f"one {xb} left-turn lane{Item(leg.bearing, 'left', 1).mark}"] * bool(left)
+    parts = [notes.lanes(f"one {xb} left-turn lane", leg.bearing, "left", 1)] * bool(left)
     if plain:
         word = "through-lane" if leg.turns_in and rng.random() < 0.5 else "lane"
         some = rng.choice(
@@ -227,8 +227,8 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
                 f"{NUMBERS[plain]} {xb} {word}{'s' * (plain > 1)}",
             )
         )
-        parts.append(some + Item(leg.bearing, "through", plain).mark)
-    parts += [f"one {xb} right-turn lane{Item(leg.bearing, 'right', 1).mark}"] * bool(right)
+        parts.append(notes.lanes(some, leg.bearing, "through", plain))
+    parts += [notes.lanes(f"one {xb} right-turn lane", leg.bearing, "right", 1)] * bool(right)
     return ", ".join(parts)
 
 
@@ -261,7 +261,7 @@ def _further_lanes(rng: Random, leg: Leg, xb: str) -> str:
                 (NUMBERS[count], NUMBERS[count], str(count), *(("a", "a single") if count == 1 else ()))
             )
             some = f"{number} {word} {xb}" if behind else f"{number} {xb} {word}"
-            parts.append(some + Item(leg.bearing, use or "through", count).mark)
+            parts.append(notes.lanes(some, leg.bearing, use or "through", count))
     return ", ".join(parts)
 
 
@@ -272,16 +272,15 @@ def lane_phrase(rng: Random, leg: Leg) -> str:
     uses = [use for use in ("left", "right") if use in leg.turns_in]
     plain = leg.lanes_in - len(uses)
     number = rng.choice((NUMBERS[leg.lanes_in], NUMBERS[leg.lanes_in], str(leg.lanes_in)))
-    straight = Item(leg.bearing, "through", plain).mark
     if not uses:
         some = rng.choice((f"{number} lane", "one lane", "a single lane") if plain == 1 else (f"{number} lanes",) * 3)
-        return some + straight
-    through = f"{NUMBERS[plain]} through lane{'s' * (plain > 1)}{straight}"
+        return notes.lanes(some, leg.bearing, "through", plain)
+    through = notes.lanes(f"{NUMBERS[plain]} through lane{'s' * (plain > 1)}", leg.bearing, "through", plain)
     if not plain or rng.random() < 0.2:
         return f"{number} lane{'s' * (leg.lanes_in > 1)}, one of them for " + " and one for ".join(
             f"{u} turns" for u in uses
         )
-    parts = [f"a {use}{rng.choice((' ', '-'))}turn lane{Item(leg.bearing, use, 1).mark}" for use in uses]
+    parts = [notes.lanes(f"a {use}{rng.choice((' ', '-'))}turn lane", leg.bearing, use, 1) for use in uses]
     parts.insert(rng.choice((0, len(parts))), through)
     listed = ", ".join(parts[:-1]) + f" and {parts[-1]}"
     return f"{number} lanes, {listed}" if rng.random() < 0.25 else listed

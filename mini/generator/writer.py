@@ -15,6 +15,7 @@ from mini.generator.events import EventsMixin
 from mini.generator.grammar import HINT, MARK, SLOTS, Told, Written, clause_of, fill, sentence, unmark
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
+from mini.generator.notes import Slots, noted
 from mini.generator.scene import SceneMixin
 from mini.generator.settled import FROM_LEFT
 from mini.generator.world import WORDS, Actor, Crash
@@ -49,6 +50,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         """Age, sex and pronouns of the drivers, by actor."""
         self.waited = False
         """Whether the one who errs stood or slowed before it crossed or turned."""
+        self.touching: dict[str, str] = {}
+        """Sides that the slots of the clause about an impact name."""
         self.roads_left = rng.random() < 0.85
         """Whether the report tells lanes at all."""
 
@@ -91,8 +94,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
 
     def finish(self, text: str) -> Written:
         """The plain text and what it tells where."""
-        plain, marks, items = unmark(text)
-        return Written(plain, [(end, self.sentences[number]) for end, number in marks], items)
+        plain, marks, notes = unmark(text)
+        return Written(plain, [(end, self.sentences[number]) for end, number in marks], notes)
 
     # -------------------------------------------------------------- parts, for depleted reports
     def aftermath(self) -> list[str]:
@@ -116,7 +119,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         clause = clause_of(self.rng, options, self.held_out)
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
-        text = sentence(fill(clause, lambda slot: self._slot(slot, v, other, extra)))
+        slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], self.touching, extra)
+        text = sentence(fill(clause, lambda slot: noted(self._slot(slot, v, other, extra), slots.next(slot))))
         self.sentences.append(self.told.take())
         return text + chr(MARK + len(self.sentences) - 1)
 

@@ -1,6 +1,7 @@
-"""Lists of lanes: every item says which lanes it tells, where its words end, and answers look there."""
+"""Notes behind phrases: each says what its words tell and where they end, and answers look there."""
 
 import re
+from collections import Counter
 from dataclasses import replace
 from random import Random
 
@@ -9,19 +10,21 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mini import tags
+from mini import answers
 from mini.batch import Taggers
-from mini.generator.grammar import MARK, unmark
-from mini.generator.listed import MOST, USES, Item, placed
+from mini.generator import notes
+from mini.generator.grammar import MARK, SLOTS, unmark
 from mini.generator.noise import slips
+from mini.generator.notes import MARKS, NOTES, Slots, noted, placed
 from mini.generator.report import Report, make_report
 from mini.generator.words import NUMBERS
-from mini.generator.world import WORDS
-from mini.rows import collate, training_row
-from mini.tokens import Coder, train_tokenizer
+from mini.generator.world import WORDS, Actor
+from mini.rows import collate, road_ids, training_row
+from mini.tokens import ROAD, SCENARIO, Coder, train_tokenizer
 
 seeds = st.integers(0, 10**6)
-items = st.builds(Item, st.integers(0, 7), st.sampled_from(USES), st.integers(0, MOST))
+NAMES = {index: name for name, index in NOTES.items()}
+names = st.lists(st.sampled_from(sorted(NOTES)), max_size=4)
 COUNTS = {"a": 1, "an": 1, "a single": 1, **{word: lanes for lanes, word in enumerate(NUMBERS)}}
 TOLD = re.compile(
     r".*\b(?P<count>a single|an?|one|two|three|four|five|six|seven|\d) (?P<rest>(?:(?!\b(?:and|or)\b|[,;]).)*)$", re.S
@@ -39,49 +42,48 @@ def with_lists(count: int, held_out: bool = False) -> list[Report]:
     seed = 0
     while len(found) < count:
         report = make_report(seed, held_out, length=0.2, modes={"text": 1.0})
-        found += [report] * bool(report.items)
+        found += [report] * bool(items_of(report))
         seed += 1
     return found
 
 
-@given(item=items)
-def test_a_mark_is_read_as_the_item_it_stands_for(item: Item) -> None:
-    assert Item.of(item.mark) == item
+def items_of(report: Report) -> list[tuple[int, int, str, int]]:
+    """Items of lists of lanes: (end, leg, use, lanes)."""
+    found = [(end, dict(n.split("=") for n in some)) for end, some in report.notes if some[0].startswith("leg=")]
+    return [(end, int(told["leg"]), told["use"], int(told["lanes"])) for end, told in found]
+
+
+@given(text=st.text("ab ,.;", max_size=8), some=names)
+def test_a_noted_phrase_is_unmarked_to_its_words_and_names(text: str, some: list[str]) -> None:
+    plain, sentences, found = unmark(noted(text, some) + f".{chr(MARK)}")
+    assert plain == text + "."
+    assert sentences == [(len(plain), 0)]
+    words = text.rstrip(" ,.;")
+    assert found == ([(len(words), some)] if words and some else [])
 
 
 @given(letter=st.characters(max_codepoint=0xEFFFF))
-def test_no_other_letter_is_a_mark(letter: str) -> None:
-    assert Item.of(letter) is None
-
-
-@given(found=st.lists(st.tuples(st.text("a b,.", max_size=5), items), max_size=6))
-def test_marks_are_taken_out_with_their_places(found: list[tuple[str, Item]]) -> None:
-    text = "".join(words + item.mark for words, item in found)
-    plain, sentences, told = unmark(text + f".{chr(MARK)}")
-    assert plain == "".join(words for words, _ in found) + "."
-    assert sentences == [(len(plain), 0)]
-    assert [item for _, item in told] == [item for _, item in found]
-    assert [plain[:end] for end, _ in told] == ["".join(w for w, _ in found[: n + 1]) for n in range(len(found))]
+def test_no_letter_of_a_text_is_a_mark(letter: str) -> None:
+    assert notes.name_of(letter) is None
 
 
 @pytest.mark.parametrize("held_out", [False, True])
 def test_items_say_what_their_words_say(held_out: bool) -> None:
-    seen = slips = 0
+    seen = slipped = 0
     for report in with_lists(60, held_out):
-        for end, item in report.items:
+        for end, leg, use, lanes in items_of(report):
             words = TOLD.search(report.narrative[:end].lower())
             if words is None:  # a slip of the pen
                 continue
-            count = COUNTS.get(words["count"]) or int(words["count"])
-            assert item.lanes == count
-            assert ("left" in words["rest"]) == (item.use == "left")
-            assert ("right" in words["rest"]) == (item.use == "right")
-            way, begun = WORDS[(item.leg + 4) % 8], max((e for e, _ in report.sentences if e < end), default=0)
+            assert lanes == (COUNTS.get(words["count"]) or int(words["count"]))
+            assert ("left" in words["rest"]) == (use == "left")
+            assert ("right" in words["rest"]) == (use == "right")
+            way, begun = WORDS[(leg + 4) % 8], max((e for e, _ in report.sentences if e < end), default=0)
             before = re.sub("[/-]", "", report.narrative[begun:end].lower())
-            slips += way not in before and f"{way[0]}b" not in before
+            slipped += way not in before and f"{way[0]}b" not in before
             seen += 1
     assert seen > 150
-    assert slips < 0.02 * seen  # a slip of the pen
+    assert slipped < 0.02 * seen  # a slip of the pen
 
 
 @settings(max_examples=150, deadline=None)
@@ -89,63 +91,171 @@ def test_items_say_what_their_words_say(held_out: bool) -> None:
 def test_items_of_an_approach_sum_up_to_its_lanes(seed: int) -> None:
     report = make_report(seed, modes={"text": 1.0})
     for leg in report.crash.legs:
-        own = [item for _, item in report.items if item.leg == leg.bearing]
+        own = [(use, lanes) for _, at, use, lanes in items_of(report) if at == leg.bearing]
         if own:
-            told = sum(item.lanes for item in own)
-            assert told % leg.lanes_in == 0  # a road may be described twice
-            uses = {item.use for item in own}
-            assert {"left", "right"} & uses == {"left", "right"} & set(leg.turns_in)
+            assert sum(lanes for _, lanes in own) % leg.lanes_in == 0  # a road may be described twice
+            assert {"left", "right"} & {use for use, _ in own} == {"left", "right"} & set(leg.turns_in)
 
 
-@given(
-    parts=st.lists(st.sampled_from(["two lanes", "eastbound", "Westbound", "one lane", " and "]), max_size=6),
-    marked=st.lists(st.sampled_from([2, 6]), max_size=6),
+def touching(report: Report, number: int) -> set[str]:
+    """Names of the sides that touch at a contact."""
+    contact, actors = report.crash.contacts[number], report.crash.actors
+    sides = ((contact.striker, contact.striker_area), (contact.struck, contact.struck_area))
+    return {f"{actors[index].id}.area={area}" for index, area in sides}
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds, held_out=st.booleans())
+def test_noted_sides_are_those_that_touch(seed: int, held_out: bool) -> None:
+    report = make_report(seed, held_out, modes={"text": 1.0})
+    noted_sides = {name for _, some in report.notes for name in some if ".area=" in name}
+    assert noted_sides <= set().union(*(touching(report, number) for number in range(len(report.crash.contacts))))
+
+
+@pytest.mark.parametrize("held_out", [False, True])
+def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
+    told = both = 0
+    for seed in range(300):
+        report = make_report(seed, held_out, length=0.0, modes={"text": 1.0})
+        if (
+            "areas.0" in report.told and report.crash.contacts[0].struck_area != "back"
+        ):  # of rear ends words often say it
+            told += 1
+            both += touching(report, 0) <= {name for _, some in report.notes for name in some}
+    assert both > 0.7 * told > 70
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds, held_out=st.booleans())
+def test_a_noted_way_is_that_of_who_is_told_of(seed: int, held_out: bool) -> None:
+    report = make_report(seed, held_out, modes={"text": 1.0})
+    ways = {int(name[8:]) for _, some in report.notes for name in some if name.startswith("heading=")}
+    used = {b % 8 for actor in report.crash.actors for b in (actor.heading, actor.leg)}
+    assert ways <= used
+
+
+def asked(clause: str, areas: dict[str, str], given: tuple[str, ...] = ()) -> list[list[str]]:
+    """What the slots of a clause about V1 and V2 tell, one after the other."""
+    one, other = (
+        Actor(id=name, kind="car", leg=leg, out=leg + 4, maneuver="straight") for name, leg in (("V1", 4), ("V2", 2))
+    )
+    slots = Slots(clause, one, other, areas, given)
+    return [[name for name in slots.next(slot) if name in NOTES] for slot in SLOTS.findall(clause)]
+
+
+TOUCHING = {"sa": "front", "ta": "left"}
+
+
+@pytest.mark.parametrize(
+    ("clause", "told"),
+    [
+        ("{S} hit the {ta} of {T} with its {sa}", [["id=V1"], [], ["id=V2", "V2.area=left"], ["V1.area=front"]]),
+        ("With its {sa} {S} hit {T} in the {ta}", [[], ["id=V1", "V1.area=front"], ["id=V2"], ["V2.area=left"]]),
+        ("{S} and {T} met; the {sa} of {S} hit {T}'s {ta}",
+         [["id=V1"], ["id=V2"], [], ["id=V1", "V1.area=front"], ["id=V2"], ["V2.area=left"]]),
+        ("{V} was {xb} behind {W}", [["id=V1"], ["heading=0"], ["id=V2"]]),
+        ("{V} met {opp} traffic", [["id=V1"], ["heading=4"]]),
+    ],
+)  # fmt: skip
+def test_a_side_is_told_where_it_and_its_owner_are_named(clause: str, told: list[list[str]]) -> None:
+    assert asked(clause, TOUCHING) == told
+
+
+def test_slots_filled_with_other_words_tell_nothing() -> None:
+    assert asked("{xb} traffic passes {V}", {}, ("xb",)) == [[], ["id=V1"]]
+    assert asked("the {sa} of {S}", {}, ("sa",)) == [[], ["id=V1"]]
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ("Eastbound traffic had {two} and westbound traffic had {one}", "two one"),
+        ("There were {two} for eastbound traffic and {one} for westbound traffic", ""),
+        ("Eastbound and westbound traffic had {two} and {one}, respectively", "one"),
+        ("The road had {two} eastbound and {one} westbound", ""),
+        ("Westbound: {one}; eastbound: {two}", "one two"),
+    ],
 )
-def test_items_before_the_words_for_their_way_lose_their_marks(parts: list[str], marked: list[int]) -> None:
-    pieces = [f"{part} " for part in parts]
-    for at, leg in zip(range(len(pieces)), marked, strict=False):
-        pieces[at] += Item(leg, "through", 2).mark
-    text = "".join(pieces)
-    plain, _, kept = unmark(placed(text, {6: "eastbound", 2: "westbound"}))
-    assert plain == unmark(text)[0]
-    for end, item in unmark(text)[2]:
-        told = ("eastbound" if item.leg == 6 else "westbound") in plain[:end].lower()
-        assert ((end, item) in kept) == told
+def test_items_that_may_be_of_either_way_lose_their_notes(text: str, kept: str) -> None:
+    marked = text.format(two=notes.lanes("two lanes", 6, "through", 2), one=notes.lanes("one lane", 2, "through", 1))
+    plain, _, found = unmark(placed(marked, {6: "eastbound", 2: "westbound"}))
+    assert plain == text.format(two="two lanes", one="one lane")
+    assert [{"leg=6": "two", "leg=2": "one"}[some[0]] for _, some in found] == kept.split()
 
 
 def test_slips_of_the_pen_fall_as_if_no_mark_were_there() -> None:
     words = ["two lanes", "one eastbound lane", "a left turn lane and"] * 40
-    marked = " ".join(some + Item(6, "left", 1).mark for some in words)
+    marked = " ".join(notes.lanes(some, 6, "left", 1) for some in words)
+    assert set(marked) & set(MARKS)
     for seed in range(20):
         slipped = slips(Random(seed), marked, 0.2)
         assert unmark(slipped)[0] == slips(Random(seed), " ".join(words), 0.2)
         assert len(unmark(slipped)[2]) == len(words)
 
 
-def test_the_tagged_token_ends_the_item(coder: Coder) -> None:
-    for report in with_lists(30):
-        row = training_row(coder, report, None)
-        assert len(row.item_tags) == len(report.items)
-        for (at, said), (end, item) in zip(row.item_tags, report.items, strict=True):
-            assert coder.raw.decode(row.ids[: at + 1]).startswith(report.narrative[:end])
-            assert not coder.raw.decode(row.ids[:at]).startswith(report.narrative[:end])
-            assert said == tags.listed(item)
+@settings(max_examples=40, deadline=None)
+@given(seed=seeds)
+def test_the_tagged_token_is_the_last_within_the_phrase(coder: Coder, seed: int) -> None:
+    report = make_report(seed, length=0.3, modes={"text": 1.0})
+    row, (_, ends) = training_row(coder, report, None), coder.worn(report.narrative, 0.0, 0.0, Random(0))
+    assert len(row.notes) == len(report.notes)
+    for (at, said), (end, some) in zip(row.notes, report.notes, strict=True):
+        assert ends[at] <= end < ends[at + 1]
+        assert said == [NOTES[name] for name in some]
 
 
-def test_lanes_point_at_the_items_that_tell_them(coder: Coder) -> None:
-    found = 0
-    for report in with_lists(60):
-        row = training_row(coder, report, None)
-        places = {at for at, _ in row.item_tags}
-        by_leg = {leg: {at for at, said in row.item_tags if tags.ITEM[f"leg={leg}"] in said} for leg in range(8)}
-        pointed = [frozenset(places.intersection(sources)) for _, sources in row.pointers]
-        for leg in report.crash.legs:
-            known = f"lanes.{leg.bearing % 4}" in report.told and f"turns.{leg.bearing % 4}" in report.told
-            if known and by_leg[leg.bearing]:
-                assert by_leg[leg.bearing] in pointed
-                found += 1
-        assert set().union(*pointed) <= places
-    assert found > 40
+def pointed(coder: Coder, report: Report) -> dict[tuple[object, ...], list[set[str]]]:
+    """What is noted at the phrases that each value of the answers points at, by the path of the value."""
+    row = training_row(coder, report, None)
+    assert report.behavior is not None
+    walks = {ROAD: (answers.road_walk(), report.road),
+             SCENARIO: (answers.behavior_walk(road_ids(report.road)), report.behavior)}  # fmt: skip
+    paths, at = {}, row.ids.index(coder.special[ROAD])
+    for task, (walk, answer) in walks.items():
+        assert row.ids[at] == coder.special[task]
+        at += 1
+        for text, pick in answers.write(walk, answer):
+            paths[at] = pick.path if pick else ()
+            at += len(coder.piece(text))
+    said = {place: {NAMES[index] for index in some} for place, some in row.notes}
+    found = {paths[place]: [said[source] for source in sources if source in said] for place, sources in row.pointers}
+    return {path: some for path, some in found.items() if some}
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=seeds)
+def test_values_point_at_the_phrases_that_tell_them_and_at_no_others(coder: Coder, seed: int) -> None:
+    report = make_report(seed, length=0.1, modes={"text": 1.0})
+    crash = report.crash
+    for path, phrases in pointed(coder, report).items():
+        if path[0] == "contacts":
+            contact = crash.contacts[path[1]]
+            part = str(path[2]).removesuffix("_area")
+            area = f"{crash.actors[getattr(contact, part)].id}.area={getattr(contact, f'{part}_area')}"
+            assert str(path[2]).endswith("_area")
+            assert all(area in some for some in phrases)
+            continue
+        assert path[0] == "legs"
+        leg, told = crash.legs[path[1]], [dict(n.split("=") for n in some) for some in phrases]
+        away = path[2] == "lanes_out"
+        assert path[2] in ("lanes_in", "lanes_out", "turns_in")
+        assert {int(item["leg"]) for item in told} == {(leg.bearing + 4 * away) % 8}
+        assert not away or {item["use"] for item in told} == {"through"}
+        assert not away or all(int(item["lanes"]) == leg.lanes_out for item in told)
+
+
+def test_lanes_and_sides_do_point_at_phrases(coder: Coder) -> None:
+    found = Counter(str(path[2]) for report in with_lists(40) if report.behavior for path in pointed(coder, report))
+    assert min(found[key] for key in ("lanes_in", "lanes_out", "turns_in", "striker_area", "struck_area")) > 10
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=seeds)
+def test_a_phrase_whose_last_word_is_left_out_is_asked_at_the_one_before(coder: Coder, seed: int) -> None:
+    report = make_report(seed, length=0.3, modes={"text": 1.0})
+    row = training_row(coder, report, None, worn=(0.0, 0.3))
+    _, ends = coder.worn(report.narrative, 0.0, 0.3, Random(f"{report.seed} worn"))
+    assert all(ends[at] <= end for (at, _), (end, _) in zip(row.notes, report.notes, strict=True))
 
 
 def test_a_list_that_tells_nothing_for_sure_is_pointed_at_by_nothing(coder: Coder) -> None:
@@ -153,25 +263,24 @@ def test_a_list_that_tells_nothing_for_sure_is_pointed_at_by_nothing(coder: Code
     for report in with_lists(10):
         mute = [(end, {f for f in facts if not f.startswith(("lanes", "turns"))}) for end, facts in report.sentences]
         row = training_row(coder, replace(report, sentences=mute), None)
-        assert row.item_tags
-        assert not any({at for at, _ in row.item_tags}.intersection(sources) for _, sources in row.pointers)
+        items = {at for at, said in row.notes if any(said[0] == NOTES[f"leg={leg}"] for leg in range(8))}
+        assert items
+        assert not any(items.intersection(sources) for _, sources in row.pointers)
 
 
-def test_a_batch_carries_the_items_of_its_rows_and_heads_learn_them(coder: Coder) -> None:
+def test_a_batch_carries_the_notes_of_its_rows_and_heads_learn_them(coder: Coder) -> None:
     rows = [training_row(coder, report, None) for report in with_lists(4)]
     batch = collate(rows, coder)
-    assert batch.items.tolist() == [
-        i * batch.ids.shape[1] + at for i, row in enumerate(rows) for at, _ in row.item_tags
-    ]
-    assert batch.listed.sum(dim=1).tolist() == [3.0] * len(batch.items)
+    assert batch.phrases.tolist() == [i * batch.ids.shape[1] + at for i, row in enumerate(rows) for at, _ in row.notes]
+    assert batch.noted.sum(dim=1).tolist() == [len(said) for row in rows for _, said in row.notes]
     torch.manual_seed(0)
-    heads = Taggers(16, 5, len(tags.ITEM), 7)
-    states = torch.randn(len(batch.items), 16)
-    before = float(heads.items(states, batch.listed).detach())
+    heads = Taggers(16, 5, len(NOTES), 7)
+    states = torch.randn(len(batch.phrases), 16)
+    before = float(heads.phrases(states, batch.noted).detach())
     step = torch.optim.Adam(heads.parameters(), lr=0.05)
     for _ in range(60):
         step.zero_grad()
-        heads.items(states, batch.listed).backward()
+        heads.phrases(states, batch.noted).backward()
         step.step()
-    assert float(heads.items(states, batch.listed).detach()) < 0.5 * before
-    assert float(heads.items(states[:0], batch.listed[:0]).detach()) == 0
+    assert float(heads.phrases(states, batch.noted).detach()) < 0.5 * before
+    assert float(heads.phrases(states[:0], batch.noted[:0]).detach()) == 0
