@@ -7,7 +7,6 @@ answer: one sequence that trains both queries. Knows no model and no optimizer.
 from __future__ import annotations
 
 import json
-from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from random import Random
@@ -18,9 +17,9 @@ import torch
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from mini import answers, picture, tags
+from mini import answers, picture, pointers, tags
 from mini.batch import Batch
-from mini.generator.notes import IDS, NOTES
+from mini.generator.notes import NOTES
 from mini.generator.report import Report
 from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
 
@@ -127,51 +126,6 @@ def training_row(
     return row
 
 
-def _sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
-    """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
-    fact, shown = tags.fact_of(path, report.crash)
-    alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
-    legs = {tags.TEXT[shown]} if fact == "legs" else set()  # told in parts, by those who use a leg
-    told = zip(row.text_tags, report.sentences, strict=True)
-    if fact.startswith("lane.") and fact in report.doubtful:
-        alike = set()  # "the left lane" of nobody tells how many: the drawing does
-    found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
-    found += _noted(row, report, path, found)
-    if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
-        found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()
-    return found
-
-
-def _noted(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
-    """Places of the noted phrases that tell the value at a path, within the `sentences` (their ends) that tell it."""
-    wanted, ends = {NOTES[name] for name in _notes(report, path)}, [at for at, _ in row.text_tags]
-    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if wanted and wanted <= set(said)]
-    return [at for at, end in placed if end in sentences and at < end]
-
-
-def _notes(report: Report, path: tuple[Any, ...]) -> tuple[str, ...]:
-    """Names that all stand behind a phrase that tells a value: an item of a list of lanes, a side; () for others.
-
-    Lanes that lead away from the hub are those that lead straight towards it on the other side.
-    """
-    key = str(path[-1])
-    if path[0] == "legs" and len(path) > 2 and path[2] in ("lanes_in", "turns_in"):
-        return (f"leg={report.crash.legs[path[1]].bearing}",)
-    if path[0] == "legs" and key == "lanes_out":
-        return f"leg={(report.crash.legs[path[1]].bearing + 4) % 8}", "use=through"
-    if path[0] == "contacts" and key.endswith("_area") and path[1] < len(report.crash.contacts):
-        contact = report.crash.contacts[path[1]]
-        actor = report.crash.actors[getattr(contact, key.removesuffix("_area"))].id
-        return (f"{actor}.area={getattr(contact, key)}",) if actor in IDS else ()
-    return ()
-
-
-def _closed(path: tuple[Any, ...], report: Report) -> bool:
-    """Whether a path asks for lanes of a direction that a one-way road does not have."""
-    asks = len(path) == 3 and path[0] == "legs" and path[2] in ("lanes_in", "lanes_out")
-    return asks and path[1] < len(report.crash.legs) and not getattr(report.crash.legs[path[1]], path[2])
-
-
 def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], report: Report) -> None:
     row.ids.append(coder.special[task])
     open_number = False
@@ -182,7 +136,7 @@ def _answer(coder: Coder, row: Row, task: str, pieces: list[answers.Piece], repo
         if pick is not None and len(pick.options) >= 1:
             weight = report.weight(pick.path)
             row.picks += [(len(row.ids) + i, weight) for i in range(len(ids))]
-            if weight >= 1 and (sources := _sources(row, report, pick.path)):
+            if weight >= 1 and (sources := pointers.sources(row, report, pick.path)):
                 row.pointers.append((len(row.ids), sources))
         row.ids += ids
 

@@ -9,6 +9,7 @@ from random import Random
 from mini.generator import clauses_road as more
 from mini.generator import notes, words
 from mini.generator.grammar import Told
+from mini.generator.lane_lists import IN_BRACKETS, split
 from mini.generator.settled import AXIS, FLOW, ROAD
 from mini.generator.world import Crash, Leg
 
@@ -121,7 +122,7 @@ class RoadsMixin:
         told = (even and not turns) or (leg.twltl and total in (3, 5))
         if bracket:
             text, told = f"{text} {self._bracket(leg, legs)}", True
-            text += NAMED * (leg.median in words.IN_BRACKETS)
+            text += NAMED * (leg.median in IN_BRACKETS)
             self.told.add(f"turns.{leg.bearing % 4}")
         elif divided and rng.random() < 0.5:
             text += f" {divided}"
@@ -221,9 +222,7 @@ class RoadsMixin:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
         rng = self.rng
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        return words.split(
-            rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing), self.held_out
-        )
+        return split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing), self.held_out)
 
     def _limit(self, slot: str) -> str:
         axis = (self._first + 2 * (slot == "lim2")) % 4

@@ -9,6 +9,7 @@ from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.grammar import clause_of
+from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
@@ -197,7 +198,7 @@ class SceneMixin(RoadsMixin):
         self.stated.add(f"lanes.{axis}")
         if one.lanes_in == one.lanes_out and not (one.turns_in or one.twltl or back.turns_in) and rng.random() < 0.4:
             return [self._alike(one, axis, ab, bb)]
-        lists = {"alist": words.lane_phrase(rng, one), "blist": words.lane_phrase(rng, other)}
+        lists = {"alist": lane_phrase(rng, one), "blist": lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]
         text = self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)
         return [placed(text, {one.bearing: ab, other.bearing: bb})]

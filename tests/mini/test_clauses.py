@@ -11,7 +11,8 @@ from mini.generator import words
 from mini.generator.clauses_critical import CRITICAL
 from mini.generator.crash import sample_crash
 from mini.generator.events import STATES
-from mini.generator.grammar import fill, sentence
+from mini.generator.grammar import fill, sentence, unmark
+from mini.generator.lane_lists import lane_phrase
 from mini.generator.world import Crash, Leg
 from mini.generator.writer import Writer
 
@@ -50,7 +51,7 @@ def test_lanes_told_add_up(seed: int, lanes: int, turns: tuple[str, ...]) -> Non
     through = ["through"] * (lanes - len(turns))
     uses = ["right"] * ("right" in turns) + through + ["left"] * ("left" in turns)
     leg = Leg(0, lanes, 1, turns_in=uses if turns else [])
-    told = words.lane_phrase(Random(seed), leg)
+    told = unmark(lane_phrase(Random(seed), leg))[0]
     for turn in ("left", "right"):
         assert (turn in told) == (turn in turns)
     head, _, listed = told.partition(" lanes, ")

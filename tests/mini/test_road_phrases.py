@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mini.generator import clauses_road, words, writer
+from mini.generator import clauses_road, lane_lists, words, writer
+from mini.generator.grammar import unmark
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, ROAD
 from mini.generator.world import WORDS, Crash, Leg
@@ -31,7 +32,7 @@ def _leg(rng: Random) -> Leg:
 def test_lanes_told_one_way_add_up(seed: int) -> None:
     rng = Random(seed)
     leg = _leg(rng)
-    text = words._further_lanes(rng, leg, "northbound")
+    text = unmark(lane_lists._further_lanes(rng, leg, "northbound"))[0]
     parts = text.replace("a single", "one").split(", ")
     assert sum(COUNTS[part.split()[0]] for part in parts) == leg.lanes_in
     for use in ("left", "right"):
@@ -45,9 +46,9 @@ def test_a_bracket_tells_both_ways_and_what_lies_between(seed: int) -> None:
     rng = Random(seed)
     leg, back = _leg(rng), _leg(rng)
     leg.median = back.median = rng.choice(("none", "painted", "grass", "raised", "barrier"))
-    text = words.split(rng, leg, back, "northbound", "southbound", rng.random() < 0.5)
+    text = unmark(lane_lists.split(rng, leg, back, "northbound", "southbound", rng.random() < 0.5))[0]
     assert text.count("northbound") >= 1 <= text.count("southbound")
-    named = leg.median in words.IN_BRACKETS
+    named = leg.median in lane_lists.IN_BRACKETS
     assert any(word in text for word in ("median", "barrier", "divider", "wall")) == named
     assert text[0] + text[-1] == "()" or "(" not in text
 
@@ -68,7 +69,7 @@ def test_a_lane_is_named_for_where_it_lies(held_out: bool, turns: list[str]) -> 
 
 def test_the_held_out_side_tells_lanes_as_it_always_did() -> None:
     leg, back = Leg(0, 3, 2, ["right", "through", "left"]), Leg(4, 2, 2)
-    told = {words.split(Random(i), leg, back, "southbound", "northbound", True) for i in range(60)}
+    told = {unmark(lane_lists.split(Random(i), leg, back, "southbound", "northbound", True))[0] for i in range(60)}
     assert all(text.startswith("(one southbound left-turn lane, one ") for text in told)
 
 

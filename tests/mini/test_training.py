@@ -135,7 +135,7 @@ def test_a_folder_of_another_depth_is_not_resumed(tmp_path: Path) -> None:
     state = torch.load(tmp_path / "state.pt", weights_only=True)
     state["optimizer"]["master"].popitem()
     torch.save(state, tmp_path / "state.pt")
-    with pytest.raises(ValueError, match=r"state\.pt is of a model with other layers: .* --start .*export"):
+    with pytest.raises(ValueError, match=r"state\.pt is of a model with other layers or heads: .* --start .*export"):
         Trainer(parse(options(tmp_path, 1)))
 
 
