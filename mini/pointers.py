@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mini import tags
-from mini.generator.notes import IDS, NOTES
+from mini.generator.notes import NOTES
 from mini.generator.report import Report
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def _notes(report: Report, path: tuple[Any, ...]) -> tuple[str, ...]:
     if path[0] == "contacts" and key.endswith("_area") and path[1] < len(report.crash.contacts):
         contact = report.crash.contacts[path[1]]
         actor = report.crash.actors[getattr(contact, key.removesuffix("_area"))].id
-        return (f"{actor}.area={getattr(contact, key)}",) if actor in IDS else ()
+        name = f"{actor}.area={getattr(contact, key)}"
+        return (name,) if name in NOTES else ()
     return ()
 
 

@@ -86,9 +86,8 @@ def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
         before |= facts
     for end, names in report.notes:
         at = int(np.searchsorted(behind, end))
-        row.notes.append(
-            (at - bool(behind[at] > end), [NOTES[name] for name in names])
-        )  # its last word may be left out
+        at -= bool(at and behind[at] > end)  # its last word may be left out
+        row.notes.append((at, [NOTES[name] for name in names]))
 
 
 def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:

@@ -148,7 +148,7 @@ class Coder:
 
     def worn(self, text: str, broken: float, dropped: float, rng: Random) -> tuple[list[int], list[int]]:
         """Ids of a narrative without special tokens as a careless copy has it, and the letter behind each (of the first
-        parts of a broken token the letter that it begins with).
+        parts of a broken token its first letter).
 
         Of its tokens the share `broken` (0 to 1) is broken into what they were merged from, so that forms of a word
         that never trained are read by their parts (after Provilkov et al. 2020, "BPE-Dropout", from the finished token
@@ -166,7 +166,7 @@ class Coder:
                 continue
             parts = self._parts(token, broken, rng)
             ids += parts
-            ends += [start] * (len(parts) - 1) + [end]
+            ends += [start + 1] * (len(parts) - 1) + [end]
         return ids, ends
 
     def _parts(self, token: int, share: float, rng: Random) -> list[int]:

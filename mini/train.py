@@ -138,7 +138,8 @@ class Trainer:
         config = self.model.config
         found = deepened(found, config.text_config.num_hidden_layers)
         found = deepened(found, config.vision_config.depth, BLOCKS)
-        fits = {k: v for k, v in found.items() if v.shape == masters[k].shape or not k.startswith("heads.")}
+        same = {k for k in found.keys() & masters.keys() if found[k].shape == masters[k].shape}
+        fits = {k: v for k, v in found.items() if k in same or not k.startswith("heads.")}
         with torch.no_grad():
             for key, value in fits.items():
                 masters[key].copy_(value)

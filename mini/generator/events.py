@@ -65,7 +65,6 @@ class EventsMixin:
     told: Told
     who: tuple[int, int]
     waited: bool
-    touching: dict[str, str]
 
     say: Any
     id_of: Any
@@ -191,10 +190,8 @@ class EventsMixin:
             self.told.add(f"contact.{number}")
         walks = self.crash.actors[contact.struck].kind in ("pedestrian", "bicycle")  # no clause tells its side
         self.told |= {f"areas.{number}"} if areas and not walks else set()
-        self.touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
-        text: str = self.say([clause], contact.striker, contact.struck, sa=sa, ta=ta)
-        self.touching = {}
-        return text
+        touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
+        return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
 
     def _framed(self, options: list[str]) -> list[str]:
         """The clauses of this side of the split, now and then with a few words before or behind every one."""

@@ -1,8 +1,9 @@
 """Notes behind phrases: who a mention means, whose side a word names, which lanes an item of a list tells.
 
-While a report is written, marks stand behind the words of a phrase; taken out again they say where it ends and what it
-tells by itself, whatever sentence it stands in. A list tells the lanes of an approach item by item, and a clause that
-never trained speaks of "the nose of V2" as every other does: whoever learns to read is asked behind every phrase.
+While a report is written, marks stand behind the words of such phrases; taken out again they say where each ends and
+what it tells, in whatever sentence it stands. A list tells the lanes of an approach item by item, and a clause that
+never trained speaks of "the nose of V2" as every other does: whoever learns to read is asked there. Phrases within
+codes and statements have no notes.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from mini.generator.world import Actor
 
 IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
 USES = ("left", "through", "right")
-MOST = 15
+MOST = 8
 """Lanes that an item can tell."""
 
 
 def _names() -> list[str]:
     names = [f"leg={b}" for b in range(8)] + [f"use={use}" for use in USES] + [f"lanes={n}" for n in range(MOST + 1)]
-    names += [f"id={i}" for i in IDS] + [f"{i}.area={a}" for i in IDS for a in AREAS]
+    names += [f"id={i}" for i in IDS] + [f"{i}.area={a}" for i in IDS if i.startswith("V") for a in AREAS]
     return names + [f"heading={b}" for b in range(8)]
 
 
@@ -31,17 +32,17 @@ _FIRST = 0xF0000
 _NAMES = {chr(_FIRST + index): name for name, index in NOTES.items()}
 MARKS = "".join(_NAMES)
 _RUN = re.compile(f"[{MARKS}]+")
-_LEG = re.compile(f"[{MARKS[:8]}]")
+_LEGS = {chr(_FIRST + NOTES[f"leg={b}"]): b for b in range(8)}
 _TAIL = re.compile(r"[\s,.;:]*$")
-_ONE, _OTHER = ("V", "Vf", "Vi", "S", "sa"), ("W", "T", "U", "ta")
+_ONE, _OTHER = ("V", "Vf", "Vi", "S", "sa"), ("W", "T", "ta")
 """Slots of the one that a clause is about and of the other."""
 OWNERS = {"sa": "S", "ta": "T"}
 """Slots of sides and of those whose sides they are."""
 
 
 def noted(text: str, names: Iterable[str]) -> str:
-    """A phrase with marks behind its words, before what punctuation it ends with."""
-    marks = "".join(chr(_FIRST + NOTES[name]) for name in names if name in NOTES)
+    """A phrase with marks behind its words, before what punctuation it ends with; `names` are of `NOTES`."""
+    marks = "".join(chr(_FIRST + NOTES[name]) for name in names)
     end = _TAIL.search(text).start()  # type: ignore[union-attr] - it matches every text
     return text[:end] + marks + text[end:] if end else text
 
@@ -49,7 +50,7 @@ def noted(text: str, names: Iterable[str]) -> str:
 def lanes(text: str, leg: int, use: str, count: int) -> str:
     """An item of a list with its note: so many lanes with one use, on the way of traffic from the leg of a bearing,
     whether there is such a leg or not; "through" where no use is said."""
-    return noted(text, (f"leg={leg}", f"use={use}", f"lanes={min(count, MOST)}"))
+    return noted(text, (f"leg={leg}", f"use={use}", f"lanes={min(count, MOST)}", f"heading={(leg + 4) % 8}"))
 
 
 def name_of(letter: str) -> str | None:
@@ -59,15 +60,16 @@ def name_of(letter: str) -> str | None:
 
 def placed(text: str, ways: Mapping[int, str]) -> str:
     """A sentence in which both ways of a road have lists, without the notes of items that cannot be told yet from those
-    of the other way: behind "eastbound traffic has" they can, before "for eastbound traffic" and behind "eastbound and
-    westbound traffic have" they cannot. `ways`: the words for the way of each leg."""
+    of the other way: behind "eastbound traffic has" they can, before "for eastbound traffic" they cannot. Behind
+    "eastbound and westbound traffic have" only those of the way that is named last can. `ways`: by leg, the words for
+    its way."""
     low = text.lower()
 
     def kept(run: re.Match[str]) -> str:
-        leg = _LEG.search(run[0])
-        last = max(ways, key=lambda way: low.rfind(ways[way].lower(), 0, run.start()))
-        known = leg and leg[0] == MARKS[last] and ways[last].lower() in low[: run.start()]
-        return run[0] if not leg or known else ""
+        leg = next((_LEGS[letter] for letter in run[0] if letter in _LEGS), None)
+        named = {way: low.rfind(words.lower(), 0, run.start()) for way, words in ways.items()}
+        last = max(named, key=named.__getitem__)
+        return run[0] if leg is None or (leg == last and named[last] >= 0) else ""
 
     return _RUN.sub(kept, text)
 
@@ -94,11 +96,11 @@ class Slots:
     def next(self, slot: str) -> list[str]:
         """Names of what the next slot tells."""
         actor = self.actors[slot].id if slot in self.actors else ""
-        names = [f"id={actor}"] * (slot not in OWNERS) + [f"heading={self.headings.get(slot)}"]
         told = {side for side in self.open if OWNERS[side] == slot}
         if slot in self.areas:
             at_once = OWNERS[slot] in self.filled and slot not in self.joined
             told, self.open = ({slot}, self.open) if at_once else (set(), self.open | {slot})
         self.open -= told
         self.filled.add(slot)
-        return names + [f"{actor}.area={self.areas[side]}" for side in told]
+        names = [f"id={actor}"] * (slot not in OWNERS) + [f"heading={self.headings.get(slot)}"]
+        return [name for name in names + [f"{actor}.area={self.areas[side]}" for side in told] if name in NOTES]

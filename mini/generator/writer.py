@@ -50,8 +50,6 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         """Age, sex and pronouns of the drivers, by actor."""
         self.waited = False
         """Whether the one who errs stood or slowed before it crossed or turned."""
-        self.touching: dict[str, str] = {}
-        """Sides that the slots of the clause about an impact name."""
         self.roads_left = rng.random() < 0.85
         """Whether the report tells lanes at all."""
 
@@ -114,12 +112,14 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         return (self._opening() if not self.ciren else []) + self._approaches()
 
     # -------------------------------------------------------------- slots
-    def say(self, options: list[str], v: int = 0, w: int | None = None, **extra: str) -> str:
-        """One sentence of a role about actors v and w."""
+    def say(
+        self, options: list[str], v: int = 0, w: int | None = None, touching: dict[str, str] | None = None, **extra: str
+    ) -> str:
+        """One sentence of a role about actors v and w; `touching`: the sides that its slots `sa` and `ta` name."""
         clause = clause_of(self.rng, options, self.held_out)
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
-        slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], self.touching, extra)
+        slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
         text = sentence(fill(clause, lambda slot: noted(self._slot(slot, v, other, extra), slots.next(slot))))
         self.sentences.append(self.told.take())
         return text + chr(MARK + len(self.sentences) - 1)
@@ -141,7 +141,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             text, kind = self.mentions.full(v) if slot == "Vf" else self.mentions.presented(v)
             self.told |= {f"kind.{self.id_of(v)}"} if kind else set()
             return text
-        if slot in ("V", "W", "S", "T", "U"):
+        if slot in ("V", "W", "S", "T"):
             return self._mention(v if slot in ("V", "S") else w)
         if slot in ("dir", "xb", "opp", "from", "lane", "W0", "side0", "surf0"):
             return self._motion_slot(slot, v, w)

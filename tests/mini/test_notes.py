@@ -62,9 +62,9 @@ def test_a_noted_phrase_is_unmarked_to_its_words_and_names(text: str, some: list
     assert found == ([(len(words), some)] if words and some else [])
 
 
-@given(letter=st.characters(max_codepoint=0xEFFFF))
-def test_no_letter_of_a_text_is_a_mark(letter: str) -> None:
-    assert notes.name_of(letter) is None
+def test_a_name_that_nobody_asks_for_is_no_note() -> None:
+    with pytest.raises(KeyError, match="heading=9"):
+        noted("northbound", ["heading=9"])
 
 
 @pytest.mark.parametrize("held_out", [False, True])
@@ -125,13 +125,26 @@ def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
     assert both > 0.7 * told > 70
 
 
-@settings(max_examples=150, deadline=None)
-@given(seed=seeds, held_out=st.booleans())
-def test_a_noted_way_is_that_of_who_is_told_of(seed: int, held_out: bool) -> None:
-    report = make_report(seed, held_out, modes={"text": 1.0})
-    ways = {int(name[8:]) for _, some in report.notes for name in some if name.startswith("heading=")}
-    used = {b % 8 for actor in report.crash.actors for b in (actor.heading, actor.leg)}
-    assert ways <= used
+WAY = re.compile(
+    r"\b(from (?:the )?)?(north|south|east|west)(?:ern)?(?:[ -]?(east|west))?(?:[ -]?(?:bound|ward|erly))*"
+)
+
+
+def test_a_noted_way_is_the_one_in_its_words() -> None:
+    """Or the opposite one where they say where somebody came from."""
+    same = opposite = 0
+    for seed in range(250):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for end, some in report.notes:
+            way = next((int(name[8:]) for name in some if name.startswith("heading=")), None)
+            found = list(WAY.finditer(report.narrative[max(0, end - 34) : end].lower()))
+            if way is None or not found or found[-1].end() < min(end, 34) - 6:
+                continue  # abbreviated, misspelled, or before the words "lanes" of an item
+            told = WORDS.index(f"{found[-1][2]}{found[-1][3] or ''}")
+            assert told in (way, (way + 4) % 8)
+            same, opposite = same + (told == way), opposite + (told != way)
+    assert same > 200
+    assert 10 < opposite < 0.25 * same
 
 
 def asked(clause: str, areas: dict[str, str], given: tuple[str, ...] = ()) -> list[list[str]]:
@@ -155,6 +168,8 @@ TOUCHING = {"sa": "front", "ta": "left"}
          [["id=V1"], ["id=V2"], [], ["id=V1", "V1.area=front"], ["id=V2"], ["V2.area=left"]]),
         ("{V} was {xb} behind {W}", [["id=V1"], ["heading=0"], ["id=V2"]]),
         ("{V} met {opp} traffic", [["id=V1"], ["heading=4"]]),
+        ("From the {from}, {V} went {dir}", [["heading=0"], ["id=V1"], ["heading=0"]]),
+        ("{sa} to {ta}, {S} hit {T}", [[], [], ["id=V1", "V1.area=front"], ["id=V2", "V2.area=left"]]),
     ],
 )  # fmt: skip
 def test_a_side_is_told_where_it_and_its_owner_are_named(clause: str, told: list[list[str]]) -> None:
@@ -240,8 +255,10 @@ def test_values_point_at_the_phrases_that_tell_them_and_at_no_others(coder: Code
         away = path[2] == "lanes_out"
         assert path[2] in ("lanes_in", "lanes_out", "turns_in")
         assert {int(item["leg"]) for item in told} == {(leg.bearing + 4 * away) % 8}
-        assert not away or {item["use"] for item in told} == {"through"}
-        assert not away or all(int(item["lanes"]) == leg.lanes_out for item in told)
+        if away:
+            assert all(int(item["lanes"]) == leg.lanes_out for item in told)
+        else:  # a road may be described twice
+            assert sum(int(item["lanes"]) for item in told) % leg.lanes_in == 0
 
 
 def test_lanes_and_sides_do_point_at_phrases(coder: Coder) -> None:
@@ -249,13 +266,15 @@ def test_lanes_and_sides_do_point_at_phrases(coder: Coder) -> None:
     assert min(found[key] for key in ("lanes_in", "lanes_out", "turns_in", "striker_area", "struck_area")) > 10
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(seed=seeds)
-def test_a_phrase_whose_last_word_is_left_out_is_asked_at_the_one_before(coder: Coder, seed: int) -> None:
+def test_in_careless_copies_phrases_are_asked_within_their_words(coder: Coder, seed: int) -> None:
     report = make_report(seed, length=0.3, modes={"text": 1.0})
-    row = training_row(coder, report, None, worn=(0.0, 0.3))
-    _, ends = coder.worn(report.narrative, 0.0, 0.3, Random(f"{report.seed} worn"))
-    assert all(ends[at] <= end for (at, _), (end, _) in zip(row.notes, report.notes, strict=True))
+    row = training_row(coder, report, None, worn=(0.3, 0.3))
+    _, ends = coder.worn(report.narrative, 0.3, 0.3, Random(f"{report.seed} worn"))
+    for (at, _), (end, _) in zip(row.notes, report.notes, strict=True):
+        assert end - 40 < ends[at] <= end
+        assert ends[at + 1] > end
 
 
 def test_a_list_that_tells_nothing_for_sure_is_pointed_at_by_nothing(coder: Coder) -> None:

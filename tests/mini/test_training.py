@@ -20,7 +20,7 @@ from mini.options import CHOICES, parse
 from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
-from mini.train import EYES, Trainer, schedule
+from mini.train import EYES, HEADS, Trainer, schedule
 from sgcad_core import settings
 
 torch.set_num_threads(1)
@@ -137,6 +137,22 @@ def test_a_folder_of_another_depth_is_not_resumed(tmp_path: Path) -> None:
     torch.save(state, tmp_path / "state.pt")
     with pytest.raises(ValueError, match=r"state\.pt is of a model with other layers or heads: .* --start .*export"):
         Trainer(parse(options(tmp_path, 1)))
+
+
+def test_heads_of_other_tags_begin_anew_where_weights_do_not(tmp_path: Path) -> None:
+    trainer = Trainer(parse(options(tmp_path / "old", 1)))
+    trainer.save()
+    export = tmp_path / "old" / "export"
+    heads = load_file(export / HEADS)
+    moved = {key.replace("phrase.", "item."): value + 1 for key, value in heads.items()}
+    save_file(moved | {"picture.weight": heads["picture.weight"][:-1]}, export / HEADS)
+    begun = Trainer(parse([*options(tmp_path / "new", 1), "--start", str(export)])).optimizer.master
+    old = trainer.optimizer.master
+    assert torch.equal(begun["heads.sentence.bias"], (heads["sentence.bias"] + 1).float())
+    for fresh in ("heads.phrase.weight", "heads.phrase.bias", "heads.picture.weight"):
+        assert torch.equal(begun[fresh], old[fresh])
+    name = next(key for key in old if key.endswith("up_proj.weight"))
+    assert torch.equal(begun[name], old[name].bfloat16().float())
 
 
 def test_the_learning_rate_decays_to_a_fiftieth() -> None:

@@ -87,3 +87,11 @@ def test_a_speed_of_one_digit_ends_alike_in_both_engines(backbone: HfVision) -> 
             (a["id"], a["speed_mph"]) for a in behavior["actors"]
         ]
         assert 5 in [a["speed_mph"] for a in answer["actors"]]
+
+
+@pytest.mark.slow
+def test_answers_come_in_the_order_of_the_reports_whatever_they_have() -> None:
+    model = load(WEIGHTS)
+    modes = ("image", "text", "both", "text")
+    reports = [make_report(60_000_100 + i, length=0.2, modes={mode: 1.0}) for i, mode in enumerate(modes)]
+    assert answers_of(*model, reports, views=2, batch=3) == [answers_of(*model, [r], views=2)[0] for r in reports]
