@@ -37,8 +37,11 @@ def sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
 
 def _noted(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
     """Places of the noted phrases that tell the value at a path, within the `sentences` (their ends) that tell it."""
-    wanted, ends = {NOTES[name] for name in _notes(report, path)}, [at for at, _ in row.text_tags]
-    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if wanted and wanted <= set(said)]
+    names = _notes(report, path)
+    if not names:
+        return []
+    wanted, ends = {NOTES[name] for name in names}, [at for at, _ in row.text_tags]
+    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if wanted <= set(said)]
     return [at for at, end in placed if end in sentences and at < end]
 
 

@@ -39,7 +39,7 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
         return ""
     left, right = leg.turns_in.count("left"), leg.turns_in.count("right")
     plain = leg.lanes_in - left - right
-    parts = [notes.lanes(f"one {xb} left-turn lane", leg.bearing, "left", 1)] * bool(left)
+    parts = [notes.item(f"one {xb} left-turn lane", leg.bearing, "left", 1)] * bool(left)
     if plain:
         word = "through-lane" if leg.turns_in and rng.random() < 0.5 else "lane"
         some = rng.choice(
@@ -49,8 +49,8 @@ def lane_list(rng: Random, leg: Leg, xb: str) -> str:
                 f"{words.NUMBERS[plain]} {xb} {word}{'s' * (plain > 1)}",
             )
         )
-        parts.append(notes.lanes(some, leg.bearing, "through", plain))
-    parts += [notes.lanes(f"one {xb} right-turn lane", leg.bearing, "right", 1)] * bool(right)
+        parts.append(notes.item(some, leg.bearing, "through", plain))
+    parts += [notes.item(f"one {xb} right-turn lane", leg.bearing, "right", 1)] * bool(right)
     return ", ".join(parts)
 
 
@@ -83,7 +83,7 @@ def _further_lanes(rng: Random, leg: Leg, xb: str) -> str:
                 (words.NUMBERS[count], words.NUMBERS[count], str(count), *(("a", "a single") if count == 1 else ()))
             )
             some = f"{number} {word} {xb}" if behind else f"{number} {xb} {word}"
-            parts.append(notes.lanes(some, leg.bearing, use or "through", count))
+            parts.append(notes.item(some, leg.bearing, use or "through", count))
     return ", ".join(parts)
 
 
@@ -96,13 +96,13 @@ def lane_phrase(rng: Random, leg: Leg) -> str:
     number = rng.choice((words.NUMBERS[leg.lanes_in], words.NUMBERS[leg.lanes_in], str(leg.lanes_in)))
     if not uses:
         some = rng.choice((f"{number} lane", "one lane", "a single lane") if plain == 1 else (f"{number} lanes",) * 3)
-        return notes.lanes(some, leg.bearing, "through", plain)
-    through = notes.lanes(f"{words.NUMBERS[plain]} through lane{'s' * (plain > 1)}", leg.bearing, "through", plain)
+        return notes.item(some, leg.bearing, "through", plain)
+    through = notes.item(f"{words.NUMBERS[plain]} through lane{'s' * (plain > 1)}", leg.bearing, "through", plain)
     if not plain or rng.random() < 0.2:
         return f"{number} lane{'s' * (leg.lanes_in > 1)}, one of them for " + " and one for ".join(
             f"{u} turns" for u in uses
         )
-    parts = [notes.lanes(f"a {use}{rng.choice((' ', '-'))}turn lane", leg.bearing, use, 1) for use in uses]
+    parts = [notes.item(f"a {use}{rng.choice((' ', '-'))}turn lane", leg.bearing, use, 1) for use in uses]
     parts.insert(rng.choice((0, len(parts))), through)
     listed = ", ".join(parts[:-1]) + f" and {parts[-1]}"
     return f"{number} lanes, {listed}" if rng.random() < 0.25 else listed

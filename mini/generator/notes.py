@@ -47,7 +47,7 @@ def noted(text: str, names: Iterable[str]) -> str:
     return text[:end] + marks + text[end:] if end else text
 
 
-def lanes(text: str, leg: int, use: str, count: int) -> str:
+def item(text: str, leg: int, use: str, count: int) -> str:
     """An item of a list with its note: so many lanes with one use, on the way of traffic from the leg of a bearing,
     whether there is such a leg or not; "through" where no use is said."""
     return noted(text, (f"leg={leg}", f"use={use}", f"lanes={min(count, MOST)}", f"heading={(leg + 4) % 8}"))
@@ -84,11 +84,11 @@ class Slots:
         """`areas`: the sides that the slots `sa` and `ta` name, where they name those of an impact; `given`: slots that
         are filled with words of another meaning than theirs."""
         self.areas = areas
-        self.actors = dict.fromkeys(_ONE, one) | dict.fromkeys(_OTHER, other)
-        self.actors = {slot: actor for slot, actor in self.actors.items() if slot in areas or slot not in given}
+        own = dict.fromkeys(_ONE, one) | dict.fromkeys(_OTHER, other)
+        self.actors = {slot: actor for slot, actor in own.items() if slot in areas or slot not in given}
         headings = {"dir": one.heading, "xb": one.heading, "from": one.heading, "opp": one.leg}
         self.headings = {slot: heading for slot, heading in headings.items() if slot not in given}
-        self.joined = {a for a, o in OWNERS.items() if re.search(rf"\{{{a}\}}[^{{}}.;,]{{0,16}}\{{{o}\}}", clause)}
+        self.joined = {a for a in areas if re.search(rf"\{{{a}\}}[^{{}}.;,]{{0,16}}\{{{OWNERS[a]}\}}", clause)}
         """Sides whose owner follows them ("the {sa} of {S}")."""
         self.filled: set[str] = set()
         self.open: set[str] = set()

@@ -153,8 +153,8 @@ class RoadsMixin:
         """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and of those who leave by it."""
         back = (leg.bearing + 4) % 8
         return [
-            notes.lanes(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
-            notes.lanes(words.lanes(leg.lanes_out, fro), back, "through", leg.lanes_out),
+            notes.item(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
+            notes.item(words.lanes(leg.lanes_out, fro), back, "through", leg.lanes_out),
         ]
 
     def _counted(self, n: str, ways: str, word: str) -> str:
