@@ -12,8 +12,8 @@ from typing import Any
 from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.grammar import Told, clause_of, fill
-from mini.generator.world import Actor, Contact, Crash
+from mini.generator.grammar import Told, clause_of, families, fill
+from mini.generator.world import WORDS, Actor, Contact, Crash
 
 BY_MANEUVER = {
     "turn_left": "turn_left",
@@ -32,6 +32,8 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
+TELLING = ("{spd}", "{dir}", "{lane}", "{doing}")
+"""Slots that tell something of the one whom a clause is about."""
 
 
 def event_of(crash: Crash, index: int, who: tuple[int, int]) -> str | None:
@@ -80,6 +82,7 @@ class BlocksMixin:
     told: Told
     who: tuple[int, int]
     people: dict[int, dict[str, str]]
+    lately: set[int]
 
     say: Any
     id_of: Any
@@ -88,21 +91,29 @@ class BlocksMixin:
 
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
+        self.lately.clear()
         speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
-        out = (
-            ([self.say(SPEED, index, **self._person(index))] if speed else [])
-            + self._noise("occupant", 1.2, index)
-            + self._noise("interview", 1.1, index)
-        )
-        out += self._statements(index) + self._noise("tow", 0.6, index)
-        codes = self._coded(index) + self._noise("codes", 1.7, index)
-        return out + self._noise("health", 1.0, index) + codes + self._noise("police", 0.5, index)
+        out = self._noise("occupant", 1.2, index)
+        out += [self.say(self._clear(SPEED, index), index, **self._person(index))] if speed else []
+        out += self._noise("interview", 1.1, index) + self._statements(index)
+        out += self._noise("tow", 0.6, index) + self._noise("health", 1.0, index)
+        return out + self._coded(index) + self._noise("codes", 1.7, index) + self._noise("police", 0.5, index)
 
     def _person(self, index: int) -> dict[str, str]:
         """The driver of an actor, the same throughout a report; slips of investigators apart."""
         if index not in self.people or self.rng.random() < 0.03:
             self.people[index] = words.person(self.rng)
         return self.people[index]
+
+    def _clear(self, options: list[str], index: int) -> list[str]:
+        """Clauses of its side of the split that leave nobody in doubt whom they are about.
+
+        "He was driving 30 mph" says whose speed that is only behind a sentence of the block that names the vehicle.
+        """
+        found = families(options, self.held_out)
+        if index in self.lately or sum(actor.id.startswith("V") for actor in self.crash.actors) == 1:
+            return found
+        return [clause for clause in found if "{V}" in clause or not any(slot in clause for slot in TELLING)]
 
     def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
         """About mean * length sentences of a noise group."""
@@ -115,8 +126,31 @@ class BlocksMixin:
             others = [i for i in vehicles if i != v]
             options = [c for c in GROUPS[group] if others or ("{W}" not in c and "Both" not in c)]
             w = self.rng.choice(others) if others else v
-            out.append(self.say(options, v, w, **self._person(v)))  # type: ignore[arg-type]
+            if index is None:  # they stand in no block and in any order
+                self.lately.clear()
+            if clear := self._clear(options, v):
+                out.append(self.say(clear, v, w, **self._person(v)))
         return out
+
+    def _noise_slot(self, slot: str, v: int) -> str:
+        rng = self.rng
+        if slot == "spd":
+            actor = self.crash.actors[v]
+            if not actor.speed or f"speed.{actor.id}" in self.told:
+                return rng.choice(("slowly", "at an unknown speed", "at normal speed"))
+            text, actor.speed = words.driver_speed(rng, actor.speed)
+            self.told.add(f"speed.{actor.id}")
+            return text
+        return {
+            "any4": rng.choice(WORDS[::2]),
+            "any8": rng.choice(WORDS),
+            "any8b": rng.choice(WORDS),
+            "anyside": rng.choice(("left", "right")),
+            "deg": str(rng.choice((45, 90, 180, 270, 30, 80))),
+            "m": str(rng.randint(5, 60)),
+            "k": rng.choice(("two", "three", "2", "3", "four")),
+            "kk": str(rng.randint(5, 60)),
+        }[slot]
 
     def _coded(self, index: int) -> list[str]:
         """Critical event, movement before it, crash type: as often as reports have them."""
@@ -147,16 +181,18 @@ class BlocksMixin:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""
         rng, out, share = self.rng, [], min(1.0, self.length)
         actor, other = self.crash.actors[index], self._opponent(index)
-        person = self._person(index)
-        if actor.maneuver in said.DOING and rng.random() < 0.3 * share:
+        if not actor.id.startswith("V"):
+            return []  # trees and people on foot have no drivers
+        person, does = self._person(index), actor.maneuver in said.DOING
+        if does and rng.random() < 0.3 * share and (clear := self._clear(said.SELF_FRAMES, index)):
             self.told |= {f"man.{actor.id}"}
             doing = self._phrase(said.DOING[actor.maneuver], index, other, person)
-            out.append(self.say(said.SELF_FRAMES, index, other, doing=doing, **person))
+            out.append(self.say(clear, index, other, doing=doing, **person))
         key = None if other is None else self._seen(other)
-        if key and rng.random() < 0.25 * share:
+        if key and rng.random() < 0.25 * share and (clear := self._clear(said.OTHER_FRAMES, index)):
             self.told |= {f"man.{self.id_of(other)}"}
             did = self._phrase(said.DID[key], index, other, person)
-            out.append(self.say(said.OTHER_FRAMES, index, other, did=did, **person))
+            out.append(self.say(clear, index, other, did=did, **person))
         if rng.random() < 0.1 * share:
             contact: Contact = self.crash.contacts[0]
             if index in (contact.striker, contact.struck):

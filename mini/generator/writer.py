@@ -32,6 +32,8 @@ CIREN_ORDER = (
     "occupant",
     "interview",
 )
+PRONOUNS = ("he", "He", "his", "His")
+"""Slots of words for the driver of the one whom a clause is about."""
 
 
 class Writer(SceneMixin, EventsMixin, BlocksMixin):
@@ -48,6 +50,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         self.who = self.culprit()
         self.people: dict[int, dict[str, str]] = {}
         """Age, sex and pronouns of the drivers, by actor."""
+        self.lately: set[int] = set()
+        """Who was named since the block on a vehicle began: pronouns of its driver say whom they mean."""
         self.waited = False
         """Whether the one who errs stood or slowed before it crossed or turned."""
         self.roads_left = rng.random() < 0.85
@@ -120,7 +124,13 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
         slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
-        text = sentence(fill(clause, lambda slot: noted(self._slot(slot, v, other, extra), slots.next(slot))))
+
+        def filled(slot: str) -> str:
+            text = self._slot(slot, v, other, extra)
+            meant = [f"id={self.id_of(v)}"] if slot in PRONOUNS and v in self.lately else []
+            return noted(text, slots.next(slot) + meant)
+
+        text = sentence(fill(clause, filled))
         self.sentences.append(self.told.take())
         return text + chr(MARK + len(self.sentences) - 1)
 
@@ -138,6 +148,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         if slot in extra:
             return extra[slot]
         if slot in ("Vf", "Vi"):
+            self.lately.add(v)
             text, kind = self.mentions.full(v) if slot == "Vf" else self.mentions.presented(v)
             self.told |= {f"kind.{self.id_of(v)}"} if kind else set()
             return text
@@ -150,6 +161,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         return self._scene_slot(slot, v)
 
     def _mention(self, index: int) -> str:
+        self.lately.add(index)
         if index not in self.mentions.introduced and self.rng.random() < 0.5:
             text, kind = self.mentions.full(index)
             self.told |= {f"kind.{self.id_of(index)}"} if kind else set()
@@ -178,26 +190,6 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             "W0": "vehicle",
             "side0": self.rng.choice(("left", "right")),
             "surf0": {"ice": "icy", "snow": "snowy"}.get(self.crash.surface, self.crash.surface),
-        }[slot]
-
-    def _noise_slot(self, slot: str, v: int) -> str:
-        rng = self.rng
-        if slot == "spd":
-            actor = self.crash.actors[v]
-            if not actor.speed or f"speed.{actor.id}" in self.told:
-                return rng.choice(("slowly", "at an unknown speed", "at normal speed"))
-            text, actor.speed = words.driver_speed(rng, actor.speed)
-            self.told.add(f"speed.{actor.id}")
-            return text
-        return {
-            "any4": rng.choice(WORDS[::2]),
-            "any8": rng.choice(WORDS),
-            "any8b": rng.choice(WORDS),
-            "anyside": rng.choice(("left", "right")),
-            "deg": str(rng.choice((45, 90, 180, 270, 30, 80))),
-            "m": str(rng.randint(5, 60)),
-            "k": rng.choice(("two", "three", "2", "3", "four")),
-            "kk": str(rng.randint(5, 60)),
         }[slot]
 
     def id_of(self, index: int) -> str:

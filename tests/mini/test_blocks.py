@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from mini.generator import clauses_codes as said
 from mini.generator.blocks import BY_MANEUVER, event_of
+from mini.generator.clauses_noise import SPEED
 from mini.generator.crash import sample_crash
-from mini.generator.grammar import SLOTS
+from mini.generator.grammar import SLOTS, families
 from mini.generator.report import make_report
 from mini.generator.writer import Writer
 
@@ -70,6 +71,41 @@ def test_left_turns_are_coded_of_those_who_turn_left() -> None:
                 told += 1
                 assert facts & {f"man.{name}" for name in turning}, sentence
     assert told > 8
+
+
+@pytest.mark.parametrize("held_out", [False, True])
+def test_speeds_are_told_of_those_whom_the_paragraph_has_named(held_out: bool) -> None:
+    pronouns = 0
+    for seed in range(300):
+        report = make_report(seed, held_out, 0.8, {"text": 1.0})
+        vehicles = [actor for actor in report.crash.actors if actor.id.startswith("V")]
+        begun = 0
+        for end, facts in report.sentences:
+            told = [fact.removeprefix("speed.") for fact in facts if fact.startswith("speed.")]
+            paragraph = report.narrative.rfind("\n\n", 0, begun) + 1
+            for name in told if len(vehicles) > 1 else ():
+                assert any(f"id={name}" in names for at, names in report.notes if paragraph < at < end)
+                pronouns += not any(fact.startswith("~named") for fact in facts)
+            begun = end
+    assert pronouns > 5
+
+
+@given(seed=seeds, held_out=st.booleans())
+def test_until_a_vehicle_is_named_clauses_that_tell_something_of_it_name_it(seed: int, held_out: bool) -> None:
+    writer = Writer(Random(seed), sample_crash(Random(seed)), held_out, 1.0)
+    telling = [c for c in writer._clear(SPEED + said.SELF_FRAMES, 0) if "{spd}" in c or "{doing}" in c]
+    several = sum(actor.id.startswith("V") for actor in writer.crash.actors) > 1
+    assert telling
+    assert several == all("{V}" in clause for clause in telling)
+    writer.lately.add(0)
+    assert writer._clear(SPEED, 0) == families(SPEED, held_out)
+
+
+@given(seed=seeds)
+def test_only_vehicles_have_drivers_who_state_something(seed: int) -> None:
+    writer = Writer(Random(seed), sample_crash(Random(seed)), False, 3.0)
+    for index, actor in enumerate(writer.crash.actors):
+        assert actor.id.startswith("V") or not writer._statements(index)
 
 
 def test_a_driver_stays_the_same_person() -> None:

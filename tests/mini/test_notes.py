@@ -302,3 +302,22 @@ def test_a_batch_carries_the_notes_of_its_rows_and_heads_learn_them(coder: Coder
         step.step()
     assert float(heads.phrases(states, batch.noted).detach()) < 0.5 * before
     assert float(heads.phrases(states[:0], batch.noted[:0]).detach()) == 0
+
+
+def test_pronouns_behind_a_name_mean_its_driver() -> None:
+    seen = 0
+    for seed in range(60):
+        report = make_report(seed, modes={"text": 1.0})
+        begun = 0
+        ends = [0] + [end for end, _ in report.sentences]
+        for end, names in report.notes:
+            begun = max(at for at in ends if at < end)
+            words = report.narrative[begun:end]
+            if not re.search(r"\b(he|she|his|her)$", words, re.I):
+                continue
+            seen += 1
+            (name,) = names
+            assert name.startswith("id=V")
+            paragraph = report.narrative.rfind("\n\n", 0, begun) + 1
+            assert any(name in some for at, some in report.notes if paragraph < at < end)
+    assert seen > 30
