@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of, wrapped
 from sgcad_core.specs import Maneuver, RoadSpec
 
 TURN_RAD: dict[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
 _QUARTER = math.pi / 2
-_ACCESS = ("driveway", "parking_lot")
 
 
 class Placed(NamedTuple):
@@ -84,7 +84,7 @@ class _Assignment:
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
         """Driveways are for those who come from one; ramps likewise."""
-        from_access, from_ramp = v.origin in _ACCESS, v.origin == "ramp"
+        from_access, from_ramp = v.origin in DRIVES, v.origin == "ramp"
         cost = 0.0
         if (way.road.kind == "driveway") != from_access:
             cost += 1.5 if way.road.kind == "driveway" else 0.6
@@ -117,9 +117,9 @@ class _Assignment:
         off = apart(turn_of(way, onward), wanted) / _QUARTER
         if wanted and v.exit_heading and apart(onward.start_rad, angle_of(v.exit_heading)) < math.radians(50):
             off -= 0.1
-        if wanted and v.target in _ACCESS and onward.road.kind == "driveway":
+        if wanted and v.target in DRIVES and onward.road.kind == "driveway":
             off -= 0.3
-        if onward.road.kind == "driveway" and v.target not in _ACCESS:
+        if onward.road.kind == "driveway" and v.target not in DRIVES:
             off += 0.2
         if not wanted and onward.road.kind == "ramp":
             off += 0.1

@@ -17,6 +17,7 @@ from sgcad_core.narrative.control import Control, control_of, controlled, signed
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
@@ -66,7 +67,7 @@ def junction_of(
     halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
     if kind == "four_leg":
         return JunctionFacts(kind, None, control, halted, stated)
-    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _OFF_ROAD), None)
+    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
     said = _stem_told(story, vehicles, lead, only_compass=True)
     said = None if said and _contradicted(said, vehicles) else said
     stem = said or _stem(kind, story, vehicles, roads, halted, lead)
@@ -78,7 +79,7 @@ def _kind(
     story: Sequence[Told], told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)
-    access = any(v.origin in ("driveway", "parking_lot") or v.target in ("driveway", "parking_lot") for v in vehicles)
+    access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
         return "ramp", True
     if named in ("t", "four_leg"):
@@ -154,7 +155,8 @@ def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
 
 
 # ------------------------------------------------------------------ stem
-_OFF_ROAD = ("driveway", "parking_lot", "ramp", "side_road")
+_BESIDE = (*DRIVES, "ramp", "side_road")
+"""Where vehicles come from that come in by the stem."""
 
 
 def _stem(
@@ -186,7 +188,7 @@ def _stem_of_paths(
 ) -> Compass | None:
     """The leg that one vehicle comes from or turns into while the others keep to the through road (`main`)."""
     for v in vehicles:
-        if v.heading and v.origin in _OFF_ROAD and axis_of(v.heading) != main:
+        if v.heading and v.origin in _BESIDE and axis_of(v.heading) != main:
             return turned(v.heading, 180)
     known = [v for v in vehicles if v.heading and v.maneuver != "parked"]
     axes = list(dict.fromkeys(axis_of(v.heading) for v in known if v.heading))

@@ -15,6 +15,7 @@ from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.specs import Compass, Leg, Median, RoadKind, RoadLayout, Turn
 
@@ -80,7 +81,7 @@ class _Builder:
 
     def _lead_axis(self) -> Compass:
         vehicles = self.facts.crash.vehicles
-        driving = [v.heading for v in vehicles if v.heading and v.origin not in ("driveway", "parking_lot")]
+        driving = [v.heading for v in vehicles if v.heading and v.origin not in DRIVES]
         return axis_of(driving[0] if driving else "N")
 
     def _carriageway(self, road: RoadFact) -> Carriageway:
@@ -89,7 +90,7 @@ class _Builder:
         lead = along[0].heading if along and along[0].heading else axis
         used: dict[Compass, int] = {}
         for v in along:
-            if v.heading and v.origin not in ("driveway", "parking_lot"):
+            if v.heading and v.origin not in DRIVES:
                 used[v.heading] = max(used.get(v.heading, 1), _lane_used(v))
         default = 2 if road.kind == "freeway" or road.lanes.divided else 1
         return carriageway(road.lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))

@@ -8,6 +8,8 @@ from typing import Literal, NamedTuple
 from sgcad_core.specs import Compass
 
 Access = Literal["driveway", "parking_lot", "ramp", "shoulder", "side_road"]
+DRIVES: tuple[Access, ...] = ("driveway", "parking_lot")
+"""Where vehicles come from or turn into that drive on no street there."""
 Kin = Literal["same", "opposite", "crossing"]
 
 

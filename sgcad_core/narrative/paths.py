@@ -8,12 +8,14 @@ from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.relative import contact_turn
 from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.specs import Compass, Maneuver
 
 _ONWARD = ("straight", "slowing", "negotiating_curve")
-OFF_ROAD = ("driveway", "parking_lot", "ramp", "shoulder")
+OFF_ROAD = (*DRIVES, "ramp", "shoulder")
+"""Where vehicles come from that may tell of the street which they join, not of where they were."""
 
 
 def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import HIT_FROM, Draft, Settled, apart, bend_deg, end_of
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.specs import Area
 
 QUARTERS = (0, 90, 180, 270)
@@ -56,7 +57,7 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
             score[180] += 1.5
         if maneuver in ("lane_change_left", "lane_change_right", "merge"):
             score[0] += 1.0
-        if motion.origin in ("driveway", "parking_lot"):
+        if motion.origin in DRIVES:
             score[90] += 1.0
             score[270] += 1.0
         if motion.target and maneuver == "turn_left":

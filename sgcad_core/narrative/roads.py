@@ -16,6 +16,7 @@ from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.junction import JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import BOUND, LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
+from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -102,7 +103,7 @@ def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[
     streets = [m for m in mentions if m.axis and m.kind not in ("driveway", "ramp")]
     joined = [m for m in streets if m.relation == "other"] if any(m.kind == "ramp" for m in mentions) else []
     axis = next((m.axis for m in joined + streets), None)
-    lead = next((v for v in crash.vehicles if v.heading and v.origin not in ("driveway", "parking_lot", "ramp")), None)
+    lead = next((v for v in crash.vehicles if v.heading and v.origin not in (*DRIVES, "ramp")), None)
     place = next((m for t in told if t.role in ("opening", "impact", "road") and (m := _PLACE.search(t.text))), None)
     told_way = compass_of(place[1]) if place else None
     told_way = told_way if told_way and axis in (None, axis_of(told_way)) else None
