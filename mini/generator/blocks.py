@@ -32,7 +32,7 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
-TELLING = ("{spd}", "{dir}", "{lane}", "{doing}")
+TELLING = ("{spd}", "{dir}", "{lane}", "{doing}", "{code}", "{move}")
 """Slots that tell something of the one whom a clause is about."""
 
 
@@ -94,7 +94,8 @@ class BlocksMixin:
         self.lately.clear()
         speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
         out = self._noise("occupant", 1.2, index)
-        out += [self.say(self._clear(SPEED, index), index, **self._person(index))] if speed else []
+        if speed and (clear := self._clear(SPEED, index)):
+            out.append(self.say(clear, index, **self._person(index)))
         out += self._noise("interview", 1.1, index) + self._statements(index)
         out += self._noise("tow", 0.6, index) + self._noise("health", 1.0, index)
         return out + self._coded(index) + self._noise("codes", 1.7, index) + self._noise("police", 0.5, index)
@@ -111,6 +112,8 @@ class BlocksMixin:
         "He was driving 30 mph" says whose speed that is only behind a sentence of the block that names the vehicle.
         """
         found = families(options, self.held_out)
+        if self.crash.actors[index].maneuver in ("stopped", "parked"):
+            found = [clause for clause in found if "{spd}" not in clause]
         if index in self.lately or sum(actor.id.startswith("V") for actor in self.crash.actors) == 1:
             return found
         return [clause for clause in found if "{V}" in clause or not any(slot in clause for slot in TELLING)]
@@ -163,7 +166,8 @@ class BlocksMixin:
         if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
             if not maneuver.startswith("lane_change"):
                 self.told |= {f"man.{self.id_of(index)}"}
-            out.append(self.say(said.MOVEMENT_FRAMES, index, move=self._phrase(said.MOVEMENT[maneuver])))
+            frames = self._clear(said.MOVEMENT_FRAMES, index)
+            out.append(self.say(frames, index, move=self._phrase(said.MOVEMENT[maneuver])))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
             out.append(self.say(said.TYPE_FRAMES, index, kind=self._phrase(said.CRASH_TYPE[self.crash.config])))
         return out
@@ -175,7 +179,8 @@ class BlocksMixin:
             self.told |= {f"man.{self.id_of(other)}"}
         elif key == "crossing" or (index == self.who[0] and erring.maneuver in TELLS):
             self.told |= {f"man.{erring.id}"}
-        return self.say(said.EVENT_FRAMES, index, other, code=self._phrase(said.EVENT[key], index, other))
+        frames = self._clear(said.EVENT_FRAMES, index)
+        return self.say(frames, index, other, code=self._phrase(said.EVENT[key], index, other))
 
     def _statements(self, index: int) -> list[str]:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""

@@ -20,7 +20,8 @@ The critical event for {V} was [coded as |]{code}
 For {V}, the critical [precrash |pre-crash |]event was [coded as |]{code}
 The critical [precrash|pre-crash] event for {V} was when [{code}|the following happened: {code}]
 The critical [precrash|pre-crash] event [to|for] this vehicle was [coded as |]{code}
-[This vehicle|{V}] was coded with the critical event: {code}
+{V} was coded with the critical event: {code}
+This vehicle was coded with the critical event: {code}
 Coded as the critical event for {V} was {code}
 [Critical event|Critical precrash event], {V}: {code}
 [The researcher|The investigator] coded the critical event for {V} as {code}

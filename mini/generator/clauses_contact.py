@@ -87,7 +87,7 @@ The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type config
 {T} was [struck|hit|impacted|struck] [in|on] the {ta} by the {sa} of {S}
 {T}'s {ta} was [struck|contacted|impacted] by [the {sa} of {S}|{S}'s {sa}]
 The {ta} of {T} was [struck|hit|impacted|contacted] by the {sa} of {S}
-The {sa} of {S} [and|came into contact with|contacted] the {ta} of {T}[ made contact|]
+The {sa} of {S} [and the {ta} of {T} made contact|[came into contact with|contacted] the {ta} of {T}]
 {S} [struck|impacted] the {ta} of {T} with [its|it's] {sa}
 {T} [was then|was] [struck|contacted] [in|on] its {ta} by {S}[ with its {sa}|]
 ~Contact was made between the {sa} of {S} and the {ta} of {T}
@@ -188,7 +188,7 @@ REST = clauses("""
 {V} rolled over [one|two|three] quarter turns onto its [top|{anyside} side]
 The final rest [position|location] of {V} was [in the intersection|off the road|{m} meters {any8} of impact]
 {V} and {W} [stayed together|separated] and came to rest facing {any8}
-After [the impact|impact|the collision], {V} [continued|moved|traveled] {any8}[ and stopped|]
+After [the impact|impact|the collision], {V} [was thrown|was carried|moved] {any8}[ and stopped|]
 {V} [departed|left] the road[way|] on the {any8} side [and struck a [pole|fence|sign]|]
 Both vehicles [spun|rotated] and [stopped|came to rest] [in the road|facing {any8}|off the road]
 {V} traveled {any8} for {m} meters before it came to rest
@@ -199,7 +199,7 @@ Both vehicles remained in contact and moved {any8}
 {V} [rotated|spun] [clockwise|counterclockwise|counter-clockwise][ {deg} degrees|] and came to [rest|final rest] [in the intersection|off the roadway|on the roadway|in the road][ facing {any8}|]
 Both vehicles came to [rest|final rest] [in the intersection|near impact|on the roadway|off the road][ facing {any8}|]
 {V} came to [rest|final rest] facing {any8}[; {W} came to final rest facing {any8b}|]
-{V} continued {any8} and came to rest [{m}m|{m} meters|{m} feet] {any8b} of impact
+{V} came to rest [{m}m|{m} meters|{m} feet] {any8} of impact
 The impact caused {V} to [rotate|spin] [clockwise|counterclockwise] and [depart the road|come to rest facing {any8}]
 There was no physical evidence to [support|substantiate] the final rest positions
 {V} was pushed [off the road|into the next lane|into a driveway] before coming to rest

@@ -184,7 +184,7 @@ No associated factors were coded to [this driver|the driver of {V}][ and {he} wa
 Coded as the critical reason was [inattention|excessive speed|an illegal maneuver|misjudgment of gap][, a driver error|]
 The critical reason [for the event |]was [attributed|assigned] to the driver of {V}: [inadequate surveillance|overcompensation|following too closely|aggressive driving]
 The critical reason was a [decision|performance|recognition] error by the driver of {V}[, who looked but did not see|]
-{V} was not assigned the critical reason[, as {he} was struck| in this crash|]
+{V} was not assigned the critical reason[ in this crash|]
 [Factors|Conditions] that may have contributed [include|included] [traffic flow|the view|fatigue|an unfamiliar road][ and inattention|]
 Contributing to the crash was [the speed of {V}|an interior distraction|poor visibility|a false assumption]
 Also coded [was|for this driver was] [an external distraction|a sight obstruction|inadequate evasive action|internal conversation]

@@ -115,7 +115,7 @@ def rear_end(rng: Random, crash: Crash) -> bool:
     crash.actors = [lead, _vehicle(rng, a, a + 4, "straight")]
     crash.contacts = [Contact(1, 0, "front", "back")]
     if rng.random() < 0.2:
-        ahead = _vehicle(rng, a, a + 4, lead.maneuver, lead.purpose)
+        ahead = _vehicle(rng, a, lead.out, lead.maneuver, lead.purpose)
         crash.actors.append(ahead)
         crash.contacts.append(Contact(0, 2, "front", "back"))
     return True

@@ -90,13 +90,12 @@ class EventsMixin:
         key = {"left_lateral": "turn_left", "right_into": "turn_right"}.get(config, config)
         out = []
         if self.waited or (rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4)):
-            self.told |= {
-                f"man.{self.id_of(v)}",
-                f"exit.{self.id_of(v)}",
-            }
+            if config != "parked":  # whether it kept its lane until then no clause tells
+                self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
-            self.told |= {f"man.{self.id_of(w)}"} if goes_on else set()
-            out.append(self.say(self._true_of(w, self._error(key)), v, w, turn=self._turn(v)))
+            options = self._true_of(w, self._error(key))
+            self.told |= {f"man.{self.id_of(w)}"} if goes_on and all("{W}" in clause for clause in options) else set()
+            out.append(self.say(options, v, w, turn=self._turn(v)))
         alone, rest = not self.id_of(w).startswith("V"), told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             out.append(self.say([c for c in told.AVOID if not alone or "{W}" not in c], v, w))
@@ -106,6 +105,8 @@ class EventsMixin:
             out = out[1:]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
             rest = [clause for clause in rest if not OF_TWO.search(clause)]
+        if self.crash.layout not in ("four", "t") and not self.held_out:
+            rest = [clause for clause in rest if "intersection" not in clause]
         return out + [self.say(rest, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _error(self, key: str) -> list[str]:
@@ -140,13 +141,17 @@ class EventsMixin:
         if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
             return self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key])
         if key in ("sign", "light"):
-            return clause_of(self.rng, motion.WHY[key], self.held_out)
+            text = clause_of(self.rng, motion.WHY[key], self.held_out)
+            self.told |= turnoffs.told(text, self.crash)
+            return text
         return self.fitting(motion.WHY[key], into=not leaves)
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
         """Headings of traffic that one who turns may have to wait for: the oncoming, on a side road any."""
         ahead = self.crash.leg(actor.leg + 4)
-        others = [leg for leg in self.crash.legs if leg.bearing != actor.leg] if ahead is None else [ahead] * left
+        others = [leg for leg in self.crash.legs if leg.bearing != actor.leg] if ahead is None else [ahead]
+        if not left:  # what comes from the left takes the lane that it turns into
+            others = [leg for leg in self.crash.legs if leg.bearing == (actor.leg + 2) % 8]
         return [(leg.bearing + 4) % 8 for leg in others if leg.kind == "road" and leg.lanes_in]
 
     def fitting(self, options: list[str], into: bool = True) -> str:
@@ -186,7 +191,8 @@ class EventsMixin:
         ta = contact.struck_area if sides else self._area(contact.struck_area)
         clause = self.rng.choice(self._framed(options))
         head_first = contact.striker_area == "front" != contact.struck_area
-        if not MUTUAL.search(clause) or (areas and head_first):
+        named = "{S}" in clause or "{T}" in clause
+        if (named and not MUTUAL.search(clause)) or (areas and head_first):
             self.told.add(f"contact.{number}")
         walks = self.crash.actors[contact.struck].kind in ("pedestrian", "bicycle")  # no clause tells its side
         self.told |= {f"areas.{number}"} if areas and not walks else set()

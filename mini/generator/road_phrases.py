@@ -10,7 +10,7 @@ from mini.generator import clauses_road as more
 from mini.generator import notes, words
 from mini.generator.grammar import Told
 from mini.generator.lane_lists import IN_BRACKETS, split
-from mini.generator.settled import AXIS, FLOW, ROAD
+from mini.generator.settled import AXIS, FLOW, ROAD, VAGUE
 from mini.generator.world import Crash, Leg
 
 ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
@@ -18,7 +18,7 @@ MEDIAN_WORDS = {
     "grass": "divided by a grass median", "barrier": "divided by a concrete barrier", "raised": "divided by a raised median",
     "painted": "divided by a painted median",
 }  # fmt: skip
-LOOKS = ("level", "straight", "straight and level", "dry", "level, straight", "dry, level", "busy", "straight, dry")
+LOOKS = ("level", "busy", "level", "hilly", "paved", "narrow")
 """Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
 _ARTICLE = re.compile("^an? ")
 UNCOUNTED = 0.5
@@ -37,6 +37,7 @@ class RoadsMixin:
     told: Told
     stated: set[str]
     roads_left: bool
+    spoken_of: int | None
 
     def _legs_on(self, axis: int) -> list[Leg]:
         return [leg for leg in self.crash.legs if leg.bearing % 4 == axis % 4]
@@ -63,21 +64,31 @@ class RoadsMixin:
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
                 again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
                 return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
-            same = axis % 4 == self._first
-            return rng.choice(
-                ("the same road", "the same roadway", "the roadway")
-                if same
-                else ("the intersecting road", "the intersecting roadway", "the side street")
-            )
+            return self._again(axis % 4)
         self.stated.add(key)
+        self.spoken_of = axis % 4
         text, told = self._lanes_text(leg, legs)
         self.told |= {key} if told else set()
-        self.told |= {f"median.{axis % 4}"} if leg.median == "none" or NAMED in text else set()
+        if leg.median == "none" or NAMED in text or "divided" in text:
+            vague = leg.median != "none" and NAMED not in text
+            self.told |= {f"median.{axis % 4}"} | ({f"{VAGUE}.median.{axis % 4}"} if vague else set())
         text = text.replace(NAMED, "")
         if bare or self.held_out or axis % 4 == self._first or rng.random() < 0.5:
             return text
         others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
         return f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
+
+    def _again(self, axis: int) -> str:
+        """A road of which no more is told: "the same road" is the one that was named last."""
+        rng, last, self.spoken_of = self.rng, self.spoken_of, axis
+        if axis != self._first:
+            return rng.choice(("the intersecting road", "the intersecting roadway", "the side street"))
+        if last not in (axis, None):
+            self.told.add(f"{AXIS}.{axis}")
+            return f"the {words.axis(rng, axis)} {rng.choice(('road', 'roadway', 'street'))}"
+        return rng.choice(
+            ("the same road", "the same roadway", "the roadway") if last == axis else ("the road", "the roadway")
+        )
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
         """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure.
@@ -224,8 +235,12 @@ class RoadsMixin:
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
         return split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing), self.held_out)
 
+    def _axis_of(self, slot: str) -> int:
+        """Axis of the road whose limit a slot names."""
+        return (self._first + 2 * (slot == "lim2")) % 4
+
     def _limit(self, slot: str) -> str:
-        axis = (self._first + 2 * (slot == "lim2")) % 4
+        axis = self._axis_of(slot)
         legs = [leg for leg in self._legs_on(axis) if leg.limit]
         if not legs:
             return words.limit(self.rng, 25, self.held_out)

@@ -3,28 +3,41 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import words
-from mini.generator.grammar import clause_of
+from mini.generator.grammar import clause_of, families
+from mini.generator.junction_phrases import JunctionMixin
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
-from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
-TIMES = ("morning", "early morning", "afternoon", "late afternoon", "evening", "early evening", "mid-morning", "night")
+_DARK = ("early morning", "evening", "evening", "night", "night", "late evening")
+TIMES = {
+    "day": ("morning", "morning", "early morning", "afternoon", "afternoon", "late afternoon", "mid-morning"),
+    "dawn": ("morning", "early morning", "early morning"),
+    "dusk": ("evening", "evening", "early evening"),
+    "dark": _DARK,
+    "dark_lit": _DARK,
+}
+"""Times of day that agree with the light."""
+IN_LANES = re.compile(r"\{xb\} lane")
+SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b|\btwo-", re.IGNORECASE)
+"""Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
 """Share of openings that name the road and leave the driveway to those who turn there."""
 
 
-class SceneMixin(RoadsMixin):
+class SceneMixin(JunctionMixin):
     """Slots and sentences about the place; needs the writer's fields."""
 
     say: Any
+    of_road: bool
 
     def _scene_slot(self, slot: str, v: int) -> str:
         crash, rng = self.crash, self.rng
@@ -34,9 +47,8 @@ class SceneMixin(RoadsMixin):
         if slot in ("Road", "Jn", "Cxb", "Surf"):
             text = self._scene_slot(slot.lower(), v)
             return text[:1].upper() + text[1:]
-        simple = {"day": DAYS, "tod": TIMES}
-        if slot in simple:
-            return rng.choice(simple[slot])
+        if slot in ("day", "tod"):
+            return rng.choice(DAYS if slot == "day" else TIMES[crash.light])
         if slot == "jn":
             return self.scene_junction()
         if slot in ("light", "wx", "surf"):
@@ -77,70 +89,6 @@ class SceneMixin(RoadsMixin):
     def _leg_of(self, v: int) -> Leg:
         return self.crash.leg(self.crash.actors[v].leg)  # type: ignore[return-value]
 
-    def scene_junction(self) -> str:
-        """The junction's name; the plain word is what a crossing of two roads is called, seldom a T."""
-        layout, control = self.crash.layout, self._control_kind()
-        if layout not in ("four", "t"):
-            return "a driveway"
-        self.told |= {"layout"} if layout == "four" else set()
-        if self.rng.random() < (0.6 if layout == "four" else 0.93):
-            self.told |= {"layout"}
-            text = words.junction(self.rng, self.crash, self.held_out)
-            if control == "none" and self.ciren and self.rng.random() < 0.2:
-                self.told.add("control")
-                text = text.replace("a ", "an uncontrolled ", 1)
-            elif not self.ciren and not self.held_out and self.rng.random() < 0.1:
-                text = self._wide(text)
-            return text
-        if control == "signal" and self.rng.random() < 0.25:
-            self.told.add("control")
-            return "a signalized intersection"
-        text = self.rng.choice(("an intersection", "the intersection"))
-        if self.sentences or self.ciren or self.held_out or text.startswith("the") or self.rng.random() > 0.15:
-            return text
-        return self._wide(text)
-
-    def _wide(self, junction: str) -> str:
-        """`a five-lane T-intersection`, which counts the lanes of the main road."""
-        axis = self.crash.main % 4
-        leg = self._legs_on(axis)[0]
-        if leg.turns_in or leg.lanes_in != leg.lanes_out:
-            return junction
-        self.told |= {f"lanes.{axis}"}
-        self.stated.add(f"lanes.{axis}")
-        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.partition(' ')[2]}"
-
-    # -------------------------------------------------------------- control
-    def _control_kind(self) -> str:
-        kinds = [leg.control for leg in self.crash.legs]
-        if all(k == "stop" for k in kinds):
-            return "all"
-        return next((k for k in ("signal", "flashing", "stop", "yield") if k in kinds), "none")
-
-    def _tcd(self) -> str:
-        kind = self._control_kind()
-        if kind in ("signal", "none"):
-            self.told.add("control")
-            return {"signal": "controlled by a traffic control signal", "none": "that was uncontrolled"}[kind]
-        return ""
-
-    def _controlled(self, slot: str) -> str:
-        signed = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
-        legs = [leg for leg in signed if leg.lanes_in or self.held_out] or signed
-        axis = legs[0].bearing if legs else 0
-        rng = self.rng
-        self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
-        if slot == "caxis":
-            return words.axis(rng, axis)
-        names = [words.bound(rng, leg.bearing + 4) for leg in legs]
-        return " and ".join(names)
-
-    def _control_sentence(self, odds: float) -> list[str]:
-        if self.crash.layout not in ("four", "t") or self.rng.random() > odds:
-            return []
-        self.told.add("control")
-        return [self.say(scene.CONTROL[self._control_kind()])]
-
     # -------------------------------------------------------------- sentences
     def _opening(self) -> list[str]:
         kinds = {
@@ -151,21 +99,39 @@ class SceneMixin(RoadsMixin):
         }
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         if self.crash.layout == "driveway" and not self.held_out and self.rng.random() < PASSED_OVER:
-            return [self.say(scene.OPENING_PLAIN, main)]
+            return [self._of_road(scene.OPENING_PLAIN, main)]
         if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
-        return [self.say(options, main)]
+        return [self._of_road(options, main)]
+
+    def _of_road(self, options: list[str], main: int) -> str:
+        """A sentence on the road of an actor, true of it: of limits that there are, of curves, of who crashed."""
+        self.of_road = True
+        text = self.say([c for c in families(options, self.held_out) if self._true(c)] or options, main)
+        self.of_road = False
+        return text
+
+    def _true(self, clause: str) -> bool:
+        """Whether what a clause on the road says beside its slots may be said of this crash."""
+        limits = {slot: any(leg.limit for leg in self._legs_on(self._axis_of(slot))) for slot in ("lim", "lim2")}
+        if any(f"{{{slot}}}" in clause and not known for slot, known in limits.items()):
+            return False
+        if "straight" in clause and "{curve}" not in clause and any(leg.curve != "none" for leg in self.crash.legs):
+            return False
+        if IN_LANES.search(clause) and self.crash.config in ("head_on", "overtaking"):
+            return False  # on which side of the road that was is what the report is about
+        return all(actor.id.startswith("V") for actor in self.crash.actors[:2]) or not SEVERAL.search(clause)
 
     def _road_sentences(self) -> list[str]:
         rng, out = self.rng, []
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         for _ in range(rng.choice((0, 1, 1, 2))):
-            out.append(self.say(scene.ROAD, main))
+            out.append(self._of_road(scene.ROAD, main))
         if self.crash.layout in ("four", "t") and rng.random() < 0.4:
-            out.append(self.say(scene.ROAD2, main))
+            out.append(self._of_road(scene.ROAD2, main))
         if not self.held_out and rng.random() < 0.3:
             out += self._each_way()
         if not self.held_out and self.crash.layout in ("four", "t") and rng.random() < 0.3:
@@ -178,7 +144,7 @@ class SceneMixin(RoadsMixin):
             out.append(self.say(roads.STEM[self.crash.layout], main))
         curved = self._leg_of(main).curve != "none"
         if curved and rng.random() < 0.7:
-            out.append(self.say(scene.CURVE, main))
+            out.append(self._of_road(scene.CURVE, main))
         if self.crash.accesses and rng.random() < 0.8:
             out.append(self._access())
         rng.shuffle(out)
@@ -259,7 +225,8 @@ class SceneMixin(RoadsMixin):
         self.told.add("access")
         side = (access.leg + 4 + (2 if access.side == "right" else -2)) % 8
         kind = "driveway" if access.kind == "driveway" else "side street"
-        return self.say(["There [was|is] a {acc} on the {accdir} side of the road[way|] {accleg} of the [crash|intersection|impact]"],
+        place = "[crash|intersection|impact]" if self.crash.layout in ("four", "t") else "[crash|impact]"
+        return self.say([f"There [was|is] a {{acc}} on the {{accdir}} side of the road[way|] {{accleg}} of the {place}"],
                         acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])  # fmt: skip
 
     def _conditions(self, odds: float) -> list[str]:

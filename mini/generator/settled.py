@@ -25,6 +25,10 @@ FROM_LEFT = f"{HINT}left"
 """With an actor: a sentence names its lane from the left or by use ("the left lane", "the through lane"), which tells
 its number, counted from the right, only beside the lanes of that approach."""
 
+VAGUE = f"{HINT}vague"
+"""With a fact: the sentence tells only a part of it. One who met a stop sign leaves open who else has one; "divided"
+leaves open by what."""
+
 BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 """Facts of one road; "ways" is whether it is one-way, of however many lanes."""
 
@@ -36,6 +40,7 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     """
     sentences = list(sentences)
     told = {fact for facts in sentences for fact in facts}
+    whole = {fact for facts in sentences for fact in facts if f"{VAGUE}.{fact}" not in facts}
     tied = _tied(crash, sentences, told)
     out = {
         fact
@@ -46,7 +51,7 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     if not _legs(crash, told, tied):
         stems = {leg.bearing % 4 for leg in crash.stems}
         out |= {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
-    return out | _uncounted(crash, sentences, told - out)
+    return out | (told - whole) | _uncounted(crash, sentences, told - out)
 
 
 def _uncounted(crash: Crash, sentences: Iterable[frozenset[str]], known: Set[str]) -> set[str]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 
 from mini.generator.grammar import clauses, tables
+from mini.generator.settled import VAGUE
 from mini.generator.world import Crash
 
 _BUSINESS = (
@@ -31,6 +32,7 @@ SIGNAL = re.compile(
     re.IGNORECASE,
 )
 STOP = re.compile(r"stop (?:sign|line|bar)", re.IGNORECASE)
+SIGN = re.compile(r"stop sign|\bat (?:the|its) sign", re.IGNORECASE)
 
 
 def suits(text: str, crash: Crash) -> bool:
@@ -46,8 +48,10 @@ def suits(text: str, crash: Crash) -> bool:
 
 
 def told(text: str, crash: Crash) -> set[str]:
-    """Facts of the roads that the words tell beside their own: that there is a driveway, or a signal."""
+    """Facts of the roads that the words tell beside their own: that there is a driveway, a signal or a stop sign."""
     found = {"layout"} if crash.layout == "driveway" and _TOLD.search(text) else set()
+    if SIGN.search(text) and any(leg.control == "stop" for leg in crash.legs):
+        found |= {"control", f"{VAGUE}.control"}
     signal = SIGNAL.search(text) and all(leg.control == "signal" for leg in crash.legs)
     return found | ({"control"} if signal else set())
 

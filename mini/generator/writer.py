@@ -6,10 +6,12 @@ and 4), "limit.2", "areas.0", "light". Facts are told where a slot that holds th
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Mapping
 from random import Random
 
-from mini.generator import clauses_motion as motion
 from mini.generator import words
+from mini.generator.approaches import ApproachMixin
 from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
 from mini.generator.grammar import HINT, MARK, SLOTS, Told, Written, clause_of, fill, sentence, unmark
@@ -17,8 +19,8 @@ from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.notes import Slots, noted
 from mini.generator.scene import SceneMixin
-from mini.generator.settled import FROM_LEFT
-from mini.generator.world import WORDS, Actor, Crash
+from mini.generator.settled import AXIS, FROM_LEFT
+from mini.generator.world import WORDS, Crash
 
 CIREN_ORDER = (
     "approach",
@@ -32,11 +34,14 @@ CIREN_ORDER = (
     "occupant",
     "interview",
 )
+Words = str | Callable[[], str]
 PRONOUNS = ("he", "He", "his", "His")
 """Slots of words for the driver of the one whom a clause is about."""
+OTHERS = re.compile(r"(?:driver|operator|occupants?) of \{W\}|passenger|witness|spouse", re.IGNORECASE)
+"""Clauses that speak of another person than the driver of the one whom they are about."""
 
 
-class Writer(SceneMixin, EventsMixin, BlocksMixin):
+class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
     """State of one report while it is written."""
 
     def __init__(self, rng: Random, crash: Crash, held_out: bool, length: float) -> None:
@@ -52,6 +57,10 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
         """Age, sex and pronouns of the drivers, by actor."""
         self.lately: set[int] = set()
         """Who was named since the block on a vehicle began: pronouns of its driver say whom they mean."""
+        self.spoken_of: int | None = None
+        """Axis of the road that was named last."""
+        self.of_road = False
+        """Whether the sentence is of the road: then a direction is that of its traffic, and of no vehicle."""
         self.waited = False
         """Whether the one who errs stood or slowed before it crossed or turned."""
         self.roads_left = rng.random() < 0.85
@@ -117,9 +126,17 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
 
     # -------------------------------------------------------------- slots
     def say(
-        self, options: list[str], v: int = 0, w: int | None = None, touching: dict[str, str] | None = None, **extra: str
+        self,
+        options: list[str],
+        v: int = 0,
+        w: int | None = None,
+        touching: dict[str, str] | None = None,
+        **extra: Words,
     ) -> str:
-        """One sentence of a role about actors v and w; `touching`: the sides that its slots `sa` and `ta` name."""
+        """One sentence of a role about actors v and w; `touching`: the sides that its slots `sa` and `ta` name.
+
+        `extra`: words for further slots, or what makes them and tells their facts where the clause has such a slot.
+        """
         clause = clause_of(self.rng, options, self.held_out)
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
@@ -131,6 +148,8 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             return noted(text, slots.next(slot) + meant)
 
         text = sentence(fill(clause, filled))
+        if OTHERS.search(clause):  # "he" is now somebody else
+            self.lately.discard(v)
         self.sentences.append(self.told.take())
         return text + chr(MARK + len(self.sentences) - 1)
 
@@ -144,9 +163,10 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
             hints.add(f"{HINT}voice.{'active' if named[0] == 'S' else 'passive'}")
         return hints
 
-    def _slot(self, slot: str, v: int, w: int, extra: dict[str, str]) -> str:
+    def _slot(self, slot: str, v: int, w: int, extra: Mapping[str, Words]) -> str:
         if slot in extra:
-            return extra[slot]
+            given = extra[slot]
+            return given if isinstance(given, str) else given()
         if slot in ("Vf", "Vi"):
             self.lately.add(v)
             text, kind = self.mentions.full(v) if slot == "Vf" else self.mentions.presented(v)
@@ -172,7 +192,7 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
     def _motion_slot(self, slot: str, v: int, w: int) -> str:
         actor = self.crash.actors[v]
         if slot in ("dir", "xb", "from"):
-            self.told.add(f"heading.{actor.id}")
+            self.told.add(f"{AXIS}.{actor.leg % 4}" if self.of_road else f"heading.{actor.id}")
         if slot == "dir":
             return words.direction(self.rng, actor.heading, self.held_out)
         if slot == "from":
@@ -194,96 +214,3 @@ class Writer(SceneMixin, EventsMixin, BlocksMixin):
 
     def id_of(self, index: int) -> str:
         return self.crash.actors[index].id
-
-    # -------------------------------------------------------------- approach
-    def _approaches(self) -> list[str]:
-        actors = self.crash.actors
-        order = [i for i, a in enumerate(actors) if a.id.startswith("V")]
-        if self.rng.random() < 0.12:
-            self.rng.shuffle(order)
-        if not self.ciren and len(order) > 1 and self.rng.random() < 0.04:
-            order.pop()
-        out: list[str] = []
-        if not self.ciren and not self.held_out and self.rng.random() < 0.08:
-            out += [self.say(["{Vi}"], index) for index in order]
-        for place, index in enumerate(order):
-            out.append(self._approach(index, order[:place]))
-        if len(order) == 2 and self.rng.random() < 0.06:
-            out = [" ".join(out)]
-        return out
-
-    def _approach(self, index: int, before: list[int]) -> str:
-        actor = self.crash.actors[index]
-        ahead = next((i for i in before if self.crash.actors[i].leg == actor.leg), None)
-        options = {
-            "stopped": motion.APPROACH_STOPPED,
-            "parked": motion.APPROACH_PARKED,
-            "slowing": motion.APPROACH_SLOWING,
-        }.get(actor.maneuver)
-        presented = not self.ciren and index not in self.mentions.introduced and self.rng.random() < 0.22
-        if options:
-            why = self._why(actor)
-            self.told |= {f"man.{actor.id}"} | ({f"exit.{actor.id}"} if why or not actor.meant else set())
-            if presented and actor.maneuver in motion.PRESENTED:
-                options = motion.PRESENTED[actor.maneuver]
-            return self.say(options, index, ahead, why=why)
-        if how := self._pauses(index):
-            options = motion.APPROACH_SLOWING if how == "slowing" else motion.APPROACH_WAITING
-            return self.say(motion.PRESENTED[how] if presented else options, index, ahead, why=self._why_waiting(actor))
-        order = self._behind(index, ahead)
-        if order is not None and self.rng.random() < 0.6:
-            self.told |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
-            return self.say(motion.SAME if order else motion.AHEAD, index, ahead)
-        if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
-            self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
-            return self.say(motion.APPROACH_CURVE, index, ahead)
-        options = motion.PRESENTED["moving"] if presented else motion.APPROACH
-        return self.say(options, index, ahead, appr=self._approaching(index, bool(before)))
-
-    def _pauses(self, index: int) -> str:
-        """ "waiting" or "slowing" where one who is about to cross or turn is said to have done so; else "".
-
-        Then the error must be told. Of turning vehicles in real narratives two in five had stopped, one in six slowed.
-        """
-        if index != self.who[0] or self.crash.config not in ("crossing", "left_opposite", "left_lateral", "right_into"):
-            return ""
-        chance, turns = self.rng.random(), self.crash.config != "crossing"
-        waits, slows = (0.15, 0.15) if self.held_out else (0.4, 0.54) if turns else (0.25, 0.25)
-        how = "waiting" if chance < waits else "slowing" if chance < slows else ""
-        self.waited = bool(how)
-        return how
-
-    def _why_waiting(self, actor: Actor) -> str:
-        """What for: a sign, a light, a gap in traffic, a turn."""
-        control = self.crash.leg(actor.leg).control  # type: ignore[union-attr]
-        keys = ["sign" if control == "stop" else "light" if control == "signal" and not self.held_out else "traffic"]
-        keys += [actor.maneuver] * 2 if actor.maneuver in motion.WHY else []
-        key = self.rng.choice(keys)
-        if key.startswith("turn"):
-            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-        return " " + self.reason(key, actor) if key != "traffic" else ""
-
-    def _behind(self, index: int, other: int | None) -> bool | None:
-        """Whether one drives behind the other in a rear-end crash: the striker does."""
-        for contact in self.crash.contacts if self.crash.config == "rear_end" else ():
-            if {contact.striker, contact.struck} == {index, other}:
-                return contact.striker == index
-        return None
-
-    def _why(self, actor: Actor) -> str:
-        if not actor.purpose or self.rng.random() < 0.15:
-            return ""
-        return " " + self.reason(actor.purpose, actor)
-
-    def _approaching(self, index: int, later: bool) -> str:
-        """What the vehicle comes to and means to do."""
-        rng, actor = self.rng, self.crash.actors[index]
-        text = ""
-        beside = self.crash.config in ("head_on", "rear_end", "lane_change")
-        if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren and not beside else 0.4):
-            place = "the same intersection" if later else self.scene_junction()
-            text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
-        if actor.maneuver in motion.INTENT and rng.random() < 0.3:
-            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-            text += (", " if text else " ") + self.fitting(motion.INTENT[actor.maneuver])
-        return text

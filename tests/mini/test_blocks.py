@@ -3,7 +3,7 @@
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mini.generator import clauses_codes as said
@@ -76,7 +76,7 @@ def test_left_turns_are_coded_of_those_who_turn_left() -> None:
 @pytest.mark.parametrize("held_out", [False, True])
 def test_speeds_are_told_of_those_whom_the_paragraph_has_named(held_out: bool) -> None:
     pronouns = 0
-    for seed in range(300):
+    for seed in range(500):
         report = make_report(seed, held_out, 0.8, {"text": 1.0})
         vehicles = [actor for actor in report.crash.actors if actor.id.startswith("V")]
         begun = 0
@@ -93,6 +93,7 @@ def test_speeds_are_told_of_those_whom_the_paragraph_has_named(held_out: bool) -
 @given(seed=seeds, held_out=st.booleans())
 def test_until_a_vehicle_is_named_clauses_that_tell_something_of_it_name_it(seed: int, held_out: bool) -> None:
     writer = Writer(Random(seed), sample_crash(Random(seed)), held_out, 1.0)
+    assume(writer.crash.actors[0].maneuver not in ("stopped", "parked"))  # these have no speed to tell
     telling = [c for c in writer._clear(SPEED + said.SELF_FRAMES, 0) if "{spd}" in c or "{doing}" in c]
     several = sum(actor.id.startswith("V") for actor in writer.crash.actors) > 1
     assert telling

@@ -382,7 +382,7 @@ def test_who_turns_has_often_stopped_or_slowed_before() -> None:
 def test_driveways_are_spoken_of_where_there_is_one() -> None:
     """What one turns into or comes out of tells a driveway, and only a crash that has one speaks so of it."""
     alone = 0
-    for seed in range(2500):
+    for seed in range(4500):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
         turning = re.search(
             r"turn(?:ed|ing)? (?:left|right) (?:into|out of) (?:a|the) (?:driveway|parking lot)", report.narrative
@@ -405,3 +405,44 @@ def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
                 lanes += [max(leg.lanes_in, leg.lanes_out)] * (not leg.two_way)
     assert len(lanes) > 40
     assert 0.7 < lanes.count(1) / len(lanes) < 0.97
+
+
+def test_who_waits_to_turn_right_waits_for_what_comes_from_the_left() -> None:
+    seen = 0
+    for seed in range(1500):
+        crash = sample_crash(Random(seed))
+        writer = Writer(Random(seed), crash, False, 1.0)
+        for actor in crash.actors:
+            if actor.maneuver == "turn_right":
+                heads = writer._others(actor, left=False)
+                seen += len(heads)
+                assert heads in ([], [actor.out % 8])  # the way on which it will drive itself
+    assert seen > 50
+
+
+def test_what_no_words_can_tell_is_a_guess() -> None:
+    """Which way one backs out, and whether one that hit a parked vehicle had kept its lane."""
+    backing = parked = 0
+    for seed in range(2500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for i, actor in enumerate(report.crash.actors if report.behavior else ()):
+            if actor.maneuver == "backing":
+                backing += 1
+                assert report.weight(("actors", i, "exit_road")) == GUESS
+            if report.crash.config == "parked" and actor.maneuver == "departing_road_right":
+                parked += 1
+                assert f"man.{actor.id}" not in report.told
+    assert backing > 20
+    assert parked > 20
+
+
+def test_impacts_that_name_nobody_tell_no_striker() -> None:
+    seen = 0
+    for seed in range(2500):
+        report, begun = make_report(seed, length=0.0, modes={"text": 1.0}), 0
+        for end, facts in report.sentences:
+            sentence, begun = report.narrative[begun:end], end
+            if "contact.0" in facts:
+                assert any(fact.startswith("~named") for fact in facts), sentence
+            seen += bool(re.match(r"\s*(This led to|This ended in|There was an impact|An impact occurred)", sentence))
+    assert seen > 1

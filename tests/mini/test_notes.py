@@ -125,7 +125,7 @@ def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
 
 
 WAY = re.compile(
-    r"\b(from (?:the )?)?(north|south|east|west)(?:ern)?(?:[ -]?(east|west))?(?:[ -]?(?:bound|ward|erly))*"
+    r"\b(from (?:the )?)?(north|south|east|west)(?:ern)?(?:(?<!st)[ -]?(east|west))?(?:[ -]?(?:bound|ward|erly))*"
 )
 
 

@@ -159,6 +159,7 @@ def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monke
 def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(clauses_road, "PAIR", ["QQ {a1}={one}; RR {a2}={other}"])
     monkeypatch.setattr(clauses_road, "ONE_WAY", ["a one-way {xb} {noun} with {lanes}"])  # else in words without "way"
+    monkeypatch.setattr(clauses_road, "UNCOUNTED", ["a one-way {noun}"])
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
     found = 0
     for text, _, crash in _sentences(range(1500)):

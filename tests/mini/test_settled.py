@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mini.evaluate import source
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
-from mini.generator.settled import AXIS, FLOW, FROM_LEFT, ROAD, STEM, unsettled
+from mini.generator.settled import AXIS, FLOW, FROM_LEFT, ROAD, STEM, VAGUE, unsettled
 from mini.generator.targets import GUESS, LIKELY, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
 
@@ -169,3 +169,28 @@ def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> No
                 assert report.road["legs"][index]["control"] == leg.control
                 assert report.weight(("legs", index, "control")) == GUESS
     assert found > 20
+
+
+def test_what_every_sentence_tells_in_part_is_doubtful() -> None:
+    crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
+    plain = [*SAID, frozenset({"heading.V1", f"{ROAD}.0"})]
+    met = frozenset({"control", f"{VAGUE}.control"})
+    assert unsettled(crash, [*plain, met]) == {"control"}
+    assert not unsettled(crash, [*plain, met, frozenset({"control"})])
+
+
+@pytest.mark.parametrize(
+    ("words", "fact", "value"), [("stop sign", "control", "stop"), ("divided", "median", ("grass", "raised"))]
+)
+def test_signs_that_one_met_and_dividing_without_a_word_for_it_weigh_as_guesses(
+    words: str, fact: str, value: str | tuple[str, ...]
+) -> None:
+    seen = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for i, leg in enumerate(report.road.get("legs", ()) if report.behavior else ()):
+            key = fact if fact == "control" else f"{fact}.{report.crash.legs[i].bearing % 4}"
+            if key in report.doubtful and leg[fact] in value and words in report.narrative:
+                seen += 1
+                assert report.weight(("legs", i, fact)) == GUESS
+    assert seen > 10

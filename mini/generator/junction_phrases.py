@@ -1,0 +1,81 @@
+"""How a report names a junction and what controls it; a part of the writer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mini.generator import clauses_scene as scene
+from mini.generator import words
+from mini.generator.road_phrases import RoadsMixin
+from mini.generator.settled import STEM
+
+
+class JunctionMixin(RoadsMixin):
+    """Phrases for junctions, signs and signals; needs the writer's fields."""
+
+    say: Any
+    sentences: Any
+
+    def scene_junction(self) -> str:
+        """The junction's name; the plain word is what a crossing of two roads is called, seldom a T."""
+        layout, control = self.crash.layout, self._control_kind()
+        if layout not in ("four", "t"):
+            return "a driveway"
+        self.told |= {"layout"} if layout == "four" else set()
+        if self.rng.random() < (0.6 if layout == "four" else 0.93):
+            self.told |= {"layout"}
+            text = words.junction(self.rng, self.crash, self.held_out)
+            if control == "none" and self.ciren and self.rng.random() < 0.2:
+                self.told.add("control")
+                text = text.replace("a ", "an uncontrolled ", 1)
+            elif not self.ciren and not self.held_out and self.rng.random() < 0.1:
+                text = self._wide(text)
+            return text
+        if control == "signal" and self.rng.random() < 0.25:
+            self.told.add("control")
+            return "a signalized intersection"
+        text = self.rng.choice(("an intersection", "the intersection"))
+        if self.sentences or self.ciren or self.held_out or text.startswith("the") or self.rng.random() > 0.15:
+            return text
+        return self._wide(text)
+
+    def _wide(self, junction: str) -> str:
+        """`a five-lane T-intersection`, which counts the lanes of the main road."""
+        axis = self.crash.main % 4
+        leg = self._legs_on(axis)[0]
+        if leg.turns_in or leg.lanes_in != leg.lanes_out:
+            return junction
+        self.told |= {f"lanes.{axis}"}
+        self.stated.add(f"lanes.{axis}")
+        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.partition(' ')[2]}"
+
+    # -------------------------------------------------------------- control
+    def _control_kind(self) -> str:
+        kinds = [leg.control for leg in self.crash.legs]
+        if all(k == "stop" for k in kinds):
+            return "all"
+        return next((k for k in ("signal", "flashing", "stop", "yield") if k in kinds), "none")
+
+    def _tcd(self) -> str:
+        kind = self._control_kind()
+        if kind in ("signal", "none"):
+            self.told.add("control")
+            return {"signal": "controlled by a traffic control signal", "none": "that was uncontrolled"}[kind]
+        return ""
+
+    def _controlled(self, slot: str) -> str:
+        signed = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
+        legs = [leg for leg in signed if leg.lanes_in or self.held_out] or signed
+        axis = legs[0].bearing if legs else 0
+        rng = self.rng
+        if slot == "caxis":
+            return words.axis(rng, axis)
+        self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
+        names = [words.bound(rng, leg.bearing + 4) for leg in legs]
+        return " and ".join(names)
+
+    def _control_sentence(self, odds: float) -> list[str]:
+        if self.crash.layout not in ("four", "t") or self.rng.random() > odds:
+            return []
+        self.told.add("control")
+        return [self.say(scene.CONTROL[self._control_kind()])]

@@ -1,0 +1,99 @@
+"""Sentences on the place: they speak of the road, and only of what there is."""
+
+import re
+from random import Random
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from mini.generator import clauses_scene
+from mini.generator.crash import sample_crash
+from mini.generator.report import Report, make_report
+from mini.generator.scene import TIMES
+from mini.generator.settled import AXIS
+from mini.generator.writer import Writer
+
+seeds = st.integers(0, 10**6)
+
+
+def _said(word: str, count: int, held_out: bool = False) -> list[tuple[str, frozenset[str], Report]]:
+    """Sentences with a word, what they tell, and their reports."""
+    found = []
+    for seed in range(count):
+        report, begun = make_report(seed, held_out, 0.0, {"text": 1.0}), 0
+        for end, facts in report.sentences:
+            found += [(report.narrative[begun:end], facts, report)] * (word in report.narrative[begun:end])
+            begun = end
+    return found
+
+
+def test_the_direction_of_a_roads_traffic_is_no_vehicles_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_scene, "ROAD", ["QQ for {xb} traffic"])
+    monkeypatch.setattr(clauses_scene, "CURVE", ["QQ {curve} for those who drive {dir}"])
+    found = _said("QQ", 120)
+    assert len(found) > 60
+    for _, facts, _ in found:
+        assert not any(fact.startswith("heading.") for fact in facts)
+        assert any(fact.startswith(AXIS) for fact in facts)
+
+
+@pytest.mark.parametrize("slot", ["lim", "lim2"])
+def test_no_limit_is_told_of_a_road_without_one(slot: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("ROAD", "ROAD2"):
+        monkeypatch.setattr(clauses_scene, name, [f"QQ {{{slot}}}", "RR"])
+    found = _said("QQ", 300)
+    assert len(found) > 40
+    assert all(any(fact.startswith("limit.") for fact in facts) for _, facts, _ in found)
+
+
+@given(seed=seeds)
+def test_roads_that_bend_are_not_called_straight(seed: int) -> None:
+    writer = Writer(Random(seed), sample_crash(Random(seed)), False, 1.0)
+    bends = any(leg.curve != "none" for leg in writer.crash.legs)
+    assert writer._true("The road was straight and level") != bends
+    assert writer._true("The road, straight until here, bent to the {curve}")
+
+
+def test_openings_speak_of_two_vehicles_where_there_are_two() -> None:
+    for _, _, report in (found := _said("two cars", 600) + _said("wo-vehicle", 600)):
+        first = next(end for end, _ in report.sentences)
+        opening = report.narrative[:first]
+        if "two cars" in opening or "wo-vehicle" in opening:
+            assert report.crash.actors[1].id.startswith("V"), opening
+    assert len(found) > 10
+
+
+def test_no_lane_is_named_for_a_crash_on_the_wrong_side_of_the_road() -> None:
+    seen = 0
+    for seed in range(4000):
+        crash = sample_crash(Random(seed))
+        if crash.config in ("head_on", "overtaking"):
+            seen += 1
+            assert not Writer(Random(seed), crash, False, 1.0)._true("This crash occurred in the {xb} lanes of {road}")
+    assert seen > 100
+
+
+@pytest.mark.parametrize("held_out", [False, True])
+def test_times_of_day_agree_with_the_light(held_out: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [key for key in vars(clauses_scene) if key.startswith("OPENING")]:
+        monkeypatch.setattr(clauses_scene, name, ["QQ {tod} RR {jn}", "~QQ {tod} RR {jn}"])
+    monkeypatch.setattr("mini.generator.writer.slips", lambda rng, text, rate: text)
+    found = _said("QQ", 150, held_out)
+    assert len(found) > 40
+    for sentence, _, report in found:
+        assert re.search("QQ (.*) RR", sentence)[1] in TIMES[report.crash.light]  # type: ignore[index]
+
+
+@settings(max_examples=200)
+@given(seed=seeds, order=st.lists(st.booleans(), min_size=2, max_size=6))
+def test_the_same_road_is_the_one_that_was_named_last(seed: int, order: list[bool]) -> None:
+    crash = sample_crash(Random(seed))
+    assume(crash.layout in ("four", "t"))
+    writer = Writer(Random(seed), crash, True, 1.0)
+    last = None
+    for main in order:
+        axis = (crash.main + 2 * (not main)) % 4
+        if "same" in writer._road(axis):
+            assert last == axis
+        last = axis
