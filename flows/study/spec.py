@@ -5,7 +5,7 @@
     arms:                               # an explicit list ...
       - {name: greedy, config: mini_greedy.yaml, set: ["decoder=greedy"], label: Greedy, published: sg_cadvlm_qwen72b}
     cross:                              # ... and/or a cross product; names come from the values
-      config: mini.yaml
+      config: paper/mini_sg_cadvlm.yaml
       over: {decoder.alpha: [0, 0.3, 0.7], seed: [0, 1]}
     cases: [my-cases]                   # optional folders; --cases on the command line wins
     truth: my-truth                     # optional; --truth wins

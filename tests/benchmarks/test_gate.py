@@ -115,7 +115,7 @@ def test_the_tables_name_the_choice_as_it_stands_in_a_config(tmp_path: Path) -> 
 
 def test_another_decoder_or_other_weights_keep_their_groundings_elsewhere(tmp_path: Path) -> None:
     (tmp_path / "config.json").write_text("{}", encoding="utf-8")
-    told = (), ("decoder.alpha=0.3",), (f"backbone.model={tmp_path}",)
+    told = (), ("decoder.scale=0.3",), (f"backbone.model={tmp_path}",)
     files = [gate.default_file(load("mini.yaml", overrides)) for overrides in told]
     (tmp_path / "config.json").write_text("{ }", encoding="utf-8")
     files.append(gate.default_file(load("mini.yaml", told[-1])))
