@@ -15,6 +15,7 @@ import numpy as np
 from mini import tags
 from mini.generator.notes import NOTES
 from mini.generator.report import Report
+from mini.generator.settled import VAGUE
 
 if TYPE_CHECKING:
     from mini.rows import Row
@@ -28,7 +29,8 @@ def sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     told = zip(row.text_tags, report.sentences, strict=True)
     if fact.startswith("lane.") and fact in report.doubtful:
         alike = set()  # "the left lane" of nobody tells how many: the drawing does
-    found = [at for (at, said), (_, facts) in told if alike & facts or legs.intersection(said)]
+    whole = [(at, said, facts) for (at, said), (_, facts) in told if f"{VAGUE}.{fact}" not in facts]
+    found = [at for at, said, facts in whole if alike & facts or legs.intersection(said)]
     found += _noted(row, report, path, found)
     if not found and row.picture_tags is not None and fact in report.drawn and shown in tags.PICTURE:
         found += (row.image_start + np.flatnonzero(row.picture_tags[:, tags.PICTURE[shown]])).tolist()

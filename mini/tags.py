@@ -14,7 +14,7 @@ from typing import Any
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
 from mini.generator.notes import IDS
-from mini.generator.settled import FROM_LEFT, STEM, driven, lanes_beside
+from mini.generator.settled import FROM_LEFT, STEM, VAGUE, driven, lanes_beside
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
@@ -84,9 +84,7 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
         key, _, rest = fact.partition(".")
         if key.startswith(HINT):
             names.append(f"{key}={rest}")
-        elif key == "layout" and STEM not in facts and crash.layout not in ("plain", "four"):
-            continue  # three legs, and no telling which
-        elif key == "lane" and f"{FROM_LEFT}.{rest}" in facts and not _countable(crash, rest, before | facts):
+        elif _open(crash, fact, facts, before):
             continue
         elif key in ("layout", "control", "curve"):
             names += [name for leg in crash.legs for name in _of_leg(key, leg)]
@@ -103,6 +101,16 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
         else:
             names += [n for actor in crash.actors if actor.id == rest for n in _of_actor(key, actor)]
     return sorted({TEXT[name] for name in names if name in TEXT})
+
+
+def _open(crash: Crash, fact: str, facts: Set[str], before: Set[str]) -> bool:
+    """Whether a sentence that tells a fact leaves its value open by then."""
+    key, _, rest = fact.partition(".")
+    if key == "layout" and STEM not in facts:
+        return crash.layout not in ("plain", "four")  # three legs, and no telling which
+    if key == "lane" and f"{FROM_LEFT}.{rest}" in facts:
+        return not _countable(crash, rest, before | facts)
+    return f"{VAGUE}.{fact}" in facts
 
 
 def _countable(crash: Crash, actor: str, known: Set[str]) -> bool:

@@ -28,6 +28,7 @@ class ApproachMixin:
 
     say: Any
     fitting: Any
+    spoken: Any
     reason: Any
     scene_junction: Any
 
@@ -121,5 +122,5 @@ class ApproachMixin:
             text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-            text += (", " if text else " ") + self.fitting(motion.INTENT[actor.maneuver])
+            text += (", " if text else " ") + self.spoken(self.fitting(motion.INTENT[actor.maneuver], actor))
         return text

@@ -92,7 +92,10 @@ class BlocksMixin:
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
         self.lately.clear()
-        speed = self.crash.actors[index].id.startswith("V") and self.rng.random() < 0.3
+        actor = self.crash.actors[index]
+        if not actor.id.startswith("V") or actor.maneuver == "parked":  # nobody who could be asked
+            return self._noise("tow", 0.6, index) + self._coded(index) + self._noise("police", 0.5, index)
+        speed = self.rng.random() < 0.3
         out = self._noise("occupant", 1.2, index)
         if speed and (clear := self._clear(SPEED, index)):
             out.append(self.say(clear, index, **self._person(index)))
@@ -127,7 +130,8 @@ class BlocksMixin:
         for _ in range(count):
             v = index if index in vehicles else self.rng.choice(vehicles)
             others = [i for i in vehicles if i != v]
-            options = [c for c in GROUPS[group] if others or ("{W}" not in c and "Both" not in c)]
+            options = families(GROUPS[group], self.held_out)
+            options = [c for c in options if others or ("{W}" not in c and "Both" not in c)]
             w = self.rng.choice(others) if others else v
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
@@ -156,8 +160,10 @@ class BlocksMixin:
         }[slot]
 
     def _coded(self, index: int) -> list[str]:
-        """Critical event, movement before it, crash type: as often as reports have them."""
+        """Critical event, movement before it, crash type: as often as reports have them, of vehicles."""
         rng, out = self.rng, []
+        if not self.id_of(index).startswith("V"):
+            return out
         share = min(1.0, self.length)
         key = event_of(self.crash, index, self.who)
         if key and rng.random() < 0.9 * share:
@@ -186,8 +192,6 @@ class BlocksMixin:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""
         rng, out, share = self.rng, [], min(1.0, self.length)
         actor, other = self.crash.actors[index], self._opponent(index)
-        if not actor.id.startswith("V"):
-            return []  # trees and people on foot have no drivers
         person, does = self._person(index), actor.maneuver in said.DOING
         if does and rng.random() < 0.3 * share and (clear := self._clear(said.SELF_FRAMES, index)):
             self.told |= {f"man.{actor.id}"}

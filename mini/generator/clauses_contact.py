@@ -80,7 +80,7 @@ This caused the {sa} of {S} to [strike|contact|impact|hit] the {ta} of {T}
 The {ta} of {T} was [damaged|hit|struck] when {S} contacted it with its {sa}
 [The vehicles|Both vehicles] collided, the {sa} of {S} against the {ta} of {T}
 The {sa} of {S} [struck|struck|struck|impacted|contacted|hit|made contact with|collided with] the {ta} of {T}
-The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type configuration| in an offset-frontal mode| in the {xb} lane|]
+The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type configuration| in an offset-frontal mode|]
 {S} [struck|hit|impacted|contacted] {T} [in|on] the {ta} with its {sa}
 {S}'s {sa} [struck|impacted|contacted|hit] {T}'s {ta}
 {S}'s {sa} [struck|impacted|made contact with] the {ta} of {T}

@@ -51,7 +51,7 @@ a one-way {noun} [heading|going|leading|running] {xb}
 a one-way {noun} for {xb} [traffic|travel]
 a {noun} [with one-way|that carries one-way|for one-way] {xb} traffic
 a {noun} [open|limited] to {xb} traffic only
-a [narrow|short|quiet|straight] one-way {noun}
+a [narrow|short|quiet] one-way {noun}
 a {noun} that [is|was] one-way[ {xb}| to {xb} traffic|]
 """)
 ONE_WAY_AGAIN = clauses("""

@@ -91,14 +91,17 @@ class EventsMixin:
         out = []
         if self.waited or (rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4)):
             if config != "parked":  # whether it kept its lane until then no clause tells
-                self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
+                self.told.add(f"man.{self.id_of(v)}")
+            if config not in ("parked", "backing"):  # nor which way one that backs out would have gone
+                self.told.add(f"exit.{self.id_of(v)}")
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
-            options = self._true_of(w, self._error(key))
-            self.told |= {f"man.{self.id_of(w)}"} if goes_on and all("{W}" in clause for clause in options) else set()
-            out.append(self.say(options, v, w, turn=self._turn(v)))
+            clause = self._true_of(w, self._error(key))
+            self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
+            out.append(self.say([self.spoken(clause)], v, w, turn=self._turn(v)))
         alone, rest = not self.id_of(w).startswith("V"), told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
-            out.append(self.say([c for c in told.AVOID if not alone or "{W}" not in c], v, w))
+            avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
+            out += [self.say(avoids, v, w)] if avoids else []
         for number, contact in enumerate(self.crash.contacts):
             out.append(self._impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
@@ -119,17 +122,16 @@ class EventsMixin:
             return PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
 
-    def _true_of(self, index: int, options: list[str]) -> list[str]:
-        """One clause that says of the other vehicle only what it does: that it slowed, that it had stopped.
-
-        All clauses, should none of a good many be true.
-        """
-        does = self.crash.actors[index].maneuver
+    def _true_of(self, index: int, options: list[str]) -> str:
+        """A clause that says of the other vehicle only what it does: that it slowed, that it had stopped; of a good many
+        that are not true the last."""
+        does, erring = self.crash.actors[index].maneuver, self.crash.actors[self.who[0]]
+        clause = ""
         for _ in range(TRIES):
-            clause = self.fitting(options)
+            clause = self.fitting(options, erring)
             if not any(word != does and found.search(clause) for word, found in STATES.items()):
-                return [clause]
-        return options
+                break
+        return clause
 
     def reason(self, key: str, actor: Actor) -> str:
         """What one stands or slows for; of those who turn off a road into a driveway half say so."""
@@ -139,23 +141,28 @@ class EventsMixin:
             slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
             return fill(clause_of(self.rng, turnoffs.YIELDS, False), slots.__getitem__)
         if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
-            return self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key])
+            return self.spoken(self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key], actor))
         if key in ("sign", "light"):
-            text = clause_of(self.rng, motion.WHY[key], self.held_out)
-            self.told |= turnoffs.told(text, self.crash)
-            return text
-        return self.fitting(motion.WHY[key], into=not leaves)
+            return self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out))
+        return self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves))
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
-        """Headings of traffic that one who turns may have to wait for: the oncoming, on a side road any."""
+        """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
+        the right what comes from the left, on the lane that it turns into."""
         ahead = self.crash.leg(actor.leg + 4)
         others = [leg for leg in self.crash.legs if leg.bearing != actor.leg] if ahead is None else [ahead]
-        if not left:  # what comes from the left takes the lane that it turns into
+        if not left:
             others = [leg for leg in self.crash.legs if leg.bearing == (actor.leg + 2) % 8]
         return [(leg.bearing + 4) % 8 for leg in others if leg.kind == "road" and leg.lanes_in]
 
-    def fitting(self, options: list[str], into: bool = True) -> str:
-        """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one.
+    def spoken(self, text: str) -> str:
+        """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""
+        self.told |= turnoffs.told(text, self.crash)
+        return text
+
+    def fitting(self, options: list[str], actor: Actor, into: bool = True) -> str:
+        """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one,
+        of a stop sign only where the one that it speaks of meets one.
 
         `into`: whether it may be a driveway that somebody turns into.
         """
@@ -163,10 +170,9 @@ class EventsMixin:
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if turnoffs.suits(clause, self.crash) and (into or not turnoffs.DRIVEWAY.search(clause)):
+            if turnoffs.suits(clause, self.crash, actor) and (into or not turnoffs.DRIVEWAY.search(clause)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
-        self.told |= turnoffs.told(clause, self.crash)
         return clause
 
     def _turn(self, index: int) -> str:

@@ -69,6 +69,7 @@ class JunctionMixin(RoadsMixin):
         axis = legs[0].bearing if legs else 0
         rng = self.rng
         if slot == "caxis":
+            self.spoken_of = axis % 4
             return words.axis(rng, axis)
         self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
         names = [words.bound(rng, leg.bearing + 4) for leg in legs]

@@ -21,10 +21,13 @@ MEDIAN_WORDS = {
 LOOKS = ("level", "busy", "level", "hilly", "paved", "narrow")
 """Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
 _ARTICLE = re.compile("^an? ")
+_DIVIDED = re.compile(r"\bdivided\b")
 UNCOUNTED = 0.5
 """Share of one-way roads whose lanes nobody counts: in real reports most often there is one."""
 NAMED = "\uf8ff"
 """A mark in a phrase that says by what a road is divided."""
+PARTED = "\uf8fe"
+"""A mark in a phrase that says that a road is divided."""
 
 
 class RoadsMixin:
@@ -62,17 +65,19 @@ class RoadsMixin:
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.stated or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
+                self.spoken_of = axis % 4
                 again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
                 return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
             return self._again(axis % 4)
         self.stated.add(key)
         self.spoken_of = axis % 4
         text, told = self._lanes_text(leg, legs)
+        text += PARTED * bool(_DIVIDED.search(text))
         self.told |= {key} if told else set()
-        if leg.median == "none" or NAMED in text or "divided" in text:
+        if leg.median == "none" or NAMED in text or PARTED in text:
             vague = leg.median != "none" and NAMED not in text
             self.told |= {f"median.{axis % 4}"} | ({f"{VAGUE}.median.{axis % 4}"} if vague else set())
-        text = text.replace(NAMED, "")
+        text = text.replace(NAMED, "").replace(PARTED, "")
         if bare or self.held_out or axis % 4 == self._first or rng.random() < 0.5:
             return text
         others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
@@ -156,8 +161,9 @@ class RoadsMixin:
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
             return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
         options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
+        parted = PARTED * (options is more.DIVIDED)
         median = more.phrase(rng, more.MEDIAN[leg.median]) + NAMED if leg.median in more.MEDIAN else ""
-        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
+        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median) + parted
 
     @staticmethod
     def _sides(leg: Leg, to: str, fro: str) -> list[str]:
@@ -242,7 +248,6 @@ class RoadsMixin:
     def _limit(self, slot: str) -> str:
         axis = self._axis_of(slot)
         legs = [leg for leg in self._legs_on(axis) if leg.limit]
-        if not legs:
-            return words.limit(self.rng, 25, self.held_out)
+        self.spoken_of = axis
         self.told.add(f"limit.{axis}")
-        return words.limit(self.rng, legs[0].limit or 25, self.held_out)
+        return words.limit(self.rng, legs[0].limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so

@@ -1,9 +1,10 @@
-# ruff: noqa: E501 - lists of words
 """The scene sentences of a report: opening, roads, control, conditions; a part of the writer."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from mini.generator import clauses_road as roads
@@ -27,7 +28,7 @@ TIMES = {
 }
 """Times of day that agree with the light."""
 IN_LANES = re.compile(r"\{xb\} lane")
-SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b|\btwo-", re.IGNORECASE)
+SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b", re.IGNORECASE)
 """Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
 """Share of openings that name the road and leave the driveway to those who turn there."""
@@ -66,6 +67,7 @@ class SceneMixin(JunctionMixin):
 
     def _run(self, bearing: int) -> str:
         """How the road of a bearing runs: "north/south"."""
+        self.spoken_of = bearing % 4
         self.told.add(f"{AXIS}.{bearing % 4}")
         return words.axis(self.rng, bearing % 4)
 
@@ -99,18 +101,21 @@ class SceneMixin(JunctionMixin):
         }
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         if self.crash.layout == "driveway" and not self.held_out and self.rng.random() < PASSED_OVER:
-            return [self._of_road(scene.OPENING_PLAIN, main)]
+            return self._of_road(scene.OPENING_PLAIN, main)
         if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
-        return [self._of_road(options, main)]
+        if not all(actor.id.startswith("V") for actor in self.crash.actors[:2]):
+            options = [clause for clause in families(options, self.held_out) if not SEVERAL.search(clause)]
+        return self._of_road(options, main)
 
-    def _of_road(self, options: list[str], main: int) -> str:
-        """A sentence on the road of an actor, true of it: of limits that there are, of curves, of who crashed."""
+    def _of_road(self, options: list[str], main: int) -> list[str]:
+        """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
+        true = [clause for clause in families(options, self.held_out) if self._true(clause)]
         self.of_road = True
-        text = self.say([c for c in families(options, self.held_out) if self._true(c)] or options, main)
+        text = [self.say(true, main)] if true else []
         self.of_road = False
         return text
 
@@ -121,40 +126,46 @@ class SceneMixin(JunctionMixin):
             return False
         if "straight" in clause and "{curve}" not in clause and any(leg.curve != "none" for leg in self.crash.legs):
             return False
-        if IN_LANES.search(clause) and self.crash.config in ("head_on", "overtaking"):
-            return False  # on which side of the road that was is what the report is about
-        return all(actor.id.startswith("V") for actor in self.crash.actors[:2]) or not SEVERAL.search(clause)
+        elsewhere = ("head_on", "overtaking", "left_opposite")  # not in the lanes of the one who comes to mind first
+        return not (IN_LANES.search(clause) and self.crash.config in elsewhere)
 
     def _road_sentences(self) -> list[str]:
-        rng, out = self.rng, []
+        """What they say is made in the order of the text: "the same road" is the one that was named last."""
+        rng = self.rng
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
-        for _ in range(rng.choice((0, 1, 1, 2))):
-            out.append(self._of_road(scene.ROAD, main))
+        makers = [partial(self._of_road, scene.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
         if self.crash.layout in ("four", "t") and rng.random() < 0.4:
-            out.append(self._of_road(scene.ROAD2, main))
-        if not self.held_out and rng.random() < 0.3:
-            out += self._each_way()
-        if not self.held_out and self.crash.layout in ("four", "t") and rng.random() < 0.3:
-            out += rng.choice((self._pair, self._limits))()
-        if not self.held_out and self.roads_left and rng.random() < (0.15 if self._two_way() else 0.4):
-            out += self._alike_roads()
-        if not self.held_out and rng.random() < 0.25:
-            out += self._flows()
-        if not self.held_out and self.crash.layout in roads.STEM and rng.random() < 0.3:
-            out.append(self.say(roads.STEM[self.crash.layout], main))
-        curved = self._leg_of(main).curve != "none"
-        if curved and rng.random() < 0.7:
-            out.append(self._of_road(scene.CURVE, main))
+            makers.append(partial(self._of_road, scene.ROAD2, main))
+        if not self.held_out:
+            makers += self._more_of_roads(main)
+        if self._leg_of(main).curve != "none" and rng.random() < 0.7:
+            makers.append(partial(self._of_road, scene.CURVE, main))
         if self.crash.accesses and rng.random() < 0.8:
-            out.append(self._access())
-        rng.shuffle(out)
-        return out
+            makers.append(self._access)
+        rng.shuffle(makers)
+        return [text for make in makers for text in make()]
+
+    def _more_of_roads(self, main: int) -> list[Callable[[], list[str]]]:
+        """Sentences that only train."""
+        rng, crossing = self.rng, self.crash.layout in ("four", "t")
+        makers: list[Callable[[], list[str]]] = []
+        if rng.random() < 0.3:
+            makers.append(self._each_way)
+        if crossing and rng.random() < 0.3:
+            makers.append(rng.choice((self._pair, self._limits)))
+        if self.roads_left and rng.random() < (0.15 if self._two_way() else 0.4):
+            makers.append(self._alike_roads)
+        if rng.random() < 0.25:
+            makers.append(self._flows)
+        if self.crash.layout in roads.STEM and rng.random() < 0.3:
+            makers.append(lambda: [self.say(roads.STEM[self.crash.layout], main)])
+        return makers
 
     def _each_way(self) -> list[str]:
         """What lanes either direction of a road has."""
         rng = self.rng
         axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
-        legs = self._legs_on(axis)
+        legs, self.spoken_of = self._legs_on(axis), axis
         if not self.roads_left or not legs[0].two_way:
             return []
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
@@ -206,7 +217,7 @@ class SceneMixin(JunctionMixin):
         if not found:
             return []
         leg = self.rng.choice(found)
-        axis = leg.bearing % 4
+        axis = self.spoken_of = leg.bearing % 4
         self.told |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
         xb = words.bound(self.rng, leg.flow)
         return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
@@ -220,14 +231,14 @@ class SceneMixin(JunctionMixin):
         self.told |= {f"limit.{leg.bearing % 4}" for leg in self.crash.legs}
         return [self.say(roads.LIMITS, lim=words.limit(self.rng, limit, False))]
 
-    def _access(self) -> str:
+    def _access(self) -> list[str]:
         access = self.crash.accesses[0]
         self.told.add("access")
         side = (access.leg + 4 + (2 if access.side == "right" else -2)) % 8
         kind = "driveway" if access.kind == "driveway" else "side street"
         place = "[crash|intersection|impact]" if self.crash.layout in ("four", "t") else "[crash|impact]"
-        return self.say([f"There [was|is] a {{acc}} on the {{accdir}} side of the road[way|] {{accleg}} of the {place}"],
-                        acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])  # fmt: skip
+        clause = f"There [was|is] a {{acc}} on the {{accdir}} side of the road[way|] {{accleg}} of the {place}"
+        return [self.say([clause], acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])]
 
     def _conditions(self, odds: float) -> list[str]:
         return [self.say(scene.CONDITIONS)] if self.rng.random() < odds else []

@@ -129,7 +129,6 @@ class Targets:
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
-        self._unsure(path, *(("exit_road",) if actor.maneuver == "backing" else ()))  # which way, hardly anybody tells
         self._unsure(path, *(("lane",) if f"lane.{actor.id}" in known - self.sure else ()))
         if f"kind.{actor.id}" in known and actor.kind not in USUAL:
             self.weights[(*path, "kind")] = RARE

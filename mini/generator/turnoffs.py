@@ -7,7 +7,7 @@ import re
 
 from mini.generator.grammar import clauses, tables
 from mini.generator.settled import VAGUE
-from mini.generator.world import Crash
+from mini.generator.world import Actor, Crash
 
 _BUSINESS = (
     r"lot|lots|gas station|station|store|stores|shopping center|business|restaurant|school|church|bank|market|mall|motel"
@@ -35,10 +35,13 @@ STOP = re.compile(r"stop (?:sign|line|bar)", re.IGNORECASE)
 SIGN = re.compile(r"stop sign|\bat (?:the|its) sign", re.IGNORECASE)
 
 
-def suits(text: str, crash: Crash) -> bool:
-    """Whether what the words say of driveways, streets, signs and signals may be said of these roads."""
-    controls = {leg.control for leg in crash.legs}
+def suits(text: str, crash: Crash, actor: Actor) -> bool:
+    """Whether what the words say of driveways, streets, signs and signals may be said of these roads and of one who
+    comes to them."""
+    controls, met = {leg.control for leg in crash.legs}, crash.leg(actor.leg)
     if SIGNAL.search(text) and "signal" not in controls:
+        return False
+    if SIGN.search(text) and (met is None or met.control != "stop"):
         return False
     if crash.layout == "driveway":
         return not STREET.search(text)

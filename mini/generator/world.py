@@ -84,7 +84,8 @@ class Actor:
     def exit_of(self, told: Set[str]) -> int | None:
         """The leg that it takes, if these facts say which."""
         sure = f"man.{self.id}" in told or self.maneuver == "straight"
-        return self.out if sure and (not self.meant or f"exit.{self.id}" in told) else None
+        open_ = self.meant or self.maneuver == "backing"  # which neither standing nor backing out tells
+        return self.out if sure and (not open_ or f"exit.{self.id}" in told) else None
 
 
 @dataclass

@@ -37,7 +37,9 @@ CIREN_ORDER = (
 Words = str | Callable[[], str]
 PRONOUNS = ("he", "He", "his", "His")
 """Slots of words for the driver of the one whom a clause is about."""
-OTHERS = re.compile(r"(?:driver|operator|occupants?) of \{W\}|passenger|witness|spouse", re.IGNORECASE)
+OTHERS = re.compile(
+    r"(?:driver|operator|occupants?) of \{W\}|passenger|witness|spouse|wife|husband|friend", re.IGNORECASE
+)
 """Clauses that speak of another person than the driver of the one whom they are about."""
 
 
@@ -142,13 +144,15 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         self.told |= self._hints(clause, v, other)
         slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
 
+        others = OTHERS.search(clause)
+
         def filled(slot: str) -> str:
             text = self._slot(slot, v, other, extra)
-            meant = [f"id={self.id_of(v)}"] if slot in PRONOUNS and v in self.lately else []
+            meant = [f"id={self.id_of(v)}"] if slot in PRONOUNS and not others and v in self.lately else []
             return noted(text, slots.next(slot) + meant)
 
         text = sentence(fill(clause, filled))
-        if OTHERS.search(clause):  # "he" is now somebody else
+        if others:  # and whoever "he" is after that
             self.lately.discard(v)
         self.sentences.append(self.told.take())
         return text + chr(MARK + len(self.sentences) - 1)

@@ -88,7 +88,7 @@ def test_others_are_said_to_do_what_they_do(held_out: bool) -> None:
         writer = Writer(Random(seed), crash, held_out, 0.3)
         _, other = writer.who
         for _ in range(10):
-            (clause,) = writer._true_of(other, CRITICAL["rear_end"])
+            clause = writer._true_of(other, CRITICAL["rear_end"])
             states = {word for word, found in STATES.items() if found.search(clause)}
             assert states <= {crash.actors[other].maneuver}, clause
             said |= states

@@ -56,7 +56,7 @@ def test_roads_that_bend_are_not_called_straight(seed: int) -> None:
 
 
 def test_openings_speak_of_two_vehicles_where_there_are_two() -> None:
-    for _, _, report in (found := _said("two cars", 600) + _said("wo-vehicle", 600)):
+    for _, _, report in (found := _said("two cars", 900) + _said("wo-vehicle", 900)):
         first = next(end for end, _ in report.sentences)
         opening = report.narrative[:first]
         if "two cars" in opening or "wo-vehicle" in opening:
