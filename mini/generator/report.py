@@ -60,7 +60,7 @@ class Report:
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
     doubtful: set[str] = field(default_factory=set)
-    """What the narrative tells of a road without saying which legs are meant."""
+    """What the narrative tells in part, or of a road without saying which legs are meant."""
 
     def weight(self, path: tuple[Any, ...]) -> float:
         """Weight of a value in the loss."""

@@ -30,7 +30,7 @@ class Targets:
     """Both answers to one report and the weights of their values."""
 
     def __init__(self, crash: Crash, known: set[str], doubtful: Set[str] = frozenset(), alone: bool = False) -> None:
-        """`doubtful`: what is known and cannot be laid on a leg; it stands in the answer with the weight of a guess.
+        """`doubtful`: what is known in part, or of no known leg; it stands in the answer with the weight of a guess.
 
         `alone`: of a narrative without a drawing.
         """

@@ -127,6 +127,7 @@ def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
 WAY = re.compile(
     r"\b(from (?:the )?)?(north|south|east|west)(?:ern)?(?:(?<!st)[ -]?(east|west))?(?:[ -]?(?:bound|ward|erly))*"
 )
+"""Words for a way; of a word that a slip doubled ("west west") the last."""
 
 
 def test_a_noted_way_is_the_one_in_its_words() -> None:
