@@ -34,7 +34,7 @@ BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 
 
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
-    """Facts that sentences tell in part or that lie on no known leg; "legs" where nobody could say which legs there are.
+    """Facts that sentences tell in part or of no known leg; "legs" where nobody could say which legs there are.
 
     Then nothing about the legs beside the main road is known either, nor which legs a control stands at.
     """
