@@ -34,7 +34,7 @@ class ApproachMixin:
 
     def _approaches(self) -> list[str]:
         actors = self.crash.actors
-        order = [i for i, a in enumerate(actors) if a.id.startswith("V")]
+        order = [i for i, a in enumerate(actors) if a.vehicle]
         if self.rng.random() < 0.12:
             self.rng.shuffle(order)
         if not self.ciren and len(order) > 1 and self.rng.random() < 0.04:

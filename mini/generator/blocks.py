@@ -6,6 +6,7 @@ often told there, or by a driver, more plainly than among the events.
 
 from __future__ import annotations
 
+import re
 from random import Random
 from typing import Any
 
@@ -32,7 +33,7 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
-TELLING = ("{spd}", "{dir}", "{lane}", "{doing}", "{code}", "{move}")
+TELLING = re.compile(r"\{(?:spd|dir|lane|doing|code|move)\}")
 """Slots that tell something of the one whom a clause is about."""
 
 
@@ -40,7 +41,7 @@ def event_of(crash: Crash, index: int, who: tuple[int, int]) -> str | None:
     """Key of the critical event of an actor, as `clauses_codes.EVENT` has it; None where nothing is coded."""
     if index == who[0]:
         return _own_event(crash, crash.actors[index], crash.actors[who[1]])
-    if index == who[1] and crash.actors[index].id.startswith("V"):
+    if index == who[1] and crash.actors[index].vehicle:
         return _encroachment(crash, crash.actors[who[0]], crash.actors[index])
     return None
 
@@ -93,7 +94,7 @@ class BlocksMixin:
         """The block on one vehicle: driver, interview, health, codes."""
         self.lately.clear()
         actor = self.crash.actors[index]
-        if not actor.id.startswith("V") or actor.maneuver == "parked":  # nobody who could be asked
+        if not actor.vehicle or actor.maneuver == "parked":  # nobody who could be asked
             return self._noise("tow", 0.6, index) + self._coded(index) + self._noise("police", 0.5, index)
         speed = self.rng.random() < 0.3
         out = self._noise("occupant", 1.2, index)
@@ -117,25 +118,24 @@ class BlocksMixin:
         found = families(options, self.held_out)
         if self.crash.actors[index].maneuver in ("stopped", "parked"):
             found = [clause for clause in found if "{spd}" not in clause]
-        if index in self.lately or sum(actor.id.startswith("V") for actor in self.crash.actors) == 1:
+        if index in self.lately or sum(actor.vehicle for actor in self.crash.actors) == 1:
             return found
-        return [clause for clause in found if "{V}" in clause or not any(slot in clause for slot in TELLING)]
+        return [clause for clause in found if "{V}" in clause or not TELLING.search(clause)]
 
     def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
         """About mean * length sentences of a noise group."""
         wanted = mean * self.length
         count = int(wanted) + (self.rng.random() < wanted % 1)
-        vehicles = [i for i, a in enumerate(self.crash.actors) if a.id.startswith("V")]
+        vehicles = [i for i, a in enumerate(self.crash.actors) if a.vehicle]
         out = []
         for _ in range(count):
             v = index if index in vehicles else self.rng.choice(vehicles)
             others = [i for i in vehicles if i != v]
-            options = families(GROUPS[group], self.held_out)
-            options = [c for c in options if others or ("{W}" not in c and "Both" not in c)]
             w = self.rng.choice(others) if others else v
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
-            if clear := self._clear(options, v):
+            clear = self._clear(GROUPS[group], v)
+            if clear := [c for c in clear if others or ("{W}" not in c and "Both" not in c)]:
                 out.append(self.say(clear, v, w, **self._person(v)))
         return out
 
@@ -162,7 +162,7 @@ class BlocksMixin:
     def _coded(self, index: int) -> list[str]:
         """Critical event, movement before it, crash type: as often as reports have them, of vehicles."""
         rng, out = self.rng, []
-        if not self.id_of(index).startswith("V"):
+        if not self.crash.actors[index].vehicle:
             return out
         share = min(1.0, self.length)
         key = event_of(self.crash, index, self.who)
@@ -209,7 +209,7 @@ class BlocksMixin:
         return out
 
     def _opponent(self, index: int) -> int | None:
-        found = [i for i in self.who if i != index and self.id_of(i).startswith("V")]
+        found = [i for i in self.who if i != index and self.crash.actors[i].vehicle]
         return found[0] if index in self.who and found else None
 
     def _seen(self, index: int) -> str | None:

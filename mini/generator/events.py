@@ -98,7 +98,7 @@ class EventsMixin:
             clause = self._true_of(w, self._error(key))
             self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
             out.append(self.say([self.spoken(clause)], v, w, turn=self._turn(v)))
-        alone, rest = not self.id_of(w).startswith("V"), told.REST
+        alone, rest = not self.crash.actors[w].vehicle, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
             out += [self.say(avoids, v, w)] if avoids else []
@@ -149,10 +149,10 @@ class EventsMixin:
     def _others(self, actor: Actor, left: bool) -> list[int]:
         """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
         the right what comes from the left, on the lane that it turns into."""
-        ahead = self.crash.leg(actor.leg + 4)
-        others = [leg for leg in self.crash.legs if leg.bearing != actor.leg] if ahead is None else [ahead]
-        if not left:
-            others = [leg for leg in self.crash.legs if leg.bearing == (actor.leg + 2) % 8]
+        only = (actor.leg + (4 if left else 2)) % 8
+        others = [leg for leg in self.crash.legs if leg.bearing == only]
+        if left and not others:
+            others = [leg for leg in self.crash.legs if leg.bearing != actor.leg]
         return [(leg.bearing + 4) % 8 for leg in others if leg.kind == "road" and leg.lanes_in]
 
     def spoken(self, text: str) -> str:

@@ -35,7 +35,7 @@ class Mentions:
         self.introduced: set[int] = set()
         self.years = {i: rng.choice(YEARS) for i in range(len(crash.actors))}
         for actor in crash.actors:
-            actor.model = model_text(rng, actor.kind) if actor.id.startswith("V") else self._other(actor)
+            actor.model = model_text(rng, actor.kind) if actor.vehicle else self._other(actor)
 
     def _other(self, actor: Actor) -> str:
         if actor.kind == "object":
@@ -46,7 +46,7 @@ class Mentions:
     def name(self, index: int) -> str:
         """A later mention."""
         actor = self.crash.actors[index]
-        if not actor.id.startswith("V"):
+        if not actor.vehicle:
             return (
                 actor.model.replace("a ", "the ", 1)
                 if index in self.introduced and actor.model.startswith("a ")
@@ -68,7 +68,7 @@ class Mentions:
     def full(self, index: int, body_odds: float = 0.6) -> tuple[str, bool]:
         """The first mention, and whether it tells what kind of vehicle it is."""
         actor = self.crash.actors[index]
-        if not actor.id.startswith("V"):
+        if not actor.vehicle:
             self.introduced.add(index)
             return actor.model, True
         if index in self.introduced:

@@ -27,7 +27,7 @@ UNCOUNTED = 0.5
 NAMED = "\uf8ff"
 """A mark in a phrase that says by what a road is divided."""
 PARTED = "\uf8fe"
-"""A mark in a phrase that says that a road is divided."""
+"""A mark in a phrase that says in other words than "divided" that a road is."""
 
 
 class RoadsMixin:
@@ -72,11 +72,12 @@ class RoadsMixin:
         self.stated.add(key)
         self.spoken_of = axis % 4
         text, told = self._lanes_text(leg, legs)
-        text += PARTED * bool(_DIVIDED.search(text))
         self.told |= {key} if told else set()
-        if leg.median == "none" or NAMED in text or PARTED in text:
-            vague = leg.median != "none" and NAMED not in text
-            self.told |= {f"median.{axis % 4}"} | ({f"{VAGUE}.median.{axis % 4}"} if vague else set())
+        median = f"median.{axis % 4}"
+        if leg.median == "none" or NAMED in text:
+            self.told.add(median)
+        elif PARTED in text or _DIVIDED.search(text):
+            self.told |= {median, f"{VAGUE}.{median}"}
         text = text.replace(NAMED, "").replace(PARTED, "")
         if bare or self.held_out or axis % 4 == self._first or rng.random() < 0.5:
             return text
@@ -245,9 +246,12 @@ class RoadsMixin:
         """Axis of the road whose limit a slot names."""
         return (self._first + 2 * (slot == "lim2")) % 4
 
+    def _limit_of(self, slot: str) -> int | None:
+        """That limit; None where nobody set one."""
+        return next((leg.limit for leg in self._legs_on(self._axis_of(slot)) if leg.limit), None)
+
     def _limit(self, slot: str) -> str:
-        axis = self._axis_of(slot)
-        legs = [leg for leg in self._legs_on(axis) if leg.limit]
+        axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
         self.told.add(f"limit.{axis}")
-        return words.limit(self.rng, legs[0].limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so
+        return words.limit(self.rng, limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so

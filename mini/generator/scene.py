@@ -107,7 +107,7 @@ class SceneMixin(JunctionMixin):
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
-        if not all(actor.id.startswith("V") for actor in self.crash.actors[:2]):
+        if not all(actor.vehicle for actor in self.crash.actors[:2]):
             options = [clause for clause in families(options, self.held_out) if not SEVERAL.search(clause)]
         return self._of_road(options, main)
 
@@ -121,13 +121,13 @@ class SceneMixin(JunctionMixin):
 
     def _true(self, clause: str) -> bool:
         """Whether what a clause on the road says beside its slots may be said of this crash."""
-        limits = {slot: any(leg.limit for leg in self._legs_on(self._axis_of(slot))) for slot in ("lim", "lim2")}
-        if any(f"{{{slot}}}" in clause and not known for slot, known in limits.items()):
-            return False
+        for slot in ("lim", "lim2"):
+            if f"{{{slot}}}" in clause and self._limit_of(slot) is None:
+                return False
         if "straight" in clause and "{curve}" not in clause and any(leg.curve != "none" for leg in self.crash.legs):
             return False
         elsewhere = ("head_on", "overtaking", "left_opposite")  # not in the lanes of the one who comes to mind first
-        return not (IN_LANES.search(clause) and self.crash.config in elsewhere)
+        return self.crash.config not in elsewhere or not IN_LANES.search(clause)
 
     def _road_sentences(self) -> list[str]:
         """What they say is made in the order of the text: "the same road" is the one that was named last."""

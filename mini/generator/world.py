@@ -81,6 +81,11 @@ class Actor:
         """Whether it stands or slows for a turn, which its maneuver does not say."""
         return self.purpose.startswith("turn_")
 
+    @property
+    def vehicle(self) -> bool:
+        """Whether it is a motor vehicle: no tree, nobody on foot or on a bicycle."""
+        return self.id.startswith("V")
+
     def exit_of(self, told: Set[str]) -> int | None:
         """The leg that it takes, if these facts say which."""
         sure = f"man.{self.id}" in told or self.maneuver == "straight"

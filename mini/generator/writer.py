@@ -143,7 +143,6 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
         slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
-
         others = OTHERS.search(clause)
 
         def filled(slot: str) -> str:
@@ -190,7 +189,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
             text, kind = self.mentions.full(index)
             self.told |= {f"kind.{self.id_of(index)}"} if kind else set()
             return text
-        self.told |= {f"kind.{self.id_of(index)}"} if not self.id_of(index).startswith("V") else set()
+        self.told |= {f"kind.{self.id_of(index)}"} if not self.crash.actors[index].vehicle else set()
         return self.mentions.name(index)
 
     def _motion_slot(self, slot: str, v: int, w: int) -> str:

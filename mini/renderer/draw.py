@@ -169,7 +169,7 @@ def _layer(track: Track, index: int) -> int:
 
 
 def _color(rng: Random, track: Track) -> Color:
-    if not track.actor.id.startswith("V"):
+    if not track.actor.vehicle:
         return (
             rng.choice(((90, 60, 20), (20, 110, 40), (20, 20, 20)))
             if track.actor.kind == "object"
