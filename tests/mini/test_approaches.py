@@ -4,6 +4,7 @@ import pytest
 
 from mini.generator import clauses_motion
 from mini.generator.report import make_report
+from tests.mini.reports import sentences
 
 LISTS = ("APPROACH", "APPROACH_STOPPED", "APPROACH_SLOWING", "APPROACH_WAITING")
 
@@ -17,14 +18,12 @@ def test_what_a_clause_has_no_place_for_is_not_told(held_out: bool, monkeypatch:
     for seed in range(300):
         report = make_report(seed, held_out, 0.0, {"text": 1.0})
         meant = {actor.id for actor in report.crash.actors if actor.meant}
-        begun = 0
-        for end, facts in report.sentences:
-            if "QQ" in report.narrative[begun:end]:
+        for sentence, facts in sentences(report):
+            if "QQ" in sentence:
                 seen += 1
                 keys = {fact.partition(".")[0] for fact in facts}
                 assert not keys & {"layout", "control", "lanes"}
                 assert not facts & {f"exit.{name}" for name in meant}
-            begun = end
     assert seen > 200
 
 
@@ -34,9 +33,7 @@ def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypat
     told = plain = 0
     for seed in range(300):
         report = make_report(seed, False, 0.0, {"text": 1.0})
-        begun = 0
-        for end, facts in report.sentences:
-            sentence, begun = report.narrative[begun:end], end
+        for sentence, facts in sentences(report):
             if "QQ" in sentence:
                 assert ("RR" in sentence) == any(fact.startswith("exit.") for fact in facts)
                 told, plain = told + ("RR" in sentence), plain + ("RR" not in sentence)

@@ -15,6 +15,7 @@ from mini.generator.grammar import unmark
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, ROAD
 from mini.generator.world import WORDS, Crash, Leg
+from tests.mini.reports import sentences
 
 COUNTS = {word: n for n, word in enumerate(words.NUMBERS)} | {str(n): n for n in range(13)} | {"a": 1}
 seeds = st.integers(0, 2**31)
@@ -122,10 +123,7 @@ def test_names_of_junctions_tell_how_many_legs(layout: str) -> None:
 def _sentences(seeds: range) -> Iterator[tuple[str, frozenset[str], Crash]]:
     for seed in seeds:
         report = make_report(seed, False, 0.2, {"text": 1.0})
-        start = 0
-        for end, facts in report.sentences:
-            yield report.narrative[start:end].strip(), facts, report.crash
-            start = end
+        yield from ((text, facts, report.crash) for text, facts in sentences(report))
 
 
 def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch: pytest.MonkeyPatch) -> None:

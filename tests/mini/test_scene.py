@@ -13,6 +13,7 @@ from mini.generator.report import Report, make_report
 from mini.generator.scene import TIMES
 from mini.generator.settled import AXIS
 from mini.generator.writer import Writer
+from tests.mini.reports import sentences
 
 seeds = st.integers(0, 10**6)
 
@@ -21,10 +22,8 @@ def _said(word: str, count: int, held_out: bool = False) -> list[tuple[str, froz
     """Sentences with a word, what they tell, and their reports."""
     found = []
     for seed in range(count):
-        report, begun = make_report(seed, held_out, 0.0, {"text": 1.0}), 0
-        for end, facts in report.sentences:
-            found += [(report.narrative[begun:end], facts, report)] * (word in report.narrative[begun:end])
-            begun = end
+        report = make_report(seed, held_out, 0.0, {"text": 1.0})
+        found += [(text, facts, report) for text, facts in sentences(report) if word in text]
     return found
 
 
