@@ -160,7 +160,7 @@ def head_on(rng: Random, crash: Crash) -> bool:
     }[way]
     if rng.random() < 0.15:
         crash.actors.append(_vehicle(rng, a + 4, a, straight))
-        crash.contacts.append(Contact(2, 0, "front", pick(rng, {"left": 1.0, "right": 1.0, "front": 0.6, "back": 0.4})))
+        crash.contacts.append(Contact(2, 0, "front", pick(rng, {"left": 1.0, "right": 1.0, "front": 0.6})))
     return True
 
 

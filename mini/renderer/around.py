@@ -29,11 +29,11 @@ NOTES = (
     "Lawn",
     "telephone pole",
     "witness stood here",
-    "Stop",
     "measured from this curb",
     "V1 - {y} Saturn, wagon\nV2 - {y} Mazda, pickup",
     "N/S road {n} mph, E/W road {n} mph",
 )
+TRIES = 12
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,8 @@ def north_arrow(rng: Random, pen: Pen) -> list[Shape]:
     """An arrow with an N; missing now and then where north is up."""
     if abs(pen.turn) < 0.01 and rng.random() < 0.08:
         return []
-    w, h = pen.image.size
     length = rng.uniform(9, 18) if rng.random() < 0.35 else rng.uniform(14, 46)
-    x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94), rng.uniform(0.3, 0.7))) * w
-    y = rng.choice((rng.uniform(0.02, 0.25), rng.uniform(0.75, 0.94))) * h
-    x, y = min(max(x, length), w - length), min(max(y, length), h - length)
+    x, y = _free(rng, pen.image, length)
     up = np.array([math.cos(math.pi / 2 + pen.turn), -math.sin(math.pi / 2 + pen.turn)])
     center, size = np.array([x, y]), max(7.0, length * rng.uniform(0.36, 0.95))
     pen.draw.rectangle((x - length * 0.7, y - length * 0.7, x + length * 0.7, y + length * 0.7), fill="white")
@@ -67,6 +64,21 @@ def north_arrow(rng: Random, pen: Pen) -> list[Shape]:
         pen.text(place[0] + bold, place[1], name, round(max(7.0, size)), angle=angle)
     square = center + np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * length * 0.5
     return [Shape(square, [tags.PICTURE[f"north={round(-pen.turn / (math.pi / 4)) % 8}"]], 0.1)]
+
+
+def _free(rng: Random, image: Image.Image, length: float) -> tuple[float, float]:
+    """The middle (pixels) of a place for a north arrow near an edge of the sheet, where nothing is drawn if there is
+    room."""
+    w, h = image.size
+    x = y = 0.0
+    for _ in range(TRIES):
+        x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94), rng.uniform(0.3, 0.7))) * w
+        y = rng.choice((rng.uniform(0.02, 0.25), rng.uniform(0.75, 0.94))) * h
+        x, y = min(max(x, length), w - length), min(max(y, length), h - length)
+        box = (int(x - length), int(y - length), int(x + length), int(y + length))
+        if image.crop(box).convert("L").getextrema()[0] > 250:  # type: ignore[operator]
+            break
+    return x, y
 
 
 def _arrow_and_letter(rng: Random, center: Points, up: Points, length: float, size: float) -> tuple[Points, ...]:
@@ -83,12 +95,13 @@ def _arrow_and_letter(rng: Random, center: Points, up: Points, length: float, si
     return center - up * length * 0.5, center + up * length * 0.5, center + along + aside * size * rng.uniform(0.5, 1.1)
 
 
-def captions(rng: Random, pen: Pen) -> None:
-    """Notes as investigators leave them, some over the drawing."""
+def captions(rng: Random, pen: Pen, actors: int) -> None:
+    """Notes as investigators leave them, some over the drawing, none of more actors than there are."""
     w, h = pen.image.size
+    notes = [note for note in NOTES if actors > 1 or "V2" not in note]
     n = rng.choice((25, 35, 45, 55, 70))
     for _ in range(rng.choice((0, 1, 1, 2, 3))):
-        text = rng.choice(NOTES).format(n=n, k=round(n * 1.609), y=rng.randint(1990, 2007))
+        text = rng.choice(notes).format(n=n, k=round(n * 1.609), y=rng.randint(1990, 2007))
         pen.text(
             rng.uniform(0.2, 0.8) * w,
             rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h,
@@ -100,9 +113,9 @@ def captions(rng: Random, pen: Pen) -> None:
         pen.draw.line([(x, y), (x + rng.uniform(-60, 60), y + rng.uniform(-40, 40))], fill=BLACK, width=1)
 
 
-def scan(rng: Random, image: Image.Image) -> Image.Image:
-    """What copying does: gray, blur, low resolution, skew, specks; most drawings are clean."""
-    if rng.random() < 0.06:
+def scan(rng: Random, image: Image.Image, gray: bool = True) -> Image.Image:
+    """What copying does: gray (where that may be), blur, low resolution, skew, specks; most drawings are clean."""
+    if rng.random() < 0.06 and gray:
         image = image.convert("L").convert("RGB")
     if rng.random() < 0.15:
         factor = rng.uniform(0.45, 0.8)

@@ -18,9 +18,10 @@ from mini.generator.report import Report
 from mini.generator.world import Crash
 from mini.renderer import accesses, icons
 from mini.renderer.around import Shape, captions, north_arrow, scan
+from mini.renderer.boxes import Pose, corners
 from mini.renderer.lines import Ground, Points
 from mini.renderer.pen import BLACK, Color, Pen
-from mini.renderer.poses import Pose, Stage, Track, corners
+from mini.renderer.poses import Stage, Track
 from mini.renderer.road_marks import RoadMarks
 
 COLORS: dict[int, tuple[Color, ...]] = {
@@ -30,6 +31,12 @@ COLORS: dict[int, tuple[Color, ...]] = {
     4: ((230, 180, 30), (150, 60, 180)),
     5: ((150, 60, 180),),
 }
+
+
+QUEUED = 5.0
+"""Metres of road more, either way, for each that runs into one ahead, so that where it came from is on the sheet."""
+CENTERED = 0.8
+"""Share of drawings in which a leg's pavement, not its center line, lies about the middle of the junction."""
 
 
 @dataclass(frozen=True)
@@ -54,13 +61,13 @@ def draw_labeled(report: Report) -> Drawing:
     pen, ground = _sheet(rng, crash)
     tracks = Stage(rng, crash, ground, rng.uniform(1.0, 1.45)).tracks()
     _aim(rng, pen, tracks)
-    marks = RoadMarks(rng, pen, crash, ground)
+    marks = RoadMarks(rng, pen, crash, ground, [(pose, track.size) for track in tracks for pose in track.poses])
     arrows = any(fact.startswith("turns.") for fact in report.drawn)
     marks.draw(arrows=arrows, signs="control" in report.drawn)
-    _vehicles(rng, pen, tracks)
+    labels = _vehicles(rng, pen, tracks)
     shapes = _shapes(report, pen, ground, tracks, arrows) + north_arrow(rng, pen)
-    captions(rng, pen)
-    return Drawing(scan(rng, pen.image), shapes, pen.turn)
+    captions(rng, pen, len(crash.actors))
+    return Drawing(scan(rng, pen.image, gray=labels), shapes, pen.turn)
 
 
 def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrows: bool) -> list[Shape]:
@@ -89,14 +96,19 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
     turn = math.radians(rng.choices((0, 90, -90, 180, rng.uniform(-60, 60)), (62, 16, 12, 4, 6))[0])
     half = rng.uniform(21, 36) if not plain else rng.uniform(22, 48)
     wide = max(leg.lanes_in + leg.lanes_out for leg in crash.legs)
-    half += 2.0 * wide
+    actors = crash.actors
+    queue = [c for c in crash.contacts if c.struck_area == "back" and actors[c.striker].leg == actors[c.struck].leg]
+    half += 2.0 * wide + QUEUED * len(queue)
     used = {bearing for actor in crash.actors for bearing in (actor.leg, actor.out)}
     lengths = {leg.bearing: half * rng.uniform(0.85, 1.5) for leg in crash.legs}
     for leg in crash.legs:
         if leg.bearing not in used and not crash.is_main(leg.bearing):
             lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
+    for contact in queue:
+        lengths[actors[contact.striker].leg] = max(lengths[actors[contact.striker].leg], 1.3 * half)
     curved = any(leg.curve != "none" for leg in crash.legs)
-    ground = Ground(crash, lengths, rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash))
+    radius, widths = rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash)
+    ground = Ground(crash, lengths, radius, widths, centered=rng.random() < CENTERED)
     for bearing, band in ground.bands.items():
         clear = ground.setback(bearing, 1.0)
         band.length = max(band.length, clear + 12) if band.leg.mouth is None else clear + band.leg.mouth
@@ -145,39 +157,55 @@ def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
 
 
 # ------------------------------------------------------------------ vehicles
-def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> None:
+def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> bool:
+    """Draws the actors; whether their names stand beside them, without which only their colors tell who is who."""
     style = rng.choice(("box", "box", "icon", "icon", "plain"))
-    arrows, labels = rng.random() < 0.55, rng.random() < 0.9
+    arrows, labels = rng.random() < 0.55 or style == "plain", rng.random() < 0.9
+    ghosts = style == "icon" and labels and rng.random() < 0.3
     order = list(tracks)
     rng.shuffle(order)
-    colors = {track.actor.id: _color(rng, track) for track in order}
+    colors = {track.actor.id: _color(rng, track, labels) for track in order}
+    for track in order:
+        if track.ahead is not None:
+            _intended(pen, track.ahead)
     # What came later lies below, the impact on top: every actor is to be seen where it counts.
     layers = sorted(((t, i) for t in order for i in range(len(t.poses))), key=lambda at: _layer(*at))
     for track, i in layers:
         if i and arrows and i <= track.contact:
             _link(pen, track.poses[i - 1], track.poses[i], track.size[0])
-        ghost = style == "icon" and i != track.contact and rng.random() < 0.3
-        icons.vehicle(rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghost)
+        icons.vehicle(
+            rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghosts and i != track.contact
+        )
     if rng.random() < 0.12 and tracks:
-        x, y = pen.px(np.array([[tracks[0].poses[tracks[0].contact].x, tracks[0].poses[tracks[0].contact].y]]))[0]
+        at = [track.poses[track.contact] for track in tracks[:2]]
+        x, y = pen.px(np.array([(pose.x, pose.y) for pose in at])).mean(axis=0)
         pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
         pen.draw.line([(x, y - 8), (x, y + 8)], fill=BLACK, width=2)
+    return labels
 
 
 def _layer(track: Track, index: int) -> int:
     return 0 if index > track.contact else 1 if index < track.contact else 2
 
 
-def _color(rng: Random, track: Track) -> Color:
+def _color(rng: Random, track: Track, labels: bool) -> Color:
     if not track.actor.vehicle:
         return (
             rng.choice(((90, 60, 20), (20, 110, 40), (20, 20, 20)))
             if track.actor.kind == "object"
             else rng.choice(((250, 150, 30), (20, 20, 20), (150, 30, 160)))
         )
-    if rng.random() < 0.05:
+    if rng.random() < 0.05 and labels:
         return (255, 255, 255)
     return rng.choice(COLORS[int(track.actor.id[1:])])
+
+
+def _intended(pen: Pen, way: Points) -> None:
+    """A dashed arrow where one would have turned."""
+    width = 1 if pen.scale < 6 else 2
+    pen.line(way, width=width, dash=1.5, gap=1.5)
+    a, b = pen.px(way[-3:])[[0, -1]]
+    pen.head(b, math.atan2(*(b - a)[::-1]), max(6.0, 1.1 * pen.scale))
 
 
 def _link(pen: Pen, before: Pose, after: Pose, length: float) -> None:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 from random import Random
 
+from mini.renderer.boxes import Pose, corners, within
 from mini.renderer.pen import BLACK, Color, Pen
-from mini.renderer.poses import Pose, Track, corners, within
+from mini.renderer.poses import Track
 
 WHITE: Color = (255, 255, 255)
 GRAY: Color = (120, 120, 120)
@@ -30,7 +31,7 @@ def vehicle(
     if kind == "pedestrian":
         _person(pen, pose, size, color, track.actor.id)
         return
-    fill: Color = (235, 235, 235) if ghost else color
+    fill: Color = tuple(round(0.3 * c + 0.7 * 255) for c in color) if ghost else color  # type: ignore[assignment]
     if kind in TWO_WHEELS:
         _two_wheels(pen, pose, size, fill, kind)
         if label:
@@ -55,7 +56,7 @@ def _name(pen: Pen, track: Track, pose: Pose, fill: Color, style: str) -> None:
     """An actor's name on its box, along it unless that stands on end."""
     x, y = pen.px(within(pose, track.size, [(-0.12, 0.0)]))[0]
     ink = WHITE if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
-    angle = math.degrees(pose.heading + pen.turn)
+    angle = (math.degrees(pose.heading + pen.turn) + 90) % 180 - 90
     lies = abs(math.cos(math.radians(angle))) > 0.2
     pen.text(x, y, track.actor.id, max(7, int(track.size[1] * 0.62 * pen.scale)), ink, angle if lies else 90)
 

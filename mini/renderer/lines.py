@@ -1,7 +1,7 @@
 """Where things lie on the ground, in metres: legs as bands, lanes as lines, the ways of the actors.
 
-x east, y north, the hub at (0, 0). A leg's lateral coordinate is positive to the right of a driver who comes
-towards the hub, so inbound lanes are positive. Knows no pixels.
+x east, y north, the hub at (0, 0). A leg's lateral coordinate counts from its center line and is positive to the right
+of a driver who comes towards the hub, so inbound lanes are positive. Knows no pixels.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ class Band:
     length: float
     radius: float
     wide: float = LANE
+    aside: float = 0.0
+    """Metres from the line through the hub to the center line."""
 
     @property
     def lane(self) -> float:
@@ -52,7 +54,7 @@ class Band:
 
     def at(self, s: NDArray[np.float64] | float, lateral: float) -> Points:
         """Points s metres from the hub, (n, 2)."""
-        s = np.atleast_1d(np.asarray(s, float))
+        s, lateral = np.atleast_1d(np.asarray(s, float)), lateral + self.aside
         a = math.radians(90 - 45 * self.leg.bearing)
         k = {"none": 0.0, "left": -1 / self.radius, "right": 1 / self.radius}[self.leg.curve]
         heading = a + k * s
@@ -74,24 +76,40 @@ class Band:
 
 
 class Ground:
-    """All bands of a crash and how far the junction reaches; `lanes` has the width of lanes by axis."""
+    """All bands of a crash and how far the junction reaches; `lanes` has the width of lanes by axis.
+
+    `centered`: whether the pavement of a leg lies evenly about the line through the hub, as where a road is widened for
+    turn lanes so that those who drive straight on stay in line; else its center line does.
+    """
 
     def __init__(
-        self, crash: Crash, lengths: dict[int, float], radius: float, lanes: Mapping[int, float] | None = None
+        self,
+        crash: Crash,
+        lengths: dict[int, float],
+        radius: float,
+        lanes: Mapping[int, float] | None = None,
+        centered: bool = False,
     ) -> None:
         self.crash, wide = crash, lanes or {}
         self.bands = {
             leg.bearing: Band(leg, lengths[leg.bearing], radius, wide.get(leg.bearing % 4, LANE)) for leg in crash.legs
         }
         self.plain = len(crash.legs) == 2
+        for band in self.bands.values() if centered else ():
+            band.aside = -(band.right + band.left) / 2
 
     def setback(self, bearing: int, corner: float = 3.0) -> float:
         """Distance from the hub at which a leg's own markings begin."""
         if self.plain:
             return 0.0
         others = [b for b in self.bands.values() if b.leg.bearing % 4 != bearing % 4]
-        widest = max((max(b.right, -b.left) for b in others), default=0.0)
-        return widest + corner
+        return max((self._reach(band, bearing) for band in others), default=0.0) + corner
+
+    @staticmethod
+    def _reach(band: Band, bearing: int) -> float:
+        """How far a leg reaches from the hub towards a bearing: if it crosses, to its curb on that side."""
+        right, left = band.right + band.aside, -band.left - band.aside
+        return {2: right, 6: left}.get((band.leg.bearing - bearing) % 8, max(right, left))
 
     def way(self, actor: Actor) -> Points:
         """The undisturbed line of an actor, points every half metre from the end of its leg on."""

@@ -1,46 +1,28 @@
 """Who stands where in the drawing: the contact first, then poses before and after it.
 
 At a contact the two boxes touch with the sides that the crash names. The actor that keeps its course is put on
-its way; the other is put against it and turned as far as its side demands. Knows no pixels.
+its way, where the other, put against it and turned as far as its side demands, is nearest to its own. Knows no pixels.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from random import Random
 
 import numpy as np
 
-from mini.generator.world import Actor, Crash
+from mini.generator.world import Actor, Contact, Crash
+from mini.renderer.boxes import SIDE, SIZES, Pose, Size, half, overlap, wrap
 from mini.renderer.lines import STEP, Ground, Points, headings, shift
 
-SIZES = {
-    "car": (4.8, 2.0),
-    "suv": (4.9, 2.1),
-    "pickup": (5.6, 2.1),
-    "van": (5.1, 2.1),
-    "truck": (13.0, 2.7),
-    "bus": (11.0, 2.7),
-    "motorcycle": (3.4, 1.5),
-    "bicycle": (3.0, 1.3),
-    "pedestrian": (1.2, 1.2),
-    "object": (1.4, 1.4),
-    "trailer": (10.0, 2.6),
-}
-"""Length and width in metres as drawn: what is small is drawn larger than it is, or nobody could tell what it is."""
-SIDE = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}
+NEAR = 0.8
+"""Metres by which one may be put beside its own way and is still on it."""
+ASKEW = math.radians(10)
+"""So far turned from its way is as bad as a metre beside it."""
+TURNED = math.radians(20)
+"""A turn that is seen at the impact."""
 KEEPS = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
-
-
-@dataclass
-class Pose:
-    """Center and heading, metres and radians."""
-
-    x: float
-    y: float
-    heading: float
 
 
 @dataclass
@@ -48,19 +30,11 @@ class Track:
     """An actor's drawn poses in order; `contact` is the index of the impact pose."""
 
     actor: Actor
-    size: tuple[float, float]
+    size: Size
     poses: list[Pose] = field(default_factory=list)
     contact: int = 0
-
-
-def wrap(angle: float) -> float:
-    """To (-pi, pi]."""
-    return (angle + math.pi) % (2 * math.pi) - math.pi
-
-
-def half(size: tuple[float, float], area: str) -> float:
-    """From the center to a side."""
-    return size[0] / 2 if area in ("front", "back") else size[1] / 2
+    ahead: Points | None = None
+    """Where it would have driven on, of one whose turn nobody could see yet."""
 
 
 class Stage:
@@ -68,7 +42,7 @@ class Stage:
 
     def __init__(self, rng: Random, crash: Crash, ground: Ground, scale: float) -> None:
         self.rng, self.crash, self.ground = rng, crash, ground
-        self.sizes = [tuple(scale * v for v in SIZES[a.kind]) for a in crash.actors]
+        self.sizes: list[Size] = [(scale * SIZES[a.kind][0], scale * SIZES[a.kind][1]) for a in crash.actors]
         self.ways = [self._parked(ground.way(a), a) if a.maneuver == "parked" else ground.way(a) for a in crash.actors]
         self.at: dict[int, Pose] = {}
         self.index: dict[int, int] = {}
@@ -78,13 +52,18 @@ class Stage:
         for contact in self.crash.contacts:
             first, second = contact.striker, contact.struck
             if first not in self.at and second not in self.at:
-                self._anchor(self._keeper(first, second), second if self._keeper(first, second) == first else first)
+                self._anchor(contact)
             if first in self.at and second in self.at:
                 continue
             placed, other = (first, second) if first in self.at else (second, first)
-            areas = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
-            self._attach(placed, other, areas[placed], areas[other])
-        found = [self._track(i) for i in range(len(self.crash.actors)) if i in self.at]
+            areas, most = _areas(contact), math.radians(self.rng.uniform(10, 40))
+            slide = self.rng.uniform(-0.3, 0.3) * min(self.sizes[placed][0], 2 * self.sizes[placed][1])
+            slide *= 0.5 if areas[placed] in ("front", "back") else 1.0
+            self._attach(placed, other, areas[placed], areas[other], slide, most)
+        found: list[Track] = []
+        for i in sorted(self.at, key=self._ahead):
+            found.append(self._track(i, found))
+        found.sort(key=lambda track: self.crash.actors.index(track.actor))
         for track in found:
             track.poses += self._after(track, [other for other in found if other is not track])
         return found
@@ -103,60 +82,84 @@ class Stage:
         return second if actors[second].kind not in ("object", "pedestrian", "bicycle") else first
 
     # -------------------------------------------------------------- contact
-    def _anchor(self, keeper: int, other: int) -> None:
-        index = self._meeting(keeper, other)
-        way, h = self.ways[keeper], headings(self.ways[keeper])
-        turned = math.pi if self.crash.actors[keeper].maneuver == "backing" else 0.0
-        self.at[keeper] = Pose(*way[index], wrap(float(h[index]) + turned))
-        self.index[keeper] = index
+    def _anchor(self, contact: Contact) -> None:
+        """Put the one that keeps its line where the other meets it."""
+        keeper = self._keeper(contact.striker, contact.struck)
+        other = contact.struck if keeper == contact.striker else contact.striker
+        index = self._along(keeper, other)
+        for i in (keeper, other):
+            self._depart(i, self.ways[keeper][index] if index is not None else None)
+        self._stand(keeper, self._crossing(contact, keeper, other) if index is None else index)
 
-    def _meeting(self, keeper: int, other: int) -> int:
-        """Index on the keeper's way at which it is met."""
+    def _stand(self, actor: int, index: int) -> None:
+        way, h = self.ways[actor], headings(self.ways[actor])
+        turned = math.pi if self.crash.actors[actor].maneuver == "backing" else 0.0
+        self.at[actor] = Pose(*way[index], wrap(float(h[index]) + turned))
+        self.index[actor] = index
+
+    def _along(self, keeper: int, other: int) -> int | None:
+        """Index on the keeper's way at which it is met by one of its own road; None: where their ways cross."""
         mine, actor, by = self.ways[keeper], self.crash.actors[keeper], self.crash.actors[other]
-        self._departures(keeper, other)
-        mine = self.ways[keeper]
         before = int((self.ground.bands[actor.leg].length - self.ground.setback(actor.leg, 1.0)) / STEP)
         same_road = actor.leg % 4 == by.leg % 4 and by.maneuver not in ("turn_left", "turn_right", "u_turn")
         if actor.maneuver in ("stopped", "slowing") and actor.leg == by.leg:
             back = self.rng.choice((3, 3, 6, 12, 18)) if not self.ground.plain else self.rng.randint(-16, 16)
             return min(max(before - int(back / STEP), 20), len(mine) - 8)
         if same_road or by.kind in ("object", "pedestrian", "bicycle"):
-            near = before + int(
-                self.rng.uniform(-14 if self.ground.plain else -30, 8 if self.ground.plain else -2) / STEP
-            )
+            early = -14 if self.ground.plain or actor.leg == by.leg else -30
+            near = before + int(self.rng.uniform(early, 8 if self.ground.plain else -2) / STEP)
             return min(max(near, 20), len(mine) - 8)
-        gaps = np.hypot(*(mine[:, None] - self.ways[other][None]).transpose(2, 0, 1))
-        return int(min(max(np.unravel_index(gaps.argmin(), gaps.shape)[0], 10), len(mine) - 6))
+        return None
 
-    def _departures(self, keeper: int, other: int) -> None:
-        """Bend the ways of those who leave their lane."""
-        for i in (keeper, other):
-            actor, way = self.crash.actors[i], self.ways[i]
-            band = self.ground.bands[actor.leg]
-            middle = int((band.length - self.ground.setback(actor.leg, 1.0)) / STEP)
-            amount = {
-                "crossing_centerline": band.lane + band.middle,
-                "overtaking": band.lane + band.middle,
-                "lane_change_left": band.lane,
-                "lane_change_right": -band.lane,
-                "departing_road_right": -(band.right - band.lane_in(actor.lane) + 3.0),
-                "departing_road_left": band.lane_in(actor.lane) - band.left + 3.0,
-            }.get(actor.maneuver)
-            if amount is not None:
-                start = max(2, middle - int(self.rng.uniform(16, 30) / STEP))
-                self.ways[i] = shift(way, start, middle, amount)
+    def _crossing(self, contact: Contact, keeper: int, other: int) -> int:
+        """Index on the keeper's way at which the other, put against it, is nearest to its own way; of ways that run
+        into one the first that is near enough."""
+        way, areas = self.ways[other], _areas(contact)
+        gaps = np.hypot(*(self.ways[keeper][:, None] - way[None]).transpose(2, 0, 1)).min(axis=1)
+        first = int(np.argmax(gaps < gaps.min() + NEAR))
+        room = int(self.sizes[keeper][0] / STEP)
+        lowest, highest = 10, max(10, len(self.ways[keeper]) - 6)
+        off = {}
+        for index in range(max(lowest, first - room), min(highest, first + room) + 1, 2):
+            self._stand(keeper, index)
+            self._attach(keeper, other, areas[keeper], areas[other], slide=0.0, most=math.radians(25))
+            at = self.at.pop(other)
+            aside = float(np.hypot(way[:, 0] - at.x, way[:, 1] - at.y).min())
+            off[index] = aside + abs(wrap(at.heading - self._own_heading(other, at))) / ASKEW
+        if not off:
+            return min(max(first, lowest), highest)
+        return next(index for index, gap in off.items() if gap <= min(off.values()) + NEAR / 2)
 
-    def _attach(self, placed: int, other: int, placed_area: str, other_area: str) -> None:
-        """Put `other` against `placed`, sides touching."""
+    def _depart(self, index: int, met: Points | None) -> None:
+        """Bend the way of one that leaves its lane, so that it has left it where it is met, and not long before."""
+        actor, way = self.crash.actors[index], self.ways[index]
+        band = self.ground.bands[actor.leg]
+        amount = {
+            "crossing_centerline": band.lane + band.middle,
+            "overtaking": band.lane + band.middle,
+            "lane_change_left": band.lane,
+            "lane_change_right": -band.lane,
+            "departing_road_right": -(band.right - band.lane_in(actor.lane) + 3.0),
+            "departing_road_left": band.lane_in(actor.lane) - band.left + 3.0,
+        }.get(actor.maneuver)
+        if amount is None:
+            return
+        end = int((band.length - self.ground.setback(actor.leg, 1.0)) / STEP)
+        if met is not None:
+            end = int(np.hypot(*(way - met).T).argmin())
+        start = max(2, end - int(self.rng.uniform(11, 20) / STEP))
+        self.ways[index] = shift(way, start, max(end, start + 8), amount)
+
+    def _attach(self, placed: int, other: int, placed_area: str, other_area: str, slide: float, most: float) -> None:
+        """Put `other` against `placed`, sides touching: `slide` metres along that of `placed`, and turned from standing
+        square to it as its own way is, by at most so many radians."""
         anchor, size, mine = self.at[placed], self.sizes[placed], self.sizes[other]
         toward = anchor.heading + SIDE[placed_area]
-        slide = self.rng.uniform(-0.3, 0.3) * (size[1] if placed_area in ("front", "back") else size[0])
         px = anchor.x + half(size, placed_area) * math.cos(toward) - slide * math.sin(toward)
         py = anchor.y + half(size, placed_area) * math.sin(toward) + slide * math.cos(toward)
         own = self._own_heading(other, anchor)
         wanted = wrap(toward + math.pi - SIDE[other_area])
         off = wrap(own - wanted)
-        most = math.radians(self.rng.uniform(10, 40))
         heading = wrap(wanted + max(-most, min(most, off)))
         normal = heading + SIDE[other_area]
         reach = half(mine, other_area)
@@ -171,29 +174,67 @@ class Stage:
         return wrap(float(headings(way)[index]) + turned)
 
     # -------------------------------------------------------------- tracks
-    def _track(self, index: int) -> Track:
+    def _track(self, index: int, others: list[Track]) -> Track:
         actor = self.crash.actors[index]
-        track = Track(actor, self.sizes[index])  # type: ignore[arg-type]
+        track = Track(actor, self.sizes[index])
         at = self.at[index]
         still = actor.maneuver in ("stopped", "parked") or actor.kind == "object"
         if not still:
-            track.poses += self._before(index, at)
+            track.poses += self._before(index, at, others)
+            track.ahead = self._unseen_turn(index)
         track.contact = len(track.poses)
         track.poses.append(at)
         return track
 
-    def _before(self, index: int, at: Pose) -> list[Pose]:
+    def _leader(self, index: int) -> int | None:
+        """Whom an actor runs into from behind, on the same road."""
+        actors = self.crash.actors
+        for contact in self.crash.contacts:
+            behind = contact.striker == index and (contact.striker_area, contact.struck_area) == ("front", "back")
+            if behind and contact.struck in self.at and actors[contact.struck].leg == actors[index].leg:
+                return contact.struck
+        return None
+
+    def _ahead(self, index: int) -> int:
+        """How many drive ahead of an actor in a queue that runs up."""
+        count, at = 0, self._leader(index)
+        while at is not None and count < len(self.at):
+            count, at = count + 1, self._leader(at)
+        return count
+
+    def _unseen_turn(self, index: int) -> Points | None:
+        """The rest of the way of one that turns and is met before that can be seen."""
+        actor, way = self.crash.actors[index], self.ways[index]
+        if actor.maneuver not in ("turn_left", "turn_right", "u_turn") or len(way) < self.index[index] + 12:
+            return None
+        h = headings(way)
+        if abs(wrap(self.at[index].heading - float(h[2]))) > TURNED:
+            return None
+        rest: Points = way[self.index[index] + int(0.5 * self.sizes[index][0] / STEP) :]
+        turned = np.abs(np.unwrap(headings(rest)) - h[2]) if len(rest) > 2 else np.zeros(1)
+        if turned.max() < math.radians(30):  # the way into a driveway that is no leg is not known
+            return None
+        return rest[: int(np.argmax(turned > min(math.radians(70), 0.9 * turned.max()))) + int(6 / STEP)]
+
+    def _before(self, index: int, at: Pose, others: list[Track]) -> list[Pose]:
         actor, rng = self.crash.actors[index], self.rng
         if actor.kind in ("pedestrian", "bicycle"):
             return [Pose(at.x - 6 * math.cos(at.heading), at.y - 6 * math.sin(at.heading), at.heading)]
         way, h = self.ways[index], headings(self.ways[index])
         turned = math.pi if actor.maneuver == "backing" else 0.0
-        found, gap = [], rng.uniform(7, 14) + self.sizes[index][0] * 0.6
+        lead = self._leader(index)
+        ahead = next((t for t in others if lead is not None and t.actor is self.crash.actors[lead]), None)
+        queues = lead is not None or any(self._leader(i) == index for i in self.at)
+        found, gap = [], (rng.uniform(4, 8) if queues else rng.uniform(7, 14)) + self.sizes[index][0] * 0.6
         place = self.index[index] - int(gap / STEP)
         if place < 1 and self.index[index] * STEP > self.sizes[index][0] + 1:
             place = 1  # met near the end of its leg: closer together, but seen to have moved
-        for _ in range(rng.choice((1, 1, 2, 2, 3))):
-            while place >= 1 and self._hidden(index, Pose(*way[place], float(h[place]))):
+        for _ in range(1 if queues else rng.choice((1, 1, 2, 2, 3))):
+            if ahead is not None and ahead.contact:  # it came behind the one that it hits
+                first, between = ahead.poses[0], 0.6 * (ahead.size[0] + self.sizes[index][0])
+                nearest = int(np.hypot(way[:, 0] - first.x, way[:, 1] - first.y).argmin())
+                place = min(place, nearest - int(between / STEP))
+            while place >= 1 and self._hidden(index, Pose(*way[place], float(h[place])), others):
                 place -= 4
             if place < 1:
                 break
@@ -201,48 +242,41 @@ class Stage:
             place -= int(gap * rng.uniform(0.9, 1.6) / STEP)
         return found[::-1]
 
-    def _hidden(self, index: int, pose: Pose) -> bool:
-        """Whether a box would lie on another actor's place of impact, so that nobody could tell them apart."""
-        return any(
-            overlap(pose, self.sizes[index], at, self.sizes[other]) for other, at in self.at.items() if other != index
-        )
+    def _hidden(self, index: int, pose: Pose, others: list[Track]) -> bool:
+        """Whether a box would lie where another actor is hit or came from, so that nobody could tell them apart."""
+        taken = [(at, self.sizes[other]) for other, at in self.at.items() if other != index]
+        taken += [(one, other.size) for other in others for one in other.poses[: other.contact]]
+        return any(overlap(pose, self.sizes[index], one, size) for one, size in taken)
 
     def _after(self, track: Track, others: list[Track]) -> list[Pose]:
         """Poses on the way to rest, now and then; up to the first that would hide how another actor came."""
         rng, at, found = self.rng, track.poses[track.contact], []
         if track.actor.kind in ("object", "pedestrian", "bicycle") or rng.random() >= 0.5:
             return []
-        away, turn = at.heading + rng.uniform(-1.2, 1.2), rng.uniform(-2.5, 2.5)
+        away, turn = self._pushed(track, others), rng.uniform(-2.5, 2.5)
+        taken = [(one, other.size) for other in others for one in other.poses]
         for k in range(rng.choice((1, 1, 2))):
-            reach = (k + 1) * rng.uniform(6, 12)
-            pose = Pose(
-                at.x + reach * math.cos(away), at.y + reach * math.sin(away), wrap(at.heading + turn * (k + 1) / 2)
+            reach, faces = (k + 1) * rng.uniform(6, 12), wrap(at.heading + turn * (k + 1) / 2)
+            halfway, pose = (
+                Pose(at.x + far * math.cos(away), at.y + far * math.sin(away), faces) for far in (reach / 2, reach)
             )
-            taken = ((other, one) for other in others for one in other.poses[: other.contact + 1])
-            if any(overlap(pose, track.size, one, other.size) for other, one in taken):
+            if any(overlap(where, track.size, one, size) for where in (halfway, pose) for one, size in taken):
                 break
             found.append(pose)
         return found
 
-
-def overlap(first: Pose, size: tuple[float, float], second: Pose, other: tuple[float, float]) -> bool:
-    """Whether two boxes share ground (separating axes)."""
-    boxes = corners(first, size), corners(second, other)
-    for heading in (first.heading, second.heading):
-        for angle in (heading, heading + math.pi / 2):
-            a, b = (box @ (math.cos(angle), math.sin(angle)) for box in boxes)
-            if a.max() <= b.min() or b.max() <= a.min():
-                return False
-    return True
-
-
-def corners(pose: Pose, size: tuple[float, float]) -> Points:
-    """The four corners of a box, (4, 2), front left first."""
-    return within(pose, size, [(0.5, 0.5), (0.5, -0.5), (-0.5, -0.5), (-0.5, 0.5)])
+    def _pushed(self, track: Track, others: list[Track]) -> float:
+        """About which way an actor goes from the impact: on, and with those who meet it."""
+        x = y = 0.0
+        for one, weight in ((track, 1.0), *((other, 0.7) for other in others)):
+            if one.contact:
+                heading = one.poses[one.contact].heading + (math.pi if one.actor.maneuver == "backing" else 0.0)
+                x, y = x + weight * math.cos(heading), y + weight * math.sin(heading)
+        if math.hypot(x, y) < 0.4:
+            return track.poses[track.contact].heading + self.rng.uniform(-1.2, 1.2)
+        return math.atan2(y, x) + self.rng.uniform(-0.6, 0.6)
 
 
-def within(pose: Pose, size: tuple[float, float], shares: Sequence[tuple[float, float]]) -> Points:
-    """World points (n, 2) of shares of a box: ahead and to the left of its middle."""
-    c, s = math.cos(pose.heading), math.sin(pose.heading)
-    laid: Points = np.array(shares) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
-    return laid
+def _areas(contact: Contact) -> dict[int, str]:
+    """Which side of whom is touched."""
+    return {contact.striker: contact.striker_area, contact.struck: contact.struck_area}

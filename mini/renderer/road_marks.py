@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from random import Random
 
 import numpy as np
@@ -10,6 +11,7 @@ from PIL import Image, ImageDraw
 
 from mini.generator.world import Crash
 from mini.renderer import accesses
+from mini.renderer.boxes import Pose, Size, overlap
 from mini.renderer.lines import STEP, Band, Ground, Points
 from mini.renderer.masks import outline, rounded
 from mini.renderer.pen import Color, Pen
@@ -23,12 +25,20 @@ TURN_STEPS = {
     "left_right": ("left", "right"),
 }
 
+ARROW = (7.0, 2.4)
+"""Metres of road that an arrow takes."""
+MEDIAN_HATCH = 6.0
+"""Pixels between the strokes of a median at least; closer ones run into one."""
+
 
 class RoadMarks:
     """Draws one crash's roads with one style."""
 
-    def __init__(self, rng: Random, pen: Pen, crash: Crash, ground: Ground) -> None:
-        self.rng, self.pen, self.crash, self.ground = rng, pen, crash, ground
+    def __init__(
+        self, rng: Random, pen: Pen, crash: Crash, ground: Ground, taken: Sequence[tuple[Pose, Size]] = ()
+    ) -> None:
+        """`taken`: the boxes of vehicles, which will hide what lies beneath them."""
+        self.rng, self.pen, self.crash, self.ground, self.taken = rng, pen, crash, ground, taken
         self.edge = rng.choice((1, 2, 2, 3))
         self.mark = rng.choice((1, 2, 2))
         self.dash = rng.uniform(2.0, 4.0)
@@ -52,6 +62,7 @@ class RoadMarks:
         self.turn_lane_dashed = rng.random() < 0.15
         self.storage = rng.random() < 0.7
         """Whether the line beside a turn lane is solid."""
+        self.stop_bars = rng.random() < 0.25
 
     def draw(self, arrows: bool, signs: bool) -> None:
         """Everything, edges first."""
@@ -60,6 +71,9 @@ class RoadMarks:
             start = self.ground.setback(band.leg.bearing, self.corner * 0.8)
             self._center(band, start)
             self._lanes(band, start)
+            if signs and self.stop_bars and band.leg.control in ("stop", "signal") and band.leg.lanes_in:
+                ends = np.concatenate((band.at(start, band.right), band.at(start, band.middle / 2)))
+                self.pen.line(ends, width=self.mark + 2)
             if arrows:
                 self._arrows(band, start)
             self._one_way(band, start, arrows)
@@ -100,7 +114,8 @@ class RoadMarks:
         if band.length > 80:
             return
         s = np.arange(band.length, band.length + 70, 4.0)
-        shape = np.concatenate((band.at(s, band.right + 2), band.at(s, band.left - 2)[::-1]))
+        more = 2 + self.curb / self.pen.scale
+        shape = np.concatenate((band.at(s, band.right + more), band.at(s, band.left - more)[::-1]))
         self.pen.draw.polygon([tuple(p) for p in self.pen.px(shape)], fill="white")
 
     def _shoulders(self, bands: list[Band]) -> None:
@@ -141,7 +156,7 @@ class RoadMarks:
         if self.center == "dashed" and band.leg.lanes_in == 1:
             pen.line(band.at(s, 0), width=self.mark, dash=self.dash, gap=self.gap)
         elif self.center in ("solid", "dashed"):
-            pen.line(band.at(s, 0), width=self.mark + 1)
+            pen.line(band.at(s, 0), width=self.mark + (2 if self.storage and band.leg.turns_in else 1))
         else:
             pen.line(band.at(s, wide), width=self.mark)
             dash = self.dash if self.center == "solid_dashed" and band.leg.lanes_in == 1 else 0.0
@@ -155,7 +170,7 @@ class RoadMarks:
             for k in range(0, len(s) - 1, 6):
                 pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k], -band.middle / 2))), width=1)
         elif kind in ("raised", "painted"):
-            for k in range(0, len(s) - 8, 8):
+            for k in range(0, len(s) - 8, max(8, round(MEDIAN_HATCH / (STEP * pen.scale)))):
                 pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k + 6], -band.middle / 2))), width=1)
             if kind == "raised":
                 pen.line(band.at(s, 0), width=self.mark + 1)
@@ -180,17 +195,27 @@ class RoadMarks:
             )
         for k in range(1, leg.lanes_out):
             pen.line(band.at(s, band.left + k * band.lane), width=self.mark, dash=self.dash, gap=self.gap)
-        if self.rng.random() < 0.25 and leg.control in ("stop", "signal") and not self.ground.plain:
-            pen.line(np.concatenate((band.at(start, band.right), band.at(start, band.middle / 2))), width=self.mark + 2)
 
     # -------------------------------------------------------------- arrows, signs
     def _arrows(self, band: Band, start: float) -> None:
         for k, use in enumerate(band.leg.turns_in, 1):
             if use == "through" and not self.every_lane:
                 continue
-            place = min(start + self.rng.uniform(4, 9), band.length - 6)
-            for turn in TURN_STEPS.get(use, ()):
-                self._painted(self._turn_arrow(band, place, band.lane_in(k), turn))
+            place, turns = self._free(band, start, band.lane_in(k)), TURN_STEPS.get(use, ())
+            for turn in turns:
+                self._painted(self._turn_arrow(band, place, band.lane_in(k), turn, len(turns) > 1))
+
+    def _free(self, band: Band, start: float, lateral: float) -> float:
+        """Metres from the hub to a place for an arrow on a lane that the sheet shows and no vehicle will hide."""
+        usual = min(start + self.rng.uniform(4, 9), band.length - 6)
+        for place in (usual, *np.arange(start + 4, band.length - 6, 1.5)):
+            (x, y), (u, v) = band.at(place + 1.5, lateral)[0], band.at(place + 2.5, lateral)[0]
+            here = Pose(x, y, math.atan2(y - v, x - u))
+            if self.pen.shows(np.array([(x, y)]), 0.05) and not any(
+                overlap(here, ARROW, pose, size) for pose, size in self.taken
+            ):
+                return float(place)
+        return usual
 
     def _one_way(self, band: Band, start: float, arrows: bool) -> None:
         """Arrows on a one-way road, without which nobody could tell; on a plain one the vehicles mostly do."""
@@ -199,9 +224,9 @@ class RoadMarks:
             return
         if self.ground.plain and self.rng.random() < 0.4:
             return
-        place = min(start + self.rng.uniform(5, 14), band.length - 6)
         for k in range(1, leg.lanes_in + leg.lanes_out + 1):
             lateral = band.lane_in(k) if leg.lanes_in else band.lane_out(k)
+            place = self._free(band, start, lateral)
             ends = band.at(place + 3, lateral)[0], band.at(place - 3, lateral)[0]
             self._painted(self.pen.px(np.array(ends if leg.lanes_in else ends[::-1])))
 
@@ -212,12 +237,14 @@ class RoadMarks:
         else:
             self._broad_arrow(points, self.arrow_fill)
 
-    def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str) -> Points:
-        """Tail, knee and tip in pixels."""
+    def _turn_arrow(self, band: Band, place: float, lateral: float, turn: str, forked: bool) -> Points:
+        """Tail, knee and tip in pixels; of a forked arrow each head stands clear of the other."""
         big = self.arrow_size
-        tail, knee = band.at(place + 4.2 * big, lateral)[0], band.at(place + 1.2 * big, lateral)[0]
-        side = {"left": -1.3, "right": 1.3, "through": 0.0}[turn] * big
-        tip = band.at(place - (1.5 if turn == "through" else 0.2) * big, lateral + side)[0]
+        tail, knee = band.at(place + 4.2 * big, lateral)[0], band.at(place + (2.2 if forked else 1.2) * big, lateral)[0]
+        reach = min((1.8 if forked else 1.4) * big, 0.48 * band.lane)
+        side = {"left": -reach, "right": reach, "through": 0.0}[turn]
+        ahead = (2.6 if forked else 1.5) if turn == "through" else -1.0 if forked else 0.2
+        tip = band.at(place - ahead * big, lateral + side)[0]
         return self.pen.px(np.array([tail, knee, tip]))
 
     def _thin_arrow(self, points: Points) -> None:
@@ -235,7 +262,7 @@ class RoadMarks:
         pen.draw.line(shaft, fill=(90, 80, 70), width=wide + 2, joint="curve")
         pen.head(points[-1], angle, size + 2, (90, 80, 70))
         pen.draw.line(shaft, fill=fill, width=wide, joint="curve")
-        pen.head(points[-1] - np.array([math.cos(angle), math.sin(angle)]), angle, size - 1.5, fill)
+        pen.head(points[-1] - 2.5 * np.array([math.cos(angle), math.sin(angle)]), angle, max(2.0, size - 3.0), fill)
 
     def _signs(self) -> None:
         """Stop signs as red ovals or the word, signals as three lamps in the middle of the junction."""

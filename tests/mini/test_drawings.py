@@ -14,10 +14,11 @@ from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
 from mini.generator.world import Access, Crash, Leg
 from mini.renderer import accesses
+from mini.renderer.boxes import SIDE, Pose, corners, overlap, wrap
 from mini.renderer.draw import _sheet, draw_report
 from mini.renderer.lines import Ground
 from mini.renderer.pen import Pen
-from mini.renderer.poses import SIDE, Pose, Stage, corners, overlap, wrap
+from mini.renderer.poses import Stage
 from mini.renderer.road_marks import RoadMarks
 
 seeds = st.integers(0, 10**6)

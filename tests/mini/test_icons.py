@@ -10,8 +10,9 @@ import pytest
 from mini.generator.world import Actor
 from mini.picture import look
 from mini.renderer import icons
+from mini.renderer.boxes import SIZES, Pose, corners
 from mini.renderer.pen import Pen
-from mini.renderer.poses import SIZES, Pose, Track, corners
+from mini.renderer.poses import Track
 
 SCALE = 6.0
 KINDS = ("car", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "object")
