@@ -44,6 +44,9 @@ LAYOUTS = {
 }
 GLANCED = 0.2
 """Share of head-on crashes struck by the one who crossed whose other vehicle is hit on its side."""
+WALKS, SELDOM = 0.05, 0.2
+"""Shares of drawings that train: of crashes with somebody who is no motorist, and of those with a rare kind of vehicle
+in place of what it was."""
 FAMILY_ODDS = {"rural": 0.42, "urban": 0.46, "highway": 0.12}
 
 
@@ -81,6 +84,20 @@ def glanced(rng: Random, crash: Crash) -> Crash:
     if not (ends and crossed) or rng.random() > GLANCED:
         return crash
     return replace(crash, contacts=[replace(first, struck_area="left"), *crash.contacts[1:]])
+
+
+def seldom(rng: Random, crash: Crash) -> Crash:
+    """More often than on roads, as far as a drawing can show it: somebody on foot or a bicycle, or a vehicle of a kind
+    that is seldom seen."""
+    if rng.random() < WALKS:
+        while crash.config != "pedestrian":
+            crash = sample_crash(rng)
+    vehicles = [i for i, actor in enumerate(crash.actors) if actor.vehicle]
+    if vehicles and rng.random() < SELDOM:
+        i, kind = rng.choice(vehicles), rng.choice(("motorcycle", "truck", "bus"))
+        actors = [replace(actor, kind=kind) if at == i else actor for at, actor in enumerate(crash.actors)]
+        return replace(crash, actors=actors)
+    return crash
 
 
 def conditions(rng: Random) -> tuple[str, str, str]:

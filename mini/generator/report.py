@@ -12,7 +12,7 @@ from random import Random
 from typing import Any
 
 from mini.answers import MISSING, REASONS
-from mini.generator.crash import glanced, sample_crash
+from mini.generator.crash import glanced, sample_crash, seldom
 from mini.generator.grammar import HINT, Written, unmark
 from mini.generator.roads import beside, carriageway, misdrawn, mouths, one_way
 from mini.generator.settled import unsettled
@@ -120,11 +120,14 @@ def make_report(
 
 
 def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0) -> Crash:
-    """A crash; of those that train, more on one-way streets and with other sides than the sampler knows."""
+    """A crash; of those that train, more on one-way streets, with other sides and, in drawings, of other kinds than the
+    sampler knows."""
     crash = sample_crash(rng)
     if held_out:
         return crash
     own = Random(f"{seed} streets {attempt}")
+    if mode == "image":
+        crash = seldom(own, crash)
     return glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 

@@ -446,3 +446,14 @@ def test_impacts_that_name_nobody_tell_no_striker() -> None:
                 assert any(fact.startswith("~named") for fact in facts), sentence
             seen += bool(re.match(r"(This led to|This ended in|There was an impact|An impact occurred)", sentence))
     assert seen > 1
+
+
+def test_drawings_train_on_kinds_that_are_seldom_seen() -> None:
+    shares = {}
+    for mode, held_out in (("image", False), ("text", False), ("image", True)):
+        crashes = [make_report(seed, held_out, 0.0, {mode: 1.0}).crash for seed in range(400)]
+        rare = ("motorcycle", "bus", "pedestrian", "bicycle")
+        shares[mode, held_out] = sum(any(a.kind in rare for a in crash.actors) for crash in crashes) / 400
+        for actor in (actor for crash in crashes for actor in crash.actors):
+            assert actor.vehicle == (actor.kind not in ("object", "pedestrian", "bicycle"))
+    assert shares["image", False] > 0.2 > 0.15 > max(shares["text", False], shares["image", True])
