@@ -5,6 +5,7 @@ A part of the writer.
 
 from __future__ import annotations
 
+import re
 from random import Random
 from typing import Any
 
@@ -12,6 +13,10 @@ from mini.generator import clauses_motion as motion
 from mini.generator.grammar import Told
 from mini.generator.mentions import Mentions
 from mini.generator.world import Actor, Crash
+
+GOES_ON = re.compile(r"straight|no turn|no maneuver|normal driving|joined|mixed with", re.IGNORECASE)
+"""Clauses of one that stays where it drives."""
+LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
 
 
 class ApproachMixin:
@@ -31,6 +36,7 @@ class ApproachMixin:
     spoken: Any
     reason: Any
     scene_junction: Any
+    junction_named: bool
 
     def _approaches(self) -> list[str]:
         actors = self.crash.actors
@@ -74,6 +80,8 @@ class ApproachMixin:
             self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
             return self.say(motion.APPROACH_CURVE, index, ahead)
         options = motion.PRESENTED["moving"] if presented else motion.APPROACH
+        if not self.held_out and actor.maneuver.startswith(LEAVES):
+            options = [clause for clause in options if not GOES_ON.search(clause)]
         return self.say(options, index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _pauses(self, index: int) -> str:
@@ -118,7 +126,8 @@ class ApproachMixin:
         text = ""
         beside = self.crash.config in ("head_on", "rear_end", "lane_change")
         if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren and not beside else 0.4):
-            place = "the same intersection" if later else self.scene_junction()
+            same = later and (self.junction_named or self.held_out)
+            place = "the same intersection" if same else self.scene_junction()
             text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}

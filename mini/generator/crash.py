@@ -146,6 +146,9 @@ def _finish(rng: Random, crash: Crash) -> None:
         _lane_and_speed(rng, crash, actor)
     for i in range(1, len(crash.actors)):
         _same_lane(crash, crash.actors[0], crash.actors[i])
+    for actor in crash.actors:  # who goes on along a bend negotiates it, whatever else happens there
+        if actor.maneuver == "straight" and actor.vehicle and crash.leg(actor.leg).curve != "none":  # type: ignore[union-attr]
+            actor.maneuver = "negotiating_curve"
 
 
 def _lane_and_speed(rng: Random, crash: Crash, actor: Actor) -> None:

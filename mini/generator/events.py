@@ -50,6 +50,14 @@ MUTUAL = re.compile(
 """Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
 OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
 """Clauses of rest that need a second vehicle."""
+DRIFTS = re.compile(
+    r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|slip|came over|bore (?:off |curb|right)|eased|sagged"
+    r"|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|tending|pulling|pulled over"
+    r"|\bright went|got o(?:ff|ver) to the right|moved over|came too far right"
+    r"|(?:went|moved|steered|ran|slid|crossed|headed|turned)[a-z ]* right|to the right,? (?:toward|and)|parking lane|curbward",
+    re.IGNORECASE,
+)
+"""Clauses of one that hits a parked vehicle which say that it left its lane."""
 TRIES = 40
 YIELDING = 0.25
 """Share of those who stand or slow for a turn of whom the traffic that they wait for is told, with its heading."""
@@ -96,6 +104,8 @@ class EventsMixin:
                 self.told.add(f"exit.{self.id_of(v)}")
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
             clause = self._true_of(w, self._error(key))
+            if self.crash.actors[v].maneuver == "departing_road_right" and self._drifts(clause):
+                self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
             self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
             out.append(self.say([self.spoken(clause)], v, w, turn=self._turn(v)))
         alone, rest = not self.crash.actors[w].vehicle, told.REST
@@ -106,6 +116,8 @@ class EventsMixin:
             out.append(self._impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
+        if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
+            rest = [clause for clause in rest if "median" not in clause]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
             rest = [clause for clause in rest if not OF_TWO.search(clause)]
         if self.crash.layout not in ("four", "t") and not self.held_out:
@@ -129,9 +141,14 @@ class EventsMixin:
         clause = ""
         for _ in range(TRIES):
             clause = self.fitting(options, erring)
-            if not any(word != does and found.search(clause) for word, found in STATES.items()):
+            strays = erring.maneuver != "departing_road_right" and self._drifts(clause)
+            if not strays and not any(word != does and found.search(clause) for word, found in STATES.items()):
                 break
         return clause
+
+    def _drifts(self, clause: str) -> bool:
+        """Whether a clause says of one that hits a parked vehicle that it left its lane."""
+        return self.crash.config == "parked" and not self.held_out and bool(DRIFTS.search(clause))
 
     def reason(self, key: str, actor: Actor) -> str:
         """What one stands or slows for; of those who turn off a road into a driveway half say so."""

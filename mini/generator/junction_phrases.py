@@ -21,6 +21,7 @@ class JunctionMixin(RoadsMixin):
         layout, control = self.crash.layout, self._control_kind()
         if layout not in ("four", "t"):
             return "a driveway"
+        self.junction_named = True
         self.told |= {"layout"} if layout == "four" else set()
         if self.rng.random() < (0.6 if layout == "four" else 0.93):
             self.told |= {"layout"}

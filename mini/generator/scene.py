@@ -28,6 +28,9 @@ TIMES = {
 }
 """Times of day that agree with the light."""
 IN_LANES = re.compile(r"\{xb\} lane")
+SUN = re.compile(r"(?<!not )\b(?:sunny|sunshine|sun|sunlit|blue sk(?:y|ies))\b", re.IGNORECASE)
+SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*\{road(?:bare)?\}")
+"""Clauses that put everybody on one road."""
 SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b", re.IGNORECASE)
 """Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
@@ -125,6 +128,9 @@ class SceneMixin(JunctionMixin):
             if f"{{{slot}}}" in clause and self._limit_of(slot) is None:
                 return False
         if "straight" in clause and "{curve}" not in clause and any(leg.curve != "none" for leg in self.crash.legs):
+            return False
+        vehicles = [actor for actor in self.crash.actors if actor.vehicle]
+        if SHARED.search(clause) and len({actor.leg % 4 for actor in vehicles}) > 1:
             return False
         elsewhere = ("head_on", "overtaking", "left_opposite")  # not in the lanes of the one who comes to mind first
         return self.crash.config not in elsewhere or not IN_LANES.search(clause)
@@ -251,4 +257,6 @@ class SceneMixin(JunctionMixin):
         }[slot]
         self.told.add(key)
         options = table[getattr(self.crash, key)]
+        if slot == "wx" and self.crash.light != "day" and not self.held_out:
+            options = [words for words in families(options, False) if not SUN.search(words)] or options
         return clause_of(self.rng, options, self.held_out)

@@ -42,12 +42,8 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     told = {fact for facts in sentences for fact in facts}
     whole = {fact for facts in sentences for fact in facts if f"{VAGUE}.{fact}" not in facts}
     tied = _tied(crash, sentences, told)
-    out = {
-        fact
-        for facts in sentences
-        for fact in facts
-        if fact.partition(".")[0] in BY_AXIS and not _placed(crash, fact, facts, tied, sentences)
-    }
+    roads = [(fact, facts) for facts in sentences for fact in facts if fact.partition(".")[0] in BY_AXIS]
+    out = {fact for fact, _ in roads} - {fact for fact, facts in roads if _placed(crash, fact, facts, tied, sentences)}
     if not _legs(crash, told, tied):
         stems = {leg.bearing % 4 for leg in crash.stems}
         out |= {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})

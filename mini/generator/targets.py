@@ -67,6 +67,9 @@ class Targets:
             if one_way and self.alone and not lanes:
                 self.weights |= {(*path, key): LIKELY for key, n in counts if n}
         median = leg.median if f"median.{axis}" in self.known else "none"
+        bends = any(actor.leg == leg.bearing and f"man.{actor.id}" in self.known for actor in self.crash.actors)
+        if "curve" not in self.known and leg.curve != "none" and bends:
+            self._unsure(path, "curve")
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
@@ -129,6 +132,7 @@ class Targets:
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
+        self._unsure(path, *(("exit_road",) if not sure or f"heading.{actor.id}" not in known else ()))
         self._unsure(path, *(("lane",) if f"lane.{actor.id}" in known - self.sure else ()))
         if f"kind.{actor.id}" in known and actor.kind not in USUAL:
             self.weights[(*path, "kind")] = RARE
@@ -152,7 +156,8 @@ class Targets:
 
     def _lane(self, actor: Actor) -> int | None:
         leg = self.crash.leg(actor.leg)
-        only = leg is not None and leg.lanes_in == 1 and f"lanes.{leg.bearing % 4}" in self.known
+        counted = leg is not None and {f"lanes.{leg.bearing % 4}", f"heading.{actor.id}"} <= self.known
+        only = counted and leg.lanes_in == 1 and actor.maneuver != "parked"  # type: ignore[union-attr]
         return actor.lane if only or f"lane.{actor.id}" in self.known else None
 
     def _speed(self, actor: Actor, sure: bool) -> int | None:
@@ -181,14 +186,17 @@ class Targets:
 def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
     """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather.
 
-    Nor that somebody slowed, which of two that touch with the same side struck the other, or how a pedestrian stood.
+    Nor that somebody slowed, that one on the wrong side of a road meant to pass, if the one passed is not there, which
+    of two that touch with the same side struck the other, or how a pedestrian stood.
     """
     facts = {"layout", "legs", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:
         facts |= {f"{key}.{leg.bearing % 4}" for key in ("lanes", "median", *(("turns",) if arrows else ()))}
     for actor in crash.actors:
         facts |= {f"{key}.{actor.id}" for key in ("heading", "exit", "lane")}
-        facts |= {f"man.{actor.id}"} if actor.maneuver != "slowing" else set()
+        passes = actor.maneuver == "overtaking" and sum(other.leg == actor.leg for other in crash.actors) < 2
+        facts -= {f"exit.{actor.id}"} if actor.maneuver == "slowing" else set()
+        facts |= {f"man.{actor.id}"} if actor.maneuver != "slowing" and not passes else set()
         if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):
             facts.add(f"kind.{actor.id}")
     for index, contact in enumerate(crash.contacts):

@@ -87,8 +87,9 @@ class Actor:
         return self.id.startswith("V")
 
     def exit_of(self, told: Set[str]) -> int | None:
-        """The leg that it takes, if these facts say which."""
-        sure = f"man.{self.id}" in told or self.maneuver == "straight"
+        """The leg that it takes, if these facts say which; of whom no maneuver is told, the one straight ahead."""
+        on = self.out is not None and (self.out - self.leg) % 8 == 4
+        sure = f"man.{self.id}" in told or self.maneuver == "straight" or on
         open_ = self.meant or self.maneuver == "backing"  # which neither standing nor backing out tells
         return self.out if sure and (not open_ or f"exit.{self.id}" in told) else None
 

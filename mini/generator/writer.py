@@ -63,7 +63,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         """Axis of the road that was named last."""
         self.of_road = False
         """Whether the sentence is of the road: then a direction is that of its traffic, and of no vehicle."""
-        self.waited = False
+        self.waited = self.junction_named = False
         """Whether the one who errs stood or slowed before it crossed or turned."""
         self.roads_left = rng.random() < 0.85
         """Whether the report tells lanes at all."""

@@ -12,7 +12,7 @@ from PIL import Image, ImageFilter
 
 from mini import tags
 from mini.renderer.lines import Points
-from mini.renderer.pen import BLACK, Pen
+from mini.renderer.pen import BLACK, Pen, font
 
 NOTES = (
     "Speed limit {n} mph",
@@ -102,12 +102,14 @@ def captions(rng: Random, pen: Pen, actors: int) -> None:
     n = rng.choice((25, 35, 45, 55, 70))
     for _ in range(rng.choice((0, 1, 1, 2, 3))):
         text = rng.choice(notes).format(n=n, k=round(n * 1.609), y=rng.randint(1990, 2007))
-        pen.text(
-            rng.uniform(0.2, 0.8) * w,
-            rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h,
-            text,
-            rng.choice((9, 10, 12, 14)),
-        )
+        size = rng.choice((9, 10, 12, 14))
+        for _ in range(TRIES):
+            x, y = rng.uniform(0.2, 0.8) * w, rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h
+            left, top, right, bottom = pen.draw.textbbox((x, y), text, font=font(size), anchor="mm")
+            clear = 0 < left < right < w and pen.image.crop((int(left), int(top), int(right), int(bottom)))
+            if clear and clear.convert("L").getextrema()[0] > 250:  # type: ignore[operator]
+                break
+        pen.text(x, y, text, size)
     if rng.random() < 0.15:
         x, y = rng.uniform(0.1, 0.9) * w, rng.uniform(0.1, 0.9) * h
         pen.draw.line([(x, y), (x + rng.uniform(-60, 60), y + rng.uniform(-40, 40))], fill=BLACK, width=1)

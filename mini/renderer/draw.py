@@ -16,27 +16,21 @@ from PIL import Image
 from mini import tags
 from mini.generator.report import Report
 from mini.generator.world import Crash
-from mini.renderer import accesses, icons
+from mini.renderer import accesses
 from mini.renderer.around import Shape, captions, north_arrow, scan
-from mini.renderer.boxes import Pose, corners
+from mini.renderer.boxes import corners
 from mini.renderer.lines import Ground, Points
-from mini.renderer.pen import BLACK, Color, Pen
+from mini.renderer.pen import Pen
 from mini.renderer.poses import Stage, Track
 from mini.renderer.road_marks import RoadMarks
-
-COLORS: dict[int, tuple[Color, ...]] = {
-    1: ((230, 20, 20), (240, 15, 40), (190, 15, 20), (235, 40, 90)),
-    2: ((200, 200, 200), (150, 150, 150), (175, 175, 175), (25, 90, 150), (10, 20, 210), (30, 140, 190)),
-    3: ((15, 140, 50), (20, 110, 40), (30, 200, 60), (230, 180, 30)),
-    4: ((230, 180, 30), (150, 60, 180)),
-    5: ((150, 60, 180),),
-}
-
+from mini.renderer.traffic import Manner, draw_tracks
 
 QUEUED = 5.0
 """Metres of road more, either way, for each that runs into one ahead, so that where it came from is on the sheet."""
 CENTERED = 0.8
 """Share of drawings in which a leg's pavement, not its center line, lies about the middle of the junction."""
+EVEN = 0.35
+"""Share of drawings whose legs end on one rectangle."""
 
 
 @dataclass(frozen=True)
@@ -59,15 +53,16 @@ def draw_labeled(report: Report) -> Drawing:
     rng = Random(report.seed * 7 + 3)
     crash = report.shown or report.crash
     pen, ground = _sheet(rng, crash)
-    tracks = Stage(rng, crash, ground, rng.uniform(1.0, 1.45)).tracks()
+    manner = Manner.drawn(rng)
+    tracks = Stage(rng, crash, ground, rng.uniform(0.85, 1.3), manner.rests).tracks()
     _aim(rng, pen, tracks)
     marks = RoadMarks(rng, pen, crash, ground, [(pose, track.size) for track in tracks for pose in track.poses])
     arrows = any(fact.startswith("turns.") for fact in report.drawn)
     marks.draw(arrows=arrows, signs="control" in report.drawn)
-    labels = _vehicles(rng, pen, tracks)
+    draw_tracks(rng, pen, tracks, manner)
     shapes = _shapes(report, pen, ground, tracks, arrows) + north_arrow(rng, pen)
-    captions(rng, pen, len(crash.actors))
-    return Drawing(scan(rng, pen.image, gray=labels), shapes, pen.turn)
+    captions(rng, pen, sum(actor.vehicle for actor in crash.actors))
+    return Drawing(scan(rng, pen.image, gray=manner.labels), shapes, pen.turn)
 
 
 def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrows: bool) -> list[Shape]:
@@ -93,7 +88,7 @@ def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrow
 def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
     """View and ground; plain roads get wide sheets along the road, junctions nearly square ones."""
     plain = len(crash.legs) == 2
-    turn = math.radians(rng.choices((0, 90, -90, 180, rng.uniform(-60, 60)), (62, 16, 12, 4, 6))[0])
+    turn = math.radians(rng.choices((0, 90, -90, 180, rng.uniform(-60, 60)), (63, 17, 12, 4, 4))[0])
     half = rng.uniform(21, 36) if not plain else rng.uniform(22, 48)
     wide = max(leg.lanes_in + leg.lanes_out for leg in crash.legs)
     actors = crash.actors
@@ -106,6 +101,9 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
             lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
     for contact in queue:
         lengths[actors[contact.striker].leg] = max(lengths[actors[contact.striker].leg], 1.3 * half)
+    if rng.random() < EVEN:
+        even = {axis: half * rng.uniform(0.9, 1.15) for axis in sorted({leg.bearing % 4 for leg in crash.legs})}
+        lengths |= {leg.bearing: max(even[leg.bearing % 4], 14 + 2.0 * wide) for leg in crash.legs}
     curved = any(leg.curve != "none" for leg in crash.legs)
     radius, widths = rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash)
     ground = Ground(crash, lengths, radius, widths, centered=rng.random() < CENTERED)
@@ -134,7 +132,7 @@ def _lane_widths(rng: Random, crash: Crash) -> dict[int, float]:
     """Metres by axis: few drawings are to scale, and of two roads one may be drawn wider."""
     if rng.random() < 0.25:
         return {}
-    base = rng.uniform(3.0, 4.7)
+    base = rng.uniform(3.2, 5.0)
     return {axis: base * rng.uniform(0.85, 1.15) for axis in sorted({leg.bearing % 4 for leg in crash.legs})}
 
 
@@ -154,67 +152,6 @@ def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
             pen.center = center
             if pen.shows(hub, 0.1) and pen.shows(origins, 0.03):
                 return
-
-
-# ------------------------------------------------------------------ vehicles
-def _vehicles(rng: Random, pen: Pen, tracks: list[Track]) -> bool:
-    """Draws the actors; whether their names stand beside them, without which only their colors tell who is who."""
-    style = rng.choice(("box", "box", "icon", "icon", "plain"))
-    arrows, labels = rng.random() < 0.55 or style == "plain", rng.random() < 0.9
-    ghosts = style == "icon" and labels and rng.random() < 0.3
-    order = list(tracks)
-    rng.shuffle(order)
-    colors = {track.actor.id: _color(rng, track, labels) for track in order}
-    for track in order:
-        if track.ahead is not None:
-            _intended(pen, track.ahead)
-    # What came later lies below, the impact on top: every actor is to be seen where it counts.
-    layers = sorted(((t, i) for t in order for i in range(len(t.poses))), key=lambda at: _layer(*at))
-    for track, i in layers:
-        if i and arrows and i <= track.contact:
-            _link(pen, track.poses[i - 1], track.poses[i], track.size[0])
-        icons.vehicle(
-            rng, pen, track, track.poses[i], colors[track.actor.id], style, labels, ghosts and i != track.contact
-        )
-    if rng.random() < 0.12 and tracks:
-        at = [track.poses[track.contact] for track in tracks[:2]]
-        x, y = pen.px(np.array([(pose.x, pose.y) for pose in at])).mean(axis=0)
-        pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
-        pen.draw.line([(x, y - 8), (x, y + 8)], fill=BLACK, width=2)
-    return labels
-
-
-def _layer(track: Track, index: int) -> int:
-    return 0 if index > track.contact else 1 if index < track.contact else 2
-
-
-def _color(rng: Random, track: Track, labels: bool) -> Color:
-    if not track.actor.vehicle:
-        return (
-            rng.choice(((90, 60, 20), (20, 110, 40), (20, 20, 20)))
-            if track.actor.kind == "object"
-            else rng.choice(((250, 150, 30), (20, 20, 20), (150, 30, 160)))
-        )
-    if rng.random() < 0.05 and labels:
-        return (255, 255, 255)
-    return rng.choice(COLORS[int(track.actor.id[1:])])
-
-
-def _intended(pen: Pen, way: Points) -> None:
-    """A dashed arrow where one would have turned."""
-    width = 1 if pen.scale < 6 else 2
-    pen.line(way, width=width, dash=1.5, gap=1.5)
-    a, b = pen.px(way[-3:])[[0, -1]]
-    pen.head(b, math.atan2(*(b - a)[::-1]), max(6.0, 1.1 * pen.scale))
-
-
-def _link(pen: Pen, before: Pose, after: Pose, length: float) -> None:
-    a, b = pen.px(np.array([(before.x, before.y), (after.x, after.y)]))
-    gap = float(np.hypot(*(b - a)))
-    margin = length * pen.scale * 0.55
-    if gap > 2.6 * margin:
-        u = (b - a) / gap
-        pen.arrow(a + u * margin, b - u * margin, width=1 if pen.scale < 6 else 2, head=max(6.0, 1.1 * pen.scale))
 
 
 __all__ = ["Drawing", "Points", "Shape", "draw_labeled", "draw_report", "scan"]

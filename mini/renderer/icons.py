@@ -7,9 +7,13 @@ bicycle; investigators draw a symbol there and write its name beside it.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from random import Random
 
+import numpy as np
+
 from mini.renderer.boxes import Pose, corners, within
+from mini.renderer.lines import Points
 from mini.renderer.pen import BLACK, Color, Pen
 from mini.renderer.poses import Track
 
@@ -20,18 +24,28 @@ NAME = 11
 """Pixels of a name beside a symbol."""
 
 
-def vehicle(
-    rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, style: str, label: bool, ghost: bool
-) -> None:
-    """One actor at one of its poses; `ghost`: paler than at the others."""
-    kind, size = track.actor.kind, track.size
+@dataclass(frozen=True)
+class Look:
+    """How a vehicle is drawn at one pose."""
+
+    style: str = "box"
+    label: bool = True
+    ghost: bool = False
+    """Paler than at others."""
+    dashed: bool = False
+    """Outlined by dashes."""
+
+
+def vehicle(rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, look: Look) -> None:
+    """One actor at one of its poses."""
+    kind, size, style, label = track.actor.kind, track.size, look.style, look.label
     if kind == "object":
         _thing(pen, pose, size, color, rng.choice(("", "tree", "pole")))
         return
     if kind == "pedestrian":
         _person(pen, pose, size, color, track.actor.id)
         return
-    fill: Color = tuple(round(0.3 * c + 0.7 * 255) for c in color) if ghost else color  # type: ignore[assignment]
+    fill: Color = tuple(round(0.3 * c + 0.7 * 255) for c in color) if look.ghost else color  # type: ignore[assignment]
     if kind in TWO_WHEELS:
         _two_wheels(pen, pose, size, fill, kind)
         if label:
@@ -39,26 +53,28 @@ def vehicle(
         return
     if kind == "truck":
         _truck(pen, pose, size, fill)
+    elif look.dashed:
+        pen.polygon(corners(pose, size), fill, None)
+        _dashes(pen, corners(pose, size))
     else:
         pen.polygon(corners(pose, size), fill, BLACK, 1)
     if kind == "bus":
         _windows(pen, pose, size, fill)
     elif style == "icon":
-        for along in (0.16, -0.3):
-            _part(pen, pose, size, (along, 0.0), (0.1, 0.72), WHITE if fill != WHITE else GRAY)
+        _glass(pen, pose, size, kind, WHITE if fill != WHITE else GRAY)
     if style == "box":
-        _triangle(pen, pose, size, WHITE if sum(fill) < 650 else BLACK)
+        _triangle(pen, pose, size, WHITE if sum(fill) < 700 else GRAY)
     if label:
         _name(pen, track, pose, fill, style)
 
 
 def _name(pen: Pen, track: Track, pose: Pose, fill: Color, style: str) -> None:
     """An actor's name on its box, along it unless that stands on end."""
-    x, y = pen.px(within(pose, track.size, [(-0.12, 0.0)]))[0]
+    x, y = pen.px(within(pose, track.size, [(-0.16 if style == "box" else -0.1, 0.0)]))[0]
     ink = WHITE if sum(fill) < 300 or (style == "box" and sum(fill) < 450) else BLACK
     angle = (math.degrees(pose.heading + pen.turn) + 90) % 180 - 90
     lies = abs(math.cos(math.radians(angle))) > 0.2
-    pen.text(x, y, track.actor.id, max(7, int(track.size[1] * 0.62 * pen.scale)), ink, angle if lies else 90)
+    pen.text(x, y, track.actor.id, max(8, int(track.size[1] * 0.72 * pen.scale)), ink, angle if lies else 90)
 
 
 def _beside(pen: Pen, pose: Pose, size: tuple[float, float], name: str) -> None:
@@ -82,7 +98,28 @@ def _part(
 
 
 def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> None:
-    pen.polygon(within(pose, size, [(0.44, 0.0), (0.26, 0.27), (0.26, -0.27)]), color, None)
+    pen.polygon(within(pose, size, [(0.47, 0.0), (0.2, 0.34), (0.2, -0.34)]), color, BLACK, 1)
+
+
+def _glass(pen: Pen, pose: Pose, size: tuple[float, float], kind: str, color: Color) -> None:
+    """A curved windshield behind the hood, and of a car another before its trunk; what has a longer body has a shorter
+    hood."""
+    hood = 0.22 if kind == "car" else 0.32
+    bands = [(hood, 1.0)] + ([(-0.3, -1.0)] if kind == "car" else [(-0.08, 1.0)] if kind == "pickup" else [])
+    for at, bends in bands:
+        outer = [(at + bends * (0.05 - 0.2 * side * side), side) for side in (-0.44, -0.22, 0.0, 0.22, 0.44)]
+        inner = [(along - bends * 0.1, 0.9 * side) for along, side in reversed(outer)]
+        pen.polygon(within(pose, size, outer + inner), color, None)
+
+
+def _dashes(pen: Pen, box: Points) -> None:
+    """The outline of a box by dashes of three pixels."""
+    points = pen.px(box)
+    for a, b in zip(points, np.roll(points, -1, axis=0), strict=True):
+        steps = max(1, int(np.hypot(*(b - a)) / 6))
+        for k in range(steps):
+            ends = a + (b - a) * k / steps, a + (b - a) * (k + 0.5) / steps
+            pen.draw.line([tuple(p) for p in ends], fill=BLACK, width=1)
 
 
 def _truck(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> None:

@@ -40,8 +40,9 @@ class Track:
 class Stage:
     """Places all actors of a crash on its ground."""
 
-    def __init__(self, rng: Random, crash: Crash, ground: Ground, scale: float) -> None:
-        self.rng, self.crash, self.ground = rng, crash, ground
+    def __init__(self, rng: Random, crash: Crash, ground: Ground, scale: float, rests: float = 0.5) -> None:
+        """`scale`: of the vehicles; `rests`: share of them whose way to rest is drawn."""
+        self.rng, self.crash, self.ground, self.rests = rng, crash, ground, rests
         self.sizes: list[Size] = [(scale * SIZES[a.kind][0], scale * SIZES[a.kind][1]) for a in crash.actors]
         self.ways = [self._parked(ground.way(a), a) if a.maneuver == "parked" else ground.way(a) for a in crash.actors]
         self.at: dict[int, Pose] = {}
@@ -164,14 +165,17 @@ class Stage:
         normal = heading + SIDE[other_area]
         reach = half(mine, other_area)
         self.at[other] = Pose(px - reach * math.cos(normal), py - reach * math.sin(normal), heading)
+        self.index[other] = self._nearest(other, self.at[other])
 
-    def _own_heading(self, other: int, anchor: Pose) -> float:
-        way = self.ways[other]
-        index = int(np.hypot(way[:, 0] - anchor.x, way[:, 1] - anchor.y).argmin())
-        index = min(max(index, 4), len(way) - 3)
-        self.index[other] = index
-        turned = math.pi if self.crash.actors[other].maneuver == "backing" else 0.0
-        return wrap(float(headings(way)[index]) + turned)
+    def _nearest(self, actor: int, pose: Pose) -> int:
+        """Index on an actor's way nearest to a pose."""
+        way = self.ways[actor]
+        return min(max(int(np.hypot(way[:, 0] - pose.x, way[:, 1] - pose.y).argmin()), 4), len(way) - 3)
+
+    def _own_heading(self, actor: int, pose: Pose) -> float:
+        """Which way it faces where its way passes a pose."""
+        turned = math.pi if self.crash.actors[actor].maneuver == "backing" else 0.0
+        return wrap(float(headings(self.ways[actor])[self._nearest(actor, pose)]) + turned)
 
     # -------------------------------------------------------------- tracks
     def _track(self, index: int, others: list[Track]) -> Track:
@@ -225,11 +229,11 @@ class Stage:
         lead = self._leader(index)
         ahead = next((t for t in others if lead is not None and t.actor is self.crash.actors[lead]), None)
         queues = lead is not None or any(self._leader(i) == index for i in self.at)
-        found, gap = [], (rng.uniform(4, 8) if queues else rng.uniform(7, 14)) + self.sizes[index][0] * 0.6
+        found, gap = [], (rng.uniform(4, 8) if queues else rng.uniform(7, 18)) + self.sizes[index][0] * 0.6
         place = self.index[index] - int(gap / STEP)
         if place < 1 and self.index[index] * STEP > self.sizes[index][0] + 1:
             place = 1  # met near the end of its leg: closer together, but seen to have moved
-        for _ in range(1 if queues else rng.choice((1, 1, 2, 2, 3))):
+        for _ in range(1 if queues else rng.choice((1, 1, 1, 2, 2, 3))):
             if ahead is not None and ahead.contact:  # it came behind the one that it hits
                 first, between = ahead.poses[0], 0.6 * (ahead.size[0] + self.sizes[index][0])
                 nearest = int(np.hypot(way[:, 0] - first.x, way[:, 1] - first.y).argmin())
@@ -251,12 +255,14 @@ class Stage:
     def _after(self, track: Track, others: list[Track]) -> list[Pose]:
         """Poses on the way to rest, now and then; up to the first that would hide how another actor came."""
         rng, at, found = self.rng, track.poses[track.contact], []
-        if track.actor.kind in ("object", "pedestrian", "bicycle") or rng.random() >= 0.5:
+        if track.actor.kind in ("object", "pedestrian", "bicycle") or rng.random() >= self.rests:
             return []
         away, turn = self._pushed(track, others), rng.uniform(-2.5, 2.5)
+        turn *= min(1.0, 5.5 / track.size[0])
         taken = [(one, other.size) for other in others for one in other.poses]
-        for k in range(rng.choice((1, 1, 2))):
-            reach, faces = (k + 1) * rng.uniform(6, 12), wrap(at.heading + turn * (k + 1) / 2)
+        taken += [(one, track.size) for one in track.poses[: track.contact]]
+        for k in range(rng.choice((1, 1, 2, 3))):
+            reach, faces = (k + 1) * (0.5 * track.size[0] + rng.uniform(4, 9)), wrap(at.heading + turn * (k + 1) / 2)
             halfway, pose = (
                 Pose(at.x + far * math.cos(away), at.y + far * math.sin(away), faces) for far in (reach / 2, reach)
             )

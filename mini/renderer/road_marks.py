@@ -44,7 +44,7 @@ class RoadMarks:
         self.dash = rng.uniform(2.0, 4.0)
         self.gap = rng.uniform(2.0, 5.0)
         self.corner = rng.uniform(1.5, 5.5) if rng.random() < 0.65 else rng.uniform(5.0, 9.0)
-        self.shoulders = rng.choices((0, 1, 2, 3), (25, 35, 30, 10) if ground.plain else (65, 25, 10, 0))[0]
+        self.shoulders = rng.choices((0, 1, 2, 3), (25, 40, 31, 4) if ground.plain else (65, 25, 10, 0))[0]
         self.curb = (
             0 if ground.plain or self.shoulders or rng.random() > 0.2 else round(rng.uniform(0.5, 2.5) * pen.scale)
         )
@@ -59,7 +59,7 @@ class RoadMarks:
         self.arrow_size = rng.uniform(0.55, 1.2)
         self.turn_lane_gap = rng.uniform(0.0, 0.8)
         """Metres from the solid to the dashed line of a two-way left-turn lane; small ones run into one."""
-        self.turn_lane_dashed = rng.random() < 0.15
+        self.turn_lane_dashed = rng.random() < 0.03
         self.storage = rng.random() < 0.7
         """Whether the line beside a turn lane is solid."""
         self.stop_bars = rng.random() < 0.25
@@ -119,10 +119,12 @@ class RoadMarks:
         self.pen.draw.polygon([tuple(p) for p in self.pen.px(shape)], fill="white")
 
     def _shoulders(self, bands: list[Band]) -> None:
-        """Lines beside the travel lanes: paved and gravel shoulders, as most investigators draw them."""
-        places = [self.rng.uniform(0.5, 3.2)]
+        """Lines beside the travel lanes: paved and gravel shoulders, as most investigators draw them, narrower than
+        lanes and the outermost line thin."""
+        lane = min(band.lane for band in bands)
+        places = [self.rng.uniform(0.4, 0.75 * lane if self.shoulders == 1 else 0.45 * lane)]
         for _ in range(self.shoulders - 1):
-            places.append(places[-1] + self.rng.uniform(0.5, 3.0))
+            places.append(places[-1] + self.rng.uniform(0.4, 0.35 * lane))
         for band in bands:
             s = np.arange(self.ground.setback(band.leg.bearing, self.corner + 1.5), band.length, 1.0)
             if len(s) < 3 or band.leg.kind != "road":
@@ -130,7 +132,8 @@ class RoadMarks:
             for side, curb, sign in (("right", band.right, 1), ("left", band.left, -1)):
                 for run in accesses.beside(self.pen, self.ground, self.crash.accesses, band, side, s):
                     for wide in places:
-                        self.pen.line(band.at(run, curb + sign * wide), width=self.mark)
+                        width = 1 if wide == places[-1] and len(places) > 1 else self.mark
+                        self.pen.line(band.at(run, curb + sign * wide), width=width)
 
     # -------------------------------------------------------------- lines
     def _center(self, band: Band, start: float) -> None:
@@ -153,13 +156,16 @@ class RoadMarks:
 
     def _center_line(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
         pen, wide = self.pen, max(0.35, 1.6 / self.pen.scale)
-        if self.center == "dashed" and band.leg.lanes_in == 1:
+        narrow = band.leg.lanes_in == band.leg.lanes_out == 1
+        if self.center == "dashed" and narrow:
             pen.line(band.at(s, 0), width=self.mark, dash=self.dash, gap=self.gap)
         elif self.center in ("solid", "dashed"):
             pen.line(band.at(s, 0), width=self.mark + (2 if self.storage and band.leg.turns_in else 1))
         else:
+            if self.ground.plain and band.leg.bearing < 4:
+                wide = -wide  # one side of the road has the dashes, whichever leg they are drawn with
             pen.line(band.at(s, wide), width=self.mark)
-            dash = self.dash if self.center == "solid_dashed" and band.leg.lanes_in == 1 else 0.0
+            dash = self.dash if self.center == "solid_dashed" and narrow else 0.0
             pen.line(band.at(s, -wide), width=self.mark, dash=dash, gap=self.gap)
 
     def _median(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]

@@ -22,7 +22,8 @@ def drawn(kind: str, heading: float = 0.0, label: bool = False) -> Pen:
     pen = Pen(Random(0), 120, 120, SCALE, 0.0, (0.0, 0.0))
     name = {"pedestrian": "P1", "bicycle": "B1", "object": "O1"}.get(kind, "V2")
     track = Track(Actor(name, kind, 0, 4, "straight"), SIZES[kind])
-    icons.vehicle(Random(0), pen, track, Pose(0.0, 0.0, heading), (150, 150, 150), "plain", label, False)
+    look = icons.Look("plain", label)
+    icons.vehicle(Random(0), pen, track, Pose(0.0, 0.0, heading), (150, 150, 150), look)
     return pen
 
 
@@ -58,7 +59,7 @@ def test_a_symbol_shows_which_way_it_faces(kind: str, heading: float) -> None:
 def test_a_symbol_lies_where_its_box_lies_on_a_turned_sheet(kind: str, turn: float) -> None:
     pen = Pen(Random(0), 160, 160, SCALE, turn, (0.0, 0.0))
     pose, track = Pose(4.0, 3.0, 0.7), Track(Actor("V2", kind, 0, 4, "straight"), SIZES[kind])
-    icons.vehicle(Random(0), pen, track, pose, (150, 150, 150), "plain", False, False)
+    icons.vehicle(Random(0), pen, track, pose, (150, 150, 150), icons.Look("plain", label=False))
     ink = np.argwhere(np.asarray(pen.image.convert("L")) < 250)[:, ::-1]
     assert np.abs(ink.mean(axis=0) - pen.px(np.array([(pose.x, pose.y)]))[0]).max() < 8
 
