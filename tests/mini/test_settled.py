@@ -204,3 +204,38 @@ def test_what_is_told_in_part_alone_weighs_as_a_guess_and_tags_nothing(fact: str
             for facts in telling:
                 assert not asked & set(told(report.crash, frozenset({key, f"{VAGUE}.{key}"}) & facts))
     assert seen > 10
+
+
+@pytest.mark.parametrize("fact", ["limit.0", "lanes.0", "median.0"])
+def test_what_is_told_plainly_stays_so_when_it_is_said_loosely_again(fact: str) -> None:
+    crash = _crash("t", *TEE, actors=(_car("V1", 6, 4),))
+    plain = [*SAID, frozenset({fact, f"{AXIS}.0"}), frozenset({"heading.V1", f"{ROAD}.2"})]
+    assert fact not in unsettled(crash, plain)
+    assert fact not in unsettled(crash, [*plain, frozenset({fact})])
+
+
+def test_of_whom_no_maneuver_is_told_the_exit_is_a_guess_and_straight_ahead_where_it_drove_on() -> None:
+    ahead, gone = 0, 0
+    for seed in range(600):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for i, actor in enumerate(report.crash.actors if report.behavior else ()):
+            if not actor.vehicle or f"man.{actor.id}" in report.told or actor.maneuver == "straight":
+                continue
+            assert report.weight(("actors", i, "exit_road")) == GUESS
+            if f"heading.{actor.id}" in report.told and actor.out == (actor.leg + 4) % 8 and not actor.meant:
+                ahead += report.behavior["actors"][i]["exit_road"] is not None
+                gone += report.behavior["actors"][i]["exit_road"] is None
+    assert ahead > 10
+    assert gone <= 0.2 * ahead
+
+
+def test_the_lane_of_one_parked_or_of_no_known_heading_is_not_taken_from_the_road() -> None:
+    seen = 0
+    for seed in range(3000):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for actor, have in zip(report.crash.actors, (report.behavior or {}).get("actors", ()), strict=False):
+            told = {f"lane.{actor.id}", f"heading.{actor.id}"} & (report.told | report.doubtful)
+            if f"lane.{actor.id}" not in told and (actor.maneuver == "parked" or not told):
+                seen += 1
+                assert have["lane"] is None
+    assert seen > 50
