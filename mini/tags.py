@@ -209,11 +209,13 @@ def drawn_leg(leg: Leg, control: bool, turns: bool) -> list[int]:
     return [PICTURE[name] for name in names if name in PICTURE]
 
 
-def drawn_actor(crash: Crash, actor: Actor, pose: str, faces: int) -> list[int]:
-    """Indices into `PICTURE` of what a vehicle drawn at a pose shows; `faces` is the bearing of its nose."""
+def drawn_actor(crash: Crash, actor: Actor, pose: str, faces: int, drawn: Set[str]) -> list[int]:
+    """Indices into `PICTURE` of what a vehicle drawn at a pose shows; `faces` is the bearing of its nose, `drawn` what
+    the drawing as a whole shows."""
     names = [f"id={actor.id}", f"type={actor.kind}", f"pose={pose}", f"faces={faces % 8}"]
     if actor.kind not in ("object", "pedestrian", "bicycle"):
-        names += [f"heading={actor.heading}", f"maneuver={actor.maneuver}", f"lane={actor.lane}"]
+        names += [f"heading={actor.heading}", f"lane={actor.lane}"]
+        names += [f"maneuver={actor.maneuver}"] * (f"man.{actor.id}" in drawn)
     for contact in crash.contacts[:1] if pose == "contact" else ():
         for who in ("striker", "struck"):
             if crash.actors[getattr(contact, who)] is actor:

@@ -17,6 +17,7 @@ from mini.generator.world import Actor, Crash
 GOES_ON = re.compile(r"straight|no turn|no maneuver|normal driving|joined|mixed with", re.IGNORECASE)
 """Clauses of one that stays where it drives."""
 LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
+"""How maneuvers begin of one that does not."""
 
 
 class ApproachMixin:

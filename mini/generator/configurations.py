@@ -160,7 +160,9 @@ def head_on(rng: Random, crash: Crash) -> bool:
     }[way]
     if rng.random() < 0.15:
         crash.actors.append(_vehicle(rng, a + 4, a, straight))
-        crash.contacts.append(Contact(2, 0, "front", pick(rng, {"left": 1.0, "right": 1.0, "front": 0.6})))
+        first, sides = crash.contacts[0], {"left": 1.0, "right": 1.0, "front": 0.6}
+        sides.pop(first.striker_area if first.striker == 0 else first.struck_area, None)  # where the other one is
+        crash.contacts.append(Contact(2, 0, "front", pick(rng, sides)))
     return True
 
 

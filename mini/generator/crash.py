@@ -44,16 +44,17 @@ LAYOUTS = {
 }
 GLANCED = 0.2
 """Share of head-on crashes struck by the one who crossed whose other vehicle is hit on its side."""
-WALKS, SELDOM = 0.05, 0.2
-"""Shares of drawings that train: of crashes with somebody who is no motorist, and of those with a rare kind of vehicle
-in place of what it was."""
+WALKS = 0.05
+"""Share of drawings that train, beside those that come up, of crashes with somebody on foot or on a bicycle."""
+SELDOM = 0.2
+"""Share of drawings that train in which a vehicle is a motorcycle, truck or bus instead of what it was."""
 FAMILY_ODDS = {"rural": 0.42, "urban": 0.46, "highway": 0.12}
 
 
-def sample_crash(rng: Random) -> Crash:
-    """One crash; tries until roads and configuration fit (a few attempts at most)."""
+def sample_crash(rng: Random, config: str | None = None) -> Crash:
+    """One crash, if named of one configuration; tries until roads and configuration fit (a few attempts at most)."""
     while True:
-        crash = _roads(rng, pick(rng, CONFIGS))
+        crash = _roads(rng, config or pick(rng, CONFIGS))
         if BUILDERS[crash.config](rng, crash) and _sound(crash):
             _finish(rng, crash)
             return crash
@@ -90,8 +91,7 @@ def seldom(rng: Random, crash: Crash) -> Crash:
     """More often than on roads, as far as a drawing can show it: somebody on foot or a bicycle, or a vehicle of a kind
     that is seldom seen."""
     if rng.random() < WALKS:
-        while crash.config != "pedestrian":
-            crash = sample_crash(rng)
+        crash = sample_crash(rng, "pedestrian")
     vehicles = [i for i, actor in enumerate(crash.actors) if actor.vehicle]
     if vehicles and rng.random() < SELDOM:
         i, kind = rng.choice(vehicles), rng.choice(("motorcycle", "truck", "bus"))

@@ -51,9 +51,9 @@ MUTUAL = re.compile(
 OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
 """Clauses of rest that need a second vehicle."""
 DRIFTS = re.compile(
-    r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|slip|came over|bore (?:off |curb|right)|eased|sagged"
-    r"|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|tending|pulling|pulled over"
-    r"|\bright went|got o(?:ff|ver) to the right|moved over|came too far right"
+    r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|\bslip(?:ped|s)? right|came over|bore (?:off |curb|right)"
+    r"|\beas(?:ed|ing)|sagged|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|deviat"
+    r"|\btending|pulling|pulled over|bent to|\bright went|g[eo]t o(?:ff|ver)|moved over|(?:driven|guided|came) too far right"
     r"|(?:went|moved|steered|ran|slid|crossed|headed|turned)[a-z ]* right|to the right,? (?:toward|and)|parking lane|curbward",
     re.IGNORECASE,
 )
@@ -117,7 +117,7 @@ class EventsMixin:
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
         if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
-            rest = [clause for clause in rest if "median" not in clause]
+            rest = [clause for clause in families(rest, False) if "median" not in clause]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
             rest = [clause for clause in rest if not OF_TWO.search(clause)]
         if self.crash.layout not in ("four", "t") and not self.held_out:

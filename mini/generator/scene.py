@@ -258,5 +258,5 @@ class SceneMixin(JunctionMixin):
         self.told.add(key)
         options = table[getattr(self.crash, key)]
         if slot == "wx" and self.crash.light != "day" and not self.held_out:
-            options = [words for words in families(options, False) if not SUN.search(words)] or options
+            options = [words for words in families(options, False) if not SUN.search(words)]
         return clause_of(self.rng, options, self.held_out)

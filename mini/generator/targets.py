@@ -67,8 +67,8 @@ class Targets:
             if one_way and self.alone and not lanes:
                 self.weights |= {(*path, key): LIKELY for key, n in counts if n}
         median = leg.median if f"median.{axis}" in self.known else "none"
-        bends = any(actor.leg == leg.bearing and f"man.{actor.id}" in self.known for actor in self.crash.actors)
-        if "curve" not in self.known and leg.curve != "none" and bends:
+        bent = [actor for actor in self.crash.actors if actor.maneuver == "negotiating_curve" and actor.leg % 4 == axis]
+        if "curve" not in self.known and any(f"man.{actor.id}" in self.known for actor in bent):
             self._unsure(path, "curve")
         if leg.curve != "none" and "curve" in self.known:
             self.weights[(*path, "curve")] = RARE
@@ -186,8 +186,9 @@ class Targets:
 def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
     """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather.
 
-    Nor that somebody slowed, that one on the wrong side of a road meant to pass, if the one passed is not there, which
-    of two that touch with the same side struck the other, or how a pedestrian stood.
+    Nor that somebody slowed, where one that stands or slows means to turn, that one on the wrong side of a road meant
+    to pass, if the one passed is not there, which of two that touch with the same side struck the other, or how a
+    pedestrian stood.
     """
     facts = {"layout", "legs", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:
@@ -195,7 +196,7 @@ def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[
     for actor in crash.actors:
         facts |= {f"{key}.{actor.id}" for key in ("heading", "exit", "lane")}
         passes = actor.maneuver == "overtaking" and sum(other.leg == actor.leg for other in crash.actors) < 2
-        facts -= {f"exit.{actor.id}"} if actor.maneuver == "slowing" else set()
+        facts -= {f"exit.{actor.id}"} if actor.meant else set()
         facts |= {f"man.{actor.id}"} if actor.maneuver != "slowing" and not passes else set()
         if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):
             facts.add(f"kind.{actor.id}")

@@ -126,6 +126,17 @@ class Crash:
         """The leg at a bearing, if there is one."""
         return next((leg for leg in self.legs if leg.bearing == bearing % 8), None)
 
+    @property
+    def queue(self) -> list[Contact]:
+        """The contacts of vehicles that run into one ahead of them on their road."""
+        ends = ("front", "back")
+        return [
+            contact
+            for contact in self.contacts
+            if (contact.striker_area, contact.struck_area) == ends
+            and self.actors[contact.striker].leg == self.actors[contact.struck].leg
+        ]
+
     def is_main(self, bearing: int) -> bool:
         """Whether a leg belongs to the main road."""
         return bearing % 4 == self.main % 4

@@ -75,10 +75,15 @@ def _free(rng: Random, image: Image.Image, length: float) -> tuple[float, float]
         x = rng.choice((rng.uniform(0.06, 0.3), rng.uniform(0.7, 0.94), rng.uniform(0.3, 0.7))) * w
         y = rng.choice((rng.uniform(0.02, 0.25), rng.uniform(0.75, 0.94))) * h
         x, y = min(max(x, length), w - length), min(max(y, length), h - length)
-        box = (int(x - length), int(y - length), int(x + length), int(y + length))
-        if image.crop(box).convert("L").getextrema()[0] > 250:  # type: ignore[operator]
+        if _blank(image, (x - length, y - length, x + length, y + length)):
             break
     return x, y
+
+
+def _blank(image: Image.Image, box: tuple[float, float, float, float]) -> bool:
+    """Whether nothing is drawn in a box (left, top, right, bottom in pixels)."""
+    left, top, right, bottom = (int(edge) for edge in box)
+    return bool(np.asarray(image.crop((left, top, right, bottom)).convert("L")).min(initial=255) > 250)
 
 
 def _arrow_and_letter(rng: Random, center: Points, up: Points, length: float, size: float) -> tuple[Points, ...]:
@@ -105,9 +110,8 @@ def captions(rng: Random, pen: Pen, actors: int) -> None:
         size = rng.choice((9, 10, 12, 14))
         for _ in range(TRIES):
             x, y = rng.uniform(0.2, 0.8) * w, rng.choice((rng.uniform(0.03, 0.2), rng.uniform(0.82, 0.97))) * h
-            left, top, right, bottom = pen.draw.textbbox((x, y), text, font=font(size), anchor="mm")
-            clear = 0 < left < right < w and pen.image.crop((int(left), int(top), int(right), int(bottom)))
-            if clear and clear.convert("L").getextrema()[0] > 250:  # type: ignore[operator]
+            box = pen.draw.textbbox((x, y), text, font=font(size), anchor="mm")
+            if 0 < box[0] < box[2] < w and _blank(pen.image, box):
                 break
         pen.text(x, y, text, size)
     if rng.random() < 0.15:

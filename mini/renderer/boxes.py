@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -38,8 +39,8 @@ class Pose:
     heading: float
 
 
-def wrap(angle: float) -> float:
-    """To (-pi, pi]."""
+def wrap(angle: Any) -> Any:
+    """An angle, or an array of them, to [-pi, pi)."""
     return (angle + math.pi) % (2 * math.pi) - math.pi
 
 

@@ -59,7 +59,7 @@ def draw_labeled(report: Report) -> Drawing:
     marks = RoadMarks(rng, pen, crash, ground, [(pose, track.size) for track in tracks for pose in track.poses])
     arrows = any(fact.startswith("turns.") for fact in report.drawn)
     marks.draw(arrows=arrows, signs="control" in report.drawn)
-    draw_tracks(rng, pen, tracks, manner)
+    draw_tracks(rng, pen, tracks, manner, crash.contacts[0])
     shapes = _shapes(report, pen, ground, tracks, arrows) + north_arrow(rng, pen)
     captions(rng, pen, sum(actor.vehicle for actor in crash.actors))
     return Drawing(scan(rng, pen.image, gray=manner.labels), shapes, pen.turn)
@@ -80,7 +80,7 @@ def _shapes(report: Report, pen: Pen, ground: Ground, tracks: list[Track], arrow
         for i, pose in enumerate(track.poses):
             when = "contact" if i == track.contact else "before" if i < track.contact else "after"
             faces = round((math.pi / 2 - pose.heading) / (math.pi / 4)) % 8
-            shows = tags.drawn_actor(report.crash, track.actor, when, faces)
+            shows = tags.drawn_actor(report.crash, track.actor, when, faces, report.drawn)
             found.append(Shape(pen.px(corners(pose, track.size)), shows, 0.04))
     return found
 
@@ -91,19 +91,18 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
     turn = math.radians(rng.choices((0, 90, -90, 180, rng.uniform(-60, 60)), (63, 17, 12, 4, 4))[0])
     half = rng.uniform(21, 36) if not plain else rng.uniform(22, 48)
     wide = max(leg.lanes_in + leg.lanes_out for leg in crash.legs)
-    actors = crash.actors
-    queue = [c for c in crash.contacts if c.struck_area == "back" and actors[c.striker].leg == actors[c.struck].leg]
-    half += 2.0 * wide + QUEUED * len(queue)
+    half += 2.0 * wide + QUEUED * len(crash.queue)
     used = {bearing for actor in crash.actors for bearing in (actor.leg, actor.out)}
     lengths = {leg.bearing: half * rng.uniform(0.85, 1.5) for leg in crash.legs}
     for leg in crash.legs:
         if leg.bearing not in used and not crash.is_main(leg.bearing):
             lengths[leg.bearing] = max(half * rng.uniform(0.3, 1.1), 12 + 2.0 * wide)
-    for contact in queue:
-        lengths[actors[contact.striker].leg] = max(lengths[actors[contact.striker].leg], 1.3 * half)
     if rng.random() < EVEN:
         even = {axis: half * rng.uniform(0.9, 1.15) for axis in sorted({leg.bearing % 4 for leg in crash.legs})}
         lengths |= {leg.bearing: max(even[leg.bearing % 4], 14 + 2.0 * wide) for leg in crash.legs}
+    for contact in crash.queue:
+        queued = crash.actors[contact.striker].leg
+        lengths[queued] = max(lengths[queued], 1.3 * half)
     curved = any(leg.curve != "none" for leg in crash.legs)
     radius, widths = rng.uniform(60, 140) if curved else 100.0, _lane_widths(rng, crash)
     ground = Ground(crash, lengths, radius, widths, centered=rng.random() < CENTERED)

@@ -22,7 +22,10 @@ ASKEW = math.radians(10)
 """So far turned from its way is as bad as a metre beside it."""
 TURNED = math.radians(20)
 """A turn that is seen at the impact."""
+CLOSE, APART = (2.0, 6.0), (5.0, 16.0)
+"""Metres between one place of an actor and its next, in a queue and elsewhere."""
 KEEPS = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
+"""Maneuvers of those who keep their line, if they can, at the contact."""
 
 
 @dataclass
@@ -58,8 +61,8 @@ class Stage:
                 continue
             placed, other = (first, second) if first in self.at else (second, first)
             areas, most = _areas(contact), math.radians(self.rng.uniform(10, 40))
-            slide = self.rng.uniform(-0.3, 0.3) * min(self.sizes[placed][0], 2 * self.sizes[placed][1])
-            slide *= 0.5 if areas[placed] in ("front", "back") else 1.0
+            along = self.sizes[placed][areas[placed] in ("front", "back")]
+            slide = self.rng.uniform(-0.3, 0.3) * min(along, 2 * self.sizes[placed][1])  # of long ones as of cars
             self._attach(placed, other, areas[placed], areas[other], slide, most)
         found: list[Track] = []
         for i in sorted(self.at, key=self._ahead):
@@ -78,9 +81,9 @@ class Stage:
         """Who stays on its line at the contact."""
         actors = self.crash.actors
         for i in (second, first):
-            if actors[i].maneuver in KEEPS and actors[i].kind not in ("object", "pedestrian", "bicycle"):
+            if actors[i].maneuver in KEEPS and actors[i].vehicle:
                 return i
-        return second if actors[second].kind not in ("object", "pedestrian", "bicycle") else first
+        return second if actors[second].vehicle else first
 
     # -------------------------------------------------------------- contact
     def _anchor(self, contact: Contact) -> None:
@@ -94,8 +97,7 @@ class Stage:
 
     def _stand(self, actor: int, index: int) -> None:
         way, h = self.ways[actor], headings(self.ways[actor])
-        turned = math.pi if self.crash.actors[actor].maneuver == "backing" else 0.0
-        self.at[actor] = Pose(*way[index], wrap(float(h[index]) + turned))
+        self.at[actor] = Pose(*way[index], wrap(float(h[index]) + _turned(self.crash.actors[actor])))
         self.index[actor] = index
 
     def _along(self, keeper: int, other: int) -> int | None:
@@ -106,7 +108,7 @@ class Stage:
         if actor.maneuver in ("stopped", "slowing") and actor.leg == by.leg:
             back = self.rng.choice((3, 3, 6, 12, 18)) if not self.ground.plain else self.rng.randint(-16, 16)
             return min(max(before - int(back / STEP), 20), len(mine) - 8)
-        if same_road or by.kind in ("object", "pedestrian", "bicycle"):
+        if same_road or not by.vehicle:
             early = -14 if self.ground.plain or actor.leg == by.leg else -30
             near = before + int(self.rng.uniform(early, 8 if self.ground.plain else -2) / STEP)
             return min(max(near, 20), len(mine) - 8)
@@ -117,7 +119,10 @@ class Stage:
         into one the first that is near enough."""
         way, areas = self.ways[other], _areas(contact)
         gaps = np.hypot(*(self.ways[keeper][:, None] - way[None]).transpose(2, 0, 1)).min(axis=1)
-        first = int(np.argmax(gaps < gaps.min() + NEAR))
+        near = gaps < gaps.min() + NEAR
+        first = int(np.argmax(near))
+        if self.crash.actors[keeper].leg == self.crash.actors[other].leg:  # one way until one of them turns off it
+            first += int(np.argmin(near[first:]))
         room = int(self.sizes[keeper][0] / STEP)
         lowest, highest = 10, max(10, len(self.ways[keeper]) - 6)
         off = {}
@@ -174,8 +179,8 @@ class Stage:
 
     def _own_heading(self, actor: int, pose: Pose) -> float:
         """Which way it faces where its way passes a pose."""
-        turned = math.pi if self.crash.actors[actor].maneuver == "backing" else 0.0
-        return wrap(float(headings(self.ways[actor])[self._nearest(actor, pose)]) + turned)
+        heading = float(headings(self.ways[actor])[self._nearest(actor, pose)])
+        return wrap(heading + _turned(self.crash.actors[actor]))
 
     # -------------------------------------------------------------- tracks
     def _track(self, index: int, others: list[Track]) -> Track:
@@ -192,12 +197,7 @@ class Stage:
 
     def _leader(self, index: int) -> int | None:
         """Whom an actor runs into from behind, on the same road."""
-        actors = self.crash.actors
-        for contact in self.crash.contacts:
-            behind = contact.striker == index and (contact.striker_area, contact.struck_area) == ("front", "back")
-            if behind and contact.struck in self.at and actors[contact.struck].leg == actors[index].leg:
-                return contact.struck
-        return None
+        return next((c.struck for c in self.crash.queue if c.striker == index and c.struck in self.at), None)
 
     def _ahead(self, index: int) -> int:
         """How many drive ahead of an actor in a queue that runs up."""
@@ -215,21 +215,21 @@ class Stage:
         if abs(wrap(self.at[index].heading - float(h[2]))) > TURNED:
             return None
         rest: Points = way[self.index[index] + int(0.5 * self.sizes[index][0] / STEP) :]
-        turned = np.abs(np.unwrap(headings(rest)) - h[2]) if len(rest) > 2 else np.zeros(1)
+        turned = np.abs(wrap(headings(rest) - h[2])) if len(rest) > 2 else np.zeros(1)
         if turned.max() < math.radians(30):  # the way into a driveway that is no leg is not known
             return None
-        return rest[: int(np.argmax(turned > min(math.radians(70), 0.9 * turned.max()))) + int(6 / STEP)]
+        around = int(np.argmax(turned > min(math.radians(70), 0.9 * turned.max())))
+        return rest[: around + int(6 / STEP)]  # and some metres of the road that it turns into
 
     def _before(self, index: int, at: Pose, others: list[Track]) -> list[Pose]:
         actor, rng = self.crash.actors[index], self.rng
         if actor.kind in ("pedestrian", "bicycle"):
             return [Pose(at.x - 6 * math.cos(at.heading), at.y - 6 * math.sin(at.heading), at.heading)]
         way, h = self.ways[index], headings(self.ways[index])
-        turned = math.pi if actor.maneuver == "backing" else 0.0
         lead = self._leader(index)
         ahead = next((t for t in others if lead is not None and t.actor is self.crash.actors[lead]), None)
         queues = lead is not None or any(self._leader(i) == index for i in self.at)
-        found, gap = [], (rng.uniform(4, 8) if queues else rng.uniform(7, 18)) + self.sizes[index][0] * 0.6
+        found, gap = [], rng.uniform(*(CLOSE if queues else APART)) + self.sizes[index][0]
         place = self.index[index] - int(gap / STEP)
         if place < 1 and self.index[index] * STEP > self.sizes[index][0] + 1:
             place = 1  # met near the end of its leg: closer together, but seen to have moved
@@ -242,8 +242,8 @@ class Stage:
                 place -= 4
             if place < 1:
                 break
-            found.append(Pose(*way[place], wrap(float(h[place]) + turned)))
-            place -= int(gap * rng.uniform(0.9, 1.6) / STEP)
+            found.append(Pose(*way[place], wrap(float(h[place]) + _turned(actor))))
+            place -= int(gap * rng.uniform(1.0, 1.6) / STEP)
         return found[::-1]
 
     def _hidden(self, index: int, pose: Pose, others: list[Track]) -> bool:
@@ -255,7 +255,7 @@ class Stage:
     def _after(self, track: Track, others: list[Track]) -> list[Pose]:
         """Poses on the way to rest, now and then; up to the first that would hide how another actor came."""
         rng, at, found = self.rng, track.poses[track.contact], []
-        if track.actor.kind in ("object", "pedestrian", "bicycle") or rng.random() >= self.rests:
+        if not track.actor.vehicle or rng.random() >= self.rests:
             return []
         away, turn = self._pushed(track, others), rng.uniform(-2.5, 2.5)
         turn *= min(1.0, 5.5 / track.size[0])
@@ -272,15 +272,20 @@ class Stage:
         return found
 
     def _pushed(self, track: Track, others: list[Track]) -> float:
-        """About which way an actor goes from the impact: on, and with those who meet it."""
+        """About which way (radians) an actor goes from the impact: on, and with the other vehicles of the crash."""
         x = y = 0.0
         for one, weight in ((track, 1.0), *((other, 0.7) for other in others)):
-            if one.contact:
-                heading = one.poses[one.contact].heading + (math.pi if one.actor.maneuver == "backing" else 0.0)
+            if one.contact and one.actor.vehicle:
+                heading = one.poses[one.contact].heading + _turned(one.actor)
                 x, y = x + weight * math.cos(heading), y + weight * math.sin(heading)
         if math.hypot(x, y) < 0.4:
             return track.poses[track.contact].heading + self.rng.uniform(-1.2, 1.2)
         return math.atan2(y, x) + self.rng.uniform(-0.6, 0.6)
+
+
+def _turned(actor: Actor) -> float:
+    """Radians from where an actor drives to where its nose points."""
+    return math.pi if actor.maneuver == "backing" else 0.0
 
 
 def _areas(contact: Contact) -> dict[int, str]:

@@ -27,8 +27,6 @@ TURN_STEPS = {
 
 ARROW = (7.0, 2.4)
 """Metres of road that an arrow takes."""
-MEDIAN_HATCH = 6.0
-"""Pixels between the strokes of a median at least; closer ones run into one."""
 
 
 class RoadMarks:
@@ -176,7 +174,7 @@ class RoadMarks:
             for k in range(0, len(s) - 1, 6):
                 pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k], -band.middle / 2))), width=1)
         elif kind in ("raised", "painted"):
-            for k in range(0, len(s) - 8, max(8, round(MEDIAN_HATCH / (STEP * pen.scale)))):
+            for k in range(0, len(s) - 8, 8):
                 pen.line(np.concatenate((band.at(s[k], band.middle / 2), band.at(s[k + 6], -band.middle / 2))), width=1)
             if kind == "raised":
                 pen.line(band.at(s, 0), width=self.mark + 1)
@@ -207,15 +205,18 @@ class RoadMarks:
         for k, use in enumerate(band.leg.turns_in, 1):
             if use == "through" and not self.every_lane:
                 continue
-            place, turns = self._free(band, start, band.lane_in(k)), TURN_STEPS.get(use, ())
+            place, turns = self._free(band, start, band.lane_in(k), 1.5), TURN_STEPS.get(use, ())
             for turn in turns:
                 self._painted(self._turn_arrow(band, place, band.lane_in(k), turn, len(turns) > 1))
 
-    def _free(self, band: Band, start: float, lateral: float) -> float:
-        """Metres from the hub to a place for an arrow on a lane that the sheet shows and no vehicle will hide."""
+    def _free(self, band: Band, start: float, lateral: float, middle: float = 0.0) -> float:
+        """Metres from the hub to a place for an arrow on a lane that the sheet shows and no vehicle will hide.
+
+        `middle`: metres from that place to the middle of the arrow.
+        """
         usual = min(start + self.rng.uniform(4, 9), band.length - 6)
         for place in (usual, *np.arange(start + 4, band.length - 6, 1.5)):
-            (x, y), (u, v) = band.at(place + 1.5, lateral)[0], band.at(place + 2.5, lateral)[0]
+            (x, y), (u, v) = (band.at(place + far, lateral)[0] for far in (middle, middle + 1))
             here = Pose(x, y, math.atan2(y - v, x - u))
             if self.pen.shows(np.array([(x, y)]), 0.05) and not any(
                 overlap(here, ARROW, pose, size) for pose, size in self.taken

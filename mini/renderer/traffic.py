@@ -8,6 +8,7 @@ from random import Random
 
 import numpy as np
 
+from mini.generator.world import Contact
 from mini.renderer import icons
 from mini.renderer.boxes import Pose, overlap
 from mini.renderer.lines import Points
@@ -21,6 +22,9 @@ COLORS: dict[int, tuple[Color, ...]] = {
     4: ((230, 180, 30), (150, 60, 180)),
     5: ((150, 60, 180),),
 }
+
+CROSSED = 0.12
+"""Share of drawings with a cross at the first impact."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class Manner:
         )
 
 
-def draw_tracks(rng: Random, pen: Pen, tracks: list[Track], manner: Manner) -> None:
+def draw_tracks(rng: Random, pen: Pen, tracks: list[Track], manner: Manner, first: Contact) -> None:
     """Draws the actors: what came later lies below, the impact on top, so that each is seen where it counts."""
     order = list(tracks)
     rng.shuffle(order)
@@ -71,8 +75,8 @@ def draw_tracks(rng: Random, pen: Pen, tracks: list[Track], manner: Manner) -> N
     for track in order:
         if track.ahead is not None:
             _intended(pen, track.ahead, colors[track.actor.id])
-    if rng.random() < 0.12 and tracks:
-        at = [track.poses[track.contact] for track in tracks[:2]]
+    if rng.random() < CROSSED:
+        at = [tracks[i].poses[tracks[i].contact] for i in (first.striker, first.struck)]
         x, y = pen.px(np.array([(pose.x, pose.y) for pose in at])).mean(axis=0)
         pen.draw.line([(x - 8, y), (x + 8, y)], fill=BLACK, width=2)
         pen.draw.line([(x, y - 8), (x, y + 8)], fill=BLACK, width=2)

@@ -43,15 +43,56 @@ def test_those_who_turn_are_hit_where_they_drive_and_as_they_are_turned() -> Non
     assert np.mean(np.array(askew) > math.radians(50)) < 0.08
 
 
+@pytest.mark.parametrize("config", ["u_turn", "rear_end"])
+def test_two_of_one_road_meet_where_they_part_and_are_seen_to_come(config: str) -> None:
+    came, far = [], []
+    for seed in range(400):
+        crash = sample_crash(Random(seed), config)
+        first, second = (crash.actors[i] for i in (crash.contacts[0].striker, crash.contacts[0].struck))
+        turns = {first.maneuver, second.maneuver} & {"u_turn", "turn_left", "turn_right"}
+        if first.leg != second.leg or not turns:
+            continue
+        ground = Ground(crash, {leg.bearing: 60.0 for leg in crash.legs}, 100.0)
+        for track in Stage(Random(seed), crash, ground, 1.0).tracks():
+            came.append(track.contact > 0 or track.actor.maneuver in ("stopped", "parked"))
+            far.append(math.hypot(track.poses[track.contact].x, track.poses[track.contact].y))
+    assert len(came) > 10
+    assert np.mean(came) > 0.9
+    assert np.mean(np.array(far) > 40) < 0.1
+
+
+@settings(max_examples=150, deadline=None)
+@given(seed=seeds)
+def test_those_who_do_not_touch_do_not_lie_on_each_other_at_the_impact(seed: int) -> None:
+    crash = sample_crash(Random(seed), "head_on")
+    ground = Ground(crash, {leg.bearing: 50.0 for leg in crash.legs}, 100.0)
+    tracks = Stage(Random(seed), crash, ground, 1.0).tracks()
+    if len(tracks) == 3:
+        apart = ({0, 1, 2} - {crash.contacts[1].striker, crash.contacts[1].struck}, crash.contacts[1].striker)
+        one, two = tracks[apart[0].pop()], tracks[apart[1]]
+        assert not overlap(one.poses[one.contact], (3.6, 1.4), two.poses[two.contact], (3.6, 1.4))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_nobody_on_foot_pushes_a_car_off_its_course(seed: int) -> None:
+    crash = sample_crash(Random(seed), "pedestrian")
+    ground = Ground(crash, {leg.bearing: 50.0 for leg in crash.legs}, 100.0)
+    car = next(t for t in Stage(Random(seed), crash, ground, 1.0, rests=1.0).tracks() if t.actor.vehicle)
+    at = car.poses[car.contact]
+    for rest in car.poses[car.contact + 1 :]:
+        assert abs(wrap(math.atan2(rest.y - at.y, rest.x - at.x) - at.heading)) < math.radians(40)
+
+
 @settings(max_examples=150, deadline=None)
 @given(seed=seeds)
 def test_no_place_that_one_came_from_lies_on_anothers(seed: int) -> None:
     tracks = [track for track in _stage(seed)[2] if track.actor.vehicle and track.actor.kind != "bicycle"]
     for track in tracks:
         for other in tracks:
-            came = other.poses[: other.contact + 1] if other is not track else []
-            before = track.poses[: track.contact]
-            assert not any(overlap(a, track.size, b, other.size) for a in before for b in came)
+            before, came = track.poses[: track.contact], other.poses[: other.contact + 1]
+            for k, pose in enumerate(before):
+                later = came if other is not track else came[k + 2 :]
+                assert not any(overlap(pose, track.size, one, other.size) for one in later)
 
 
 @settings(max_examples=40, deadline=None)
@@ -95,8 +136,20 @@ def test_a_turn_that_is_not_begun_at_the_impact_is_drawn_ahead() -> None:
                 continue
             found += 1
             gone = wrap(float(headings(track.ahead)[-1]) - track.poses[track.contact].heading)
-            assert turn * gone > math.radians(20)
+            assert turn * gone > math.radians(40)
     assert found > 5
+
+
+@pytest.mark.parametrize("leg", [0, 2, 4, 6])
+def test_the_way_ahead_turns_as_far_whatever_the_compass(leg: int) -> None:
+    legs = [Leg(b, 1, 1) for b in (0, 2, 4, 6)]
+    actors = [Actor("V1", "car", leg, (leg + 2) % 8, "turn_left", 1), Actor("V2", "car", leg, None, "stopped", 1)]
+    crash = Crash("rear_end", "four", leg, legs, actors, [Contact(0, 1, "front", "back")], *CLEAR)
+    ground = Ground(crash, dict.fromkeys((0, 2, 4, 6), 50.0), 100.0)
+    (turner, _) = Stage(Random(1), crash, ground, 1.0).tracks()
+    assert turner.ahead is not None
+    away = headings(turner.ahead)
+    assert wrap(float(away[-1] - headings(ground.way(actors[0]))[2])) == pytest.approx(math.pi / 2, abs=0.4)
 
 
 def test_turn_arrows_stand_where_no_vehicle_hides_them() -> None:

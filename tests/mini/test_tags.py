@@ -280,7 +280,7 @@ def test_vehicles_that_share_a_token_are_told_apart_by_name(seed: int) -> None:
     shown = set()
     for index in (contact.striker, contact.struck):
         actor = crash.actors[index]
-        found = {names[i] for i in tags.drawn_actor(crash, actor, "contact", actor.heading)}
+        found = {names[i] for i in tags.drawn_actor(crash, actor, "contact", actor.heading, {f"man.{actor.id}"})}
         own = {name for name in found if name.startswith(f"{actor.id}.")}
         role = "striker" if index == contact.striker else "struck"
         assert f"{actor.id}.area={getattr(contact, role + '_area')}" in own
