@@ -1,5 +1,7 @@
 """How vehicles come to the crash: what a sentence tells is what its words say."""
 
+import re
+
 import pytest
 
 from mini.generator import clauses_motion
@@ -39,3 +41,16 @@ def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypat
                 told, plain = told + ("RR" in sentence), plain + ("RR" not in sentence)
     assert told > 20
     assert plain > 20
+
+
+def test_the_same_intersection_is_one_that_was_named() -> None:
+    seen = 0
+    for seed in range(1500):
+        text = make_report(seed, length=0.0, modes={"text": 1.0}).narrative
+        if "the same intersection" in text:
+            seen += 1
+            before = text[: text.index("the same intersection")].lower()
+            assert re.search(r"intersection|junction|crossing|crossroads|corner|meet|cross|ends? at|joins?", before), (
+                text
+            )
+    assert seen > 30

@@ -12,13 +12,14 @@ from PIL import Image, ImageDraw
 from mini import picture
 from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
-from mini.generator.world import Access, Crash, Leg
-from mini.renderer import accesses
+from mini.generator.targets import drawn_facts
+from mini.generator.world import Access, Actor, Crash, Leg
+from mini.renderer import accesses, traffic
 from mini.renderer.boxes import SIDE, Pose, corners, overlap, wrap
 from mini.renderer.draw import _sheet, draw_report
 from mini.renderer.lines import Ground
 from mini.renderer.pen import Pen
-from mini.renderer.poses import Stage
+from mini.renderer.poses import Stage, Track
 from mini.renderer.road_marks import RoadMarks
 
 seeds = st.integers(0, 10**6)
@@ -208,3 +209,52 @@ def test_a_driveway_opens_the_curb_and_its_mouth_is_open(seed: int, leg: int, si
     assert _ink(accesses.box(pen, ground, access, 0.3, mouth, wider=-1.9), pen).sum() == 0
     assert _ink(accesses.box(pen, ground, access, 0.1, mouth, wider=1.2), pen).any()
     assert _ink(accesses.box(pen, ground, access, mouth + 0.5, mouth + 9.0, wider=1.0), pen).sum() == 0
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=seeds)
+def test_a_drawing_claims_no_maneuver_and_no_exit_that_nobody_could_see(seed: int) -> None:
+    crash = sample_crash(Random(seed))
+    facts = drawn_facts(crash, True, True, False)
+    for actor in crash.actors:
+        alone = sum(other.leg == actor.leg for other in crash.actors) < 2
+        unseen = actor.maneuver == "slowing" or (actor.maneuver == "overtaking" and alone)
+        assert (f"man.{actor.id}" in facts) == (not unseen)
+        assert (f"exit.{actor.id}" in facts) == (not actor.meant)
+
+
+def test_stop_bars_are_drawn_only_where_the_control_is() -> None:
+    legs = [Leg(bearing, 1, 1, control="stop") for bearing in (0, 2, 4, 6)]
+    crash = Crash("crossing", "four", 0, legs, [], [], "day", "clear", "dry")
+    bars = []
+    for seed, signs in ((seed, signs) for seed in range(30) for signs in (True, False)):
+        pen = Pen(Random(seed), 400, 400, 4.0, 0.0, (0.0, 0.0))
+        marks = RoadMarks(Random(seed), pen, crash, Ground(crash, dict.fromkeys((0, 2, 4, 6), 40.0), 100.0))
+        assert marks.stop_bars == RoadMarks(Random(seed), pen, crash, marks.ground).stop_bars
+        lines: list[int] = []
+        pen.line = lambda points, width=2, **_: lines.append(len(points) * (width == marks.mark + 2))  # type: ignore[method-assign]  # noqa: B023
+        marks._signs = lambda: None  # type: ignore[method-assign]
+        marks.draw(arrows=False, signs=signs)
+        assert lines.count(2) == 4 * (signs and marks.stop_bars)
+        bars.append(lines.count(2))
+    assert max(bars) == 4
+
+
+def test_arrows_between_poses_do_not_pass_through_others() -> None:
+    pen = Pen(Random(0), 400, 400, 4.0, 0.0, (0.0, 0.0))
+    one = Track(Actor("V1", "car", 6, 2, "straight"), (4.8, 2.0), [Pose(-30, 0, 0.0), Pose(30, 0, 0.0)], 1)
+    blank = np.asarray(pen.image).copy()
+    traffic._link(pen, one, 1, [one, Track(Actor("V2", "car", 0, 4, "straight"), (4.8, 2.0), [Pose(0, 1, 1.0)])])
+    assert (np.asarray(pen.image) == blank).all()
+    traffic._link(pen, one, 1, [one, Track(Actor("V2", "car", 0, 4, "straight"), (4.8, 2.0), [Pose(0, 9, 1.0)])])
+    assert (np.asarray(pen.image) != blank).any()
+
+
+def test_car_icons_have_places_of_rest_and_boxes_have_arrows() -> None:
+    manners = [traffic.Manner.drawn(Random(seed)) for seed in range(600)]
+    icons, boxes = ([m for m in manners if m.style == style] for style in ("icon", "box"))
+    assert min(len(icons), len(boxes)) > 150
+    assert np.mean([m.links for m in boxes]) > 0.7 > 0.4 > np.mean([m.links for m in icons])
+    assert icons[0].rests > boxes[0].rests
+    assert not any(m.dashed or m.ghosts for m in boxes)
+    assert all(m.labels for m in manners if m.ghosts)

@@ -1,8 +1,12 @@
 """Sentences about the collision: what they say beside their slots is so."""
 
+import re
+
 import pytest
 
 from mini.generator.events import DRIFTS
+from mini.generator.report import make_report
+from tests.mini.reports import sentences
 
 
 @pytest.mark.parametrize(
@@ -34,3 +38,16 @@ def test_clauses_of_one_that_leaves_its_lane_are_known(clause: str) -> None:
 )
 def test_clauses_of_one_that_may_have_kept_its_lane_are_not_taken_for_a_drift(clause: str) -> None:
     assert not DRIFTS.search(clause)
+
+
+def test_one_that_keeps_its_lane_is_not_said_to_drift_into_a_parked_vehicle() -> None:
+    seen = 0
+    for seed in range(6000):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        if report.crash.config != "parked" or any(a.maneuver.startswith("departing") for a in report.crash.actors):
+            continue
+        seen += 1
+        drifts = r"(drifted|strayed|moved|went|crept) (over )?(to the )?right|right, toward"
+        told = [text for text, facts in sentences(report) if re.search(drifts, text) and "~named0.V1" in facts]
+        assert not [text for text in told if "parked" in text], told
+    assert seen > 30

@@ -96,3 +96,15 @@ def test_the_same_road_is_the_one_that_was_named_last(seed: int, order: list[boo
         if "same" in writer._road(axis):
             assert last == axis
         last = axis
+
+
+def test_the_sun_does_not_shine_at_night() -> None:
+    suns = dict.fromkeys(("day", "dark", "dark_lit", "dusk", "dawn"), 0)
+    for seed in range(4000):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for sentence, facts in sentences(report):
+            suns[report.crash.light] += "weather" in facts and bool(
+                re.search(r"(?<!not )\b(sunny|sunshine)\b", sentence)
+            )
+    assert suns.pop("day") > 50
+    assert not any(suns.values())
