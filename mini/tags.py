@@ -213,7 +213,7 @@ def drawn_actor(crash: Crash, actor: Actor, pose: str, faces: int, drawn: Set[st
     """Indices into `PICTURE` of what a vehicle drawn at a pose shows; `faces` is the bearing of its nose, `drawn` what
     the drawing as a whole shows."""
     names = [f"id={actor.id}", f"type={actor.kind}", f"pose={pose}", f"faces={faces % 8}"]
-    if actor.kind not in ("object", "pedestrian", "bicycle"):
+    if actor.vehicle:
         names += [f"heading={actor.heading}", f"lane={actor.lane}"]
         names += [f"maneuver={actor.maneuver}"] * (f"man.{actor.id}" in drawn)
     for contact in crash.contacts[:1] if pose == "contact" else ():

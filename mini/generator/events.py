@@ -207,7 +207,7 @@ class EventsMixin:
             options = told.THEN_REAR if later else told.IMPACT_REAR
         elif self.rng.random() < 0.06 and not later:
             options, areas = told.IMPACT_BARE, False
-        if self.crash.actors[contact.struck].kind in ("object", "pedestrian", "bicycle"):
+        if not self.crash.actors[contact.struck].vehicle:
             options = clauses(_FIXED)
         sides = ("left", "right", "left", "right") if options is told.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area)

@@ -251,7 +251,7 @@ def _unused(crash: Crash) -> list[tuple[int, int]]:
     swerves = any(a.maneuver in ("crossing_centerline", "overtaking", "u_turn", "backing") for a in crash.actors)
     if swerves or crash.layout == "merge" or crash.area_word == "highway":
         return []
-    wheels = [a for a in crash.actors if a.kind not in ("object", "pedestrian", "bicycle")]
+    wheels = [a for a in crash.actors if a.vehicle]
     came, left = {a.leg for a in wheels}, {a.out for a in wheels}
     only = {(leg.bearing + TURN_OF[use]) % 8 for leg in crash.legs for use in leg.turns_in if use in TURN_OF}
     axes = {leg.bearing % 4 for leg in crash.legs if leg.kind == "road" and leg.two_way}

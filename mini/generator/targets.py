@@ -127,10 +127,9 @@ class Targets:
 
     def _actor(self, index: int, actor: Actor) -> Json:
         path, known = ("actors", index), self.known
-        wheels = actor.kind not in ("object", "pedestrian", "bicycle")
         sure = f"man.{actor.id}" in known or actor.maneuver == "straight"
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
-        self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and wheels else ()))
+        self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and actor.vehicle else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
         self._unsure(path, *(("exit_road",) if not sure or f"heading.{actor.id}" not in known else ()))
         self._unsure(path, *(("lane",) if f"lane.{actor.id}" in known - self.sure else ()))
@@ -146,7 +145,7 @@ class Targets:
             "kind": actor.kind,
             "road": COMPASS[actor.leg],
             "direction": "forward",
-            "lane": self._lane(actor) if wheels else None,
+            "lane": self._lane(actor) if actor.vehicle else None,
             "exit_road": COMPASS[out] if out is not None else None,
             "maneuver": actor.maneuver,
             "speed_mph": self._speed(actor, sure),  # type: ignore[index]
@@ -161,7 +160,7 @@ class Targets:
         return actor.lane if only or f"lane.{actor.id}" in self.known else None
 
     def _speed(self, actor: Actor, sure: bool) -> int | None:
-        if actor.kind in ("object", "pedestrian", "bicycle"):
+        if not actor.vehicle:
             return None
         if actor.maneuver in ("stopped", "parked"):
             return 0 if sure else None

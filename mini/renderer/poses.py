@@ -7,10 +7,12 @@ its way, where the other, put against it and turned as far as its side demands, 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from random import Random
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mini.generator.world import Actor, Contact, Crash
 from mini.renderer.boxes import SIDE, SIZES, Pose, Size, half, overlap, wrap
@@ -48,6 +50,8 @@ class Stage:
         self.rng, self.crash, self.ground, self.rests = rng, crash, ground, rests
         self.sizes: list[Size] = [(scale * SIZES[a.kind][0], scale * SIZES[a.kind][1]) for a in crash.actors]
         self.ways = [self._parked(ground.way(a), a) if a.maneuver == "parked" else ground.way(a) for a in crash.actors]
+        self.faces = [headings(way) for way in self.ways]
+        """Radians along every way."""
         self.at: dict[int, Pose] = {}
         self.index: dict[int, int] = {}
 
@@ -63,11 +67,11 @@ class Stage:
             areas, most = _areas(contact), math.radians(self.rng.uniform(10, 40))
             along = self.sizes[placed][areas[placed] in ("front", "back")]
             slide = self.rng.uniform(-0.3, 0.3) * min(along, 2 * self.sizes[placed][1])  # of long ones as of cars
-            self._attach(placed, other, areas[placed], areas[other], slide, most)
-        found: list[Track] = []
+            self._attach(placed, other, areas, slide, most)
+        tracks: dict[int, Track] = {}
         for i in sorted(self.at, key=self._ahead):
-            found.append(self._track(i, found))
-        found.sort(key=lambda track: self.crash.actors.index(track.actor))
+            tracks[i] = self._track(i, tracks)
+        found = [tracks[i] for i in sorted(tracks)]
         for track in found:
             track.poses += self._after(track, [other for other in found if other is not track])
         return found
@@ -96,9 +100,12 @@ class Stage:
         self._stand(keeper, self._crossing(contact, keeper, other) if index is None else index)
 
     def _stand(self, actor: int, index: int) -> None:
-        way, h = self.ways[actor], headings(self.ways[actor])
-        self.at[actor] = Pose(*way[index], wrap(float(h[index]) + _turned(self.crash.actors[actor])))
+        self.at[actor] = self._on_way(actor, index)
         self.index[actor] = index
+
+    def _on_way(self, actor: int, index: int) -> Pose:
+        """An actor where its way has an index."""
+        return Pose(*self.ways[actor][index], wrap(float(self.faces[actor][index]) + _turned(self.crash.actors[actor])))
 
     def _along(self, keeper: int, other: int) -> int | None:
         """Index on the keeper's way at which it is met by one of its own road; None: where their ways cross."""
@@ -128,9 +135,9 @@ class Stage:
         off = {}
         for index in range(max(lowest, first - room), min(highest, first + room) + 1, 2):
             self._stand(keeper, index)
-            self._attach(keeper, other, areas[keeper], areas[other], slide=0.0, most=math.radians(25))
+            self._attach(keeper, other, areas, slide=0.0, most=math.radians(25))
             at = self.at.pop(other)
-            aside = float(np.hypot(way[:, 0] - at.x, way[:, 1] - at.y).min())
+            aside = float(_gaps(way, at).min())
             off[index] = aside + abs(wrap(at.heading - self._own_heading(other, at))) / ASKEW
         if not off:
             return min(max(first, lowest), highest)
@@ -150,49 +157,46 @@ class Stage:
         }.get(actor.maneuver)
         if amount is None:
             return
-        end = int((band.length - self.ground.setback(actor.leg, 1.0)) / STEP)
-        if met is not None:
-            end = int(np.hypot(*(way - met).T).argmin())
+        junction = int((band.length - self.ground.setback(actor.leg, 1.0)) / STEP)
+        end = junction if met is None else int(np.hypot(*(way - met).T).argmin())
         start = max(2, end - int(self.rng.uniform(11, 20) / STEP))
         self.ways[index] = shift(way, start, max(end, start + 8), amount)
+        self.faces[index] = headings(self.ways[index])
 
-    def _attach(self, placed: int, other: int, placed_area: str, other_area: str, slide: float, most: float) -> None:
-        """Put `other` against `placed`, sides touching: `slide` metres along that of `placed`, and turned from standing
-        square to it as its own way is, by at most so many radians."""
-        anchor, size, mine = self.at[placed], self.sizes[placed], self.sizes[other]
-        toward = anchor.heading + SIDE[placed_area]
-        px = anchor.x + half(size, placed_area) * math.cos(toward) - slide * math.sin(toward)
-        py = anchor.y + half(size, placed_area) * math.sin(toward) + slide * math.cos(toward)
+    def _attach(self, placed: int, other: int, areas: Mapping[int, str], slide: float, most: float) -> None:
+        """Put `other` against `placed`, touching with the sides of `areas`: `slide` metres along that of `placed`, and
+        turned from standing square to it as its own way is, by at most so many radians."""
+        anchor, out = self.at[placed], half(self.sizes[placed], areas[placed])
+        toward = anchor.heading + SIDE[areas[placed]]
+        px = anchor.x + out * math.cos(toward) - slide * math.sin(toward)
+        py = anchor.y + out * math.sin(toward) + slide * math.cos(toward)
         own = self._own_heading(other, anchor)
-        wanted = wrap(toward + math.pi - SIDE[other_area])
+        wanted = wrap(toward + math.pi - SIDE[areas[other]])
         off = wrap(own - wanted)
         heading = wrap(wanted + max(-most, min(most, off)))
-        normal = heading + SIDE[other_area]
-        reach = half(mine, other_area)
+        normal = heading + SIDE[areas[other]]
+        reach = half(self.sizes[other], areas[other])
         self.at[other] = Pose(px - reach * math.cos(normal), py - reach * math.sin(normal), heading)
         self.index[other] = self._nearest(other, self.at[other])
 
     def _nearest(self, actor: int, pose: Pose) -> int:
         """Index on an actor's way nearest to a pose."""
         way = self.ways[actor]
-        return min(max(int(np.hypot(way[:, 0] - pose.x, way[:, 1] - pose.y).argmin()), 4), len(way) - 3)
+        return min(max(int(_gaps(way, pose).argmin()), 4), len(way) - 3)
 
     def _own_heading(self, actor: int, pose: Pose) -> float:
         """Which way it faces where its way passes a pose."""
-        heading = float(headings(self.ways[actor])[self._nearest(actor, pose)])
-        return wrap(heading + _turned(self.crash.actors[actor]))
+        return self._on_way(actor, self._nearest(actor, pose)).heading
 
     # -------------------------------------------------------------- tracks
-    def _track(self, index: int, others: list[Track]) -> Track:
+    def _track(self, index: int, others: Mapping[int, Track]) -> Track:
         actor = self.crash.actors[index]
         track = Track(actor, self.sizes[index])
-        at = self.at[index]
-        still = actor.maneuver in ("stopped", "parked") or actor.kind == "object"
-        if not still:
-            track.poses += self._before(index, at, others)
+        if actor.maneuver not in ("stopped", "parked") and actor.kind != "object":
+            track.poses += self._before(index, others)
             track.ahead = self._unseen_turn(index)
         track.contact = len(track.poses)
-        track.poses.append(at)
+        track.poses.append(self.at[index])
         return track
 
     def _leader(self, index: int) -> int | None:
@@ -211,7 +215,7 @@ class Stage:
         actor, way = self.crash.actors[index], self.ways[index]
         if actor.maneuver not in ("turn_left", "turn_right", "u_turn") or len(way) < self.index[index] + 12:
             return None
-        h = headings(way)
+        h = self.faces[index]
         if abs(wrap(self.at[index].heading - float(h[2]))) > TURNED:
             return None
         rest: Points = way[self.index[index] + int(0.5 * self.sizes[index][0] / STEP) :]
@@ -221,13 +225,12 @@ class Stage:
         around = int(np.argmax(turned > min(math.radians(70), 0.9 * turned.max())))
         return rest[: around + int(6 / STEP)]  # and some metres of the road that it turns into
 
-    def _before(self, index: int, at: Pose, others: list[Track]) -> list[Pose]:
-        actor, rng = self.crash.actors[index], self.rng
-        if actor.kind in ("pedestrian", "bicycle"):
+    def _before(self, index: int, others: Mapping[int, Track]) -> list[Pose]:
+        at, rng = self.at[index], self.rng
+        if self.crash.actors[index].kind in ("pedestrian", "bicycle"):
             return [Pose(at.x - 6 * math.cos(at.heading), at.y - 6 * math.sin(at.heading), at.heading)]
-        way, h = self.ways[index], headings(self.ways[index])
         lead = self._leader(index)
-        ahead = next((t for t in others if lead is not None and t.actor is self.crash.actors[lead]), None)
+        ahead = others[lead] if lead is not None else None
         queues = lead is not None or any(self._leader(i) == index for i in self.at)
         found, gap = [], rng.uniform(*(CLOSE if queues else APART)) + self.sizes[index][0]
         place = self.index[index] - int(gap / STEP)
@@ -236,20 +239,19 @@ class Stage:
         for _ in range(1 if queues else rng.choice((1, 1, 1, 2, 2, 3))):
             if ahead is not None and ahead.contact:  # it came behind the one that it hits
                 first, between = ahead.poses[0], 0.6 * (ahead.size[0] + self.sizes[index][0])
-                nearest = int(np.hypot(way[:, 0] - first.x, way[:, 1] - first.y).argmin())
-                place = min(place, nearest - int(between / STEP))
-            while place >= 1 and self._hidden(index, Pose(*way[place], float(h[place])), others):
+                place = min(place, int(_gaps(self.ways[index], first).argmin()) - int(between / STEP))
+            while place >= 1 and self._hidden(index, self._on_way(index, place), others):
                 place -= 4
             if place < 1:
                 break
-            found.append(Pose(*way[place], wrap(float(h[place]) + _turned(actor))))
+            found.append(self._on_way(index, place))
             place -= int(gap * rng.uniform(1.0, 1.6) / STEP)
         return found[::-1]
 
-    def _hidden(self, index: int, pose: Pose, others: list[Track]) -> bool:
+    def _hidden(self, index: int, pose: Pose, others: Mapping[int, Track]) -> bool:
         """Whether a box would lie where another actor is hit or came from, so that nobody could tell them apart."""
         taken = [(at, self.sizes[other]) for other, at in self.at.items() if other != index]
-        taken += [(one, other.size) for other in others for one in other.poses[: other.contact]]
+        taken += [(one, other.size) for other in others.values() for one in other.poses[: other.contact]]
         return any(overlap(pose, self.sizes[index], one, size) for one, size in taken)
 
     def _after(self, track: Track, others: list[Track]) -> list[Pose]:
@@ -257,8 +259,7 @@ class Stage:
         rng, at, found = self.rng, track.poses[track.contact], []
         if not track.actor.vehicle or rng.random() >= self.rests:
             return []
-        away, turn = self._pushed(track, others), rng.uniform(-2.5, 2.5)
-        turn *= min(1.0, 5.5 / track.size[0])
+        away, turn = self._pushed(track, others), rng.uniform(-2.5, 2.5) * min(1.0, 5.5 / track.size[0])
         taken = [(one, other.size) for other in others for one in other.poses]
         taken += [(one, track.size) for one in track.poses[: track.contact]]
         for k in range(rng.choice((1, 1, 2, 3))):
@@ -281,6 +282,12 @@ class Stage:
         if math.hypot(x, y) < 0.4:
             return track.poses[track.contact].heading + self.rng.uniform(-1.2, 1.2)
         return math.atan2(y, x) + self.rng.uniform(-0.6, 0.6)
+
+
+def _gaps(way: Points, pose: Pose) -> NDArray[np.float64]:
+    """Metres from every point of a way to a pose."""
+    gaps: NDArray[np.float64] = np.hypot(way[:, 0] - pose.x, way[:, 1] - pose.y)
+    return gaps
 
 
 def _turned(actor: Actor) -> float:

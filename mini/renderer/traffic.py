@@ -100,10 +100,15 @@ def _color(rng: Random, track: Track, labels: bool) -> Color:
 
 def _intended(pen: Pen, way: Points, color: Color) -> None:
     """A dashed arrow where one would have turned, in its color."""
-    width, ink = 1 if pen.scale < 6 else 2, BLACK if sum(color) > 600 else color
+    (width, head), ink = _stroke(pen), BLACK if sum(color) > 600 else color
     pen.line(way, width=width, color=ink, dash=1.5, gap=1.5)
     a, b = pen.px(way[-3:])[[0, -1]]
-    pen.head(b, math.atan2(*(b - a)[::-1]), max(6.0, 1.1 * pen.scale), ink)
+    pen.head(b, math.atan2(*(b - a)[::-1]), head, ink)
+
+
+def _stroke(pen: Pen) -> tuple[int, float]:
+    """Pixels of the shaft and of the head of an arrow that tells a way."""
+    return 1 if pen.scale < 6 else 2, max(6.0, 1.1 * pen.scale)
 
 
 def _link(pen: Pen, track: Track, index: int, others: list[Track]) -> None:
@@ -119,4 +124,5 @@ def _link(pen: Pen, track: Track, index: int, others: list[Track]) -> None:
     shaft = Pose((before.x + after.x) / 2, (before.y + after.y) / 2, math.atan2(after.y - before.y, after.x - before.x))
     taken = [(pose, other.size) for other in others if other is not track for pose in other.poses[: other.contact + 1]]
     if not any(overlap(shaft, (length, 0.4), pose, size) for pose, size in taken):
-        pen.arrow(a + u * margin, b - u * margin, width=1 if pen.scale < 6 else 2, head=max(6.0, 1.1 * pen.scale))
+        width, head = _stroke(pen)
+        pen.arrow(a + u * margin, b - u * margin, width=width, head=head)
