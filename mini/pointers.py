@@ -39,30 +39,31 @@ def sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
 
 def _noted(row: Row, report: Report, path: tuple[Any, ...], sentences: Sequence[int]) -> list[int]:
     """Places of the noted phrases that tell the value at a path, within the `sentences` (their ends) that tell it."""
-    names = _notes(report, path)
-    if not names:
+    kinds = [{NOTES[name] for name in names} for names in _notes(report, path)]
+    if not kinds:
         return []
-    wanted, ends = {NOTES[name] for name in names}, [at for at, _ in row.text_tags]
-    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if wanted <= set(said)]
+    ends = [at for at, _ in row.text_tags]
+    placed = [(at, ends[bisect_left(ends, at)]) for at, said in row.notes if any(names <= set(said) for names in kinds)]
     return [at for at, end in placed if end in sentences and at < end]
 
 
-def _notes(report: Report, path: tuple[Any, ...]) -> tuple[str, ...]:
-    """Names that all stand behind a phrase that tells a value: an item of a list of lanes, a side; () for others.
+def _notes(report: Report, path: tuple[Any, ...]) -> list[tuple[str, ...]]:
+    """Names that all stand behind a phrase that tells a value, of every kind of phrase that may: an item of a list of
+    lanes, a road with as many either way, a side.
 
     Lanes that lead away from the hub are those that lead straight towards it on the other side.
     """
     key = str(path[-1])
-    if path[0] == "legs" and len(path) > 2 and path[2] in ("lanes_in", "turns_in"):
-        return (f"leg={report.crash.legs[path[1]].bearing}",)
-    if path[0] == "legs" and key == "lanes_out":
-        return f"leg={(report.crash.legs[path[1]].bearing + 4) % 8}", "use=through"
+    if path[0] == "legs" and len(path) > 2 and path[2] in ("lanes_in", "lanes_out", "turns_in"):
+        bearing = report.crash.legs[path[1]].bearing
+        items = (f"leg={(bearing + 4) % 8}", "use=through") if key == "lanes_out" else (f"leg={bearing}",)
+        return [items, *([(f"axis={bearing % 4}",)] if path[2] != "turns_in" else [])]
     if path[0] == "contacts" and key.endswith("_area") and path[1] < len(report.crash.contacts):
         contact = report.crash.contacts[path[1]]
         actor = report.crash.actors[getattr(contact, key.removesuffix("_area"))].id
         name = f"{actor}.area={getattr(contact, key)}"
-        return (name,) if name in NOTES else ()
-    return ()
+        return [(name,)] if name in NOTES else []
+    return []
 
 
 def _closed(path: tuple[Any, ...], report: Report) -> bool:

@@ -19,7 +19,7 @@ from PIL import Image, ImageDraw
 
 from mini import answers, picture, pointers, tags
 from mini.batch import Batch
-from mini.generator.notes import NOTES
+from mini.generator.notes import ASKED, NOTES
 from mini.generator.report import Report
 from mini.tokens import IMAGE, PAD, ROAD, SCENARIO, VISION_END, VISION_START, Coder
 
@@ -84,10 +84,12 @@ def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
     for end, facts in report.sentences:
         row.text_tags.append((int(np.searchsorted(behind, end)), tags.told(report.crash, facts, before)))
         before |= facts
+    notes: dict[int, set[int]] = {}  # an item may end within the last token of its road: "lanes)"
     for end, names in report.notes:
         at = int(np.searchsorted(behind, end))
         at -= bool(at and behind[at] > end)  # its last word may be left out
-        row.notes.append((at, [NOTES[name] for name in names]))
+        notes.setdefault(at, set()).update(NOTES[name] for name in names)
+    row.notes = [(at, sorted(said)) for at, said in notes.items()]
 
 
 def tag_picture(row: Row, image: Image.Image, shapes: Sequence[Shape], view: int = 0) -> None:
@@ -184,7 +186,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         sources[n, found] = True
     seen = _pictured(rows)
     ends, told = _asked([row.text_tags for row in rows], len(tags.TEXT), longest)
-    phrases, noted = _asked([row.notes for row in rows], len(NOTES), longest)
+    phrases, noted = _asked([row.notes for row in rows], ASKED, longest)
     return Batch(
         ids=torch.from_numpy(ids),
         positions=torch.from_numpy(place),
@@ -205,11 +207,11 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
 def _asked(
     found: Sequence[Sequence[tuple[int, list[int]]]], kinds: int, longest: int
 ) -> tuple[torch.Tensor, torch.Tensor]:
-    """Flat places of the tagged tokens of every row, (S,), and the tags of each, (S, kinds)."""
+    """Flat places of the tagged tokens of every row, (S,), and which of the first `kinds` tags each has, (S, kinds)."""
     places = [i * longest + at for i, row in enumerate(found) for at, _ in row]
     told = np.zeros((len(places), kinds), np.float32)
     for n, said in enumerate(said for row in found for _, said in row):
-        told[n, said] = 1
+        told[n, [tag for tag in said if tag < kinds]] = 1
     return torch.tensor(places, dtype=torch.int64), torch.from_numpy(told)
 
 

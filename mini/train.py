@@ -27,7 +27,7 @@ from mini.batch import Batch, Lesson, Taggers
 from mini.export import export
 from mini.eye import Eye
 from mini.feed import Feed, moment
-from mini.generator.notes import NOTES
+from mini.generator.notes import ASKED
 from mini.generator.report import make_report
 from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
@@ -86,8 +86,8 @@ class Trainer:
             self.eye.requires_grad_(False)
             self.forward.vision.requires_grad_(False)
         self.answer_tokens = answer_tokens(self.coder)
-        asked = (len(some) for some in (tags.TEXT, NOTES, tags.PICTURE))
-        self.taggers = Taggers(self.model.config.text_config.hidden_size, *asked)
+        hidden = self.model.config.text_config.hidden_size
+        self.taggers = Taggers(hidden, len(tags.TEXT), ASKED, len(tags.PICTURE))
         self.taggers.to(options.device)
         others = {"heads": self.taggers, "eye": self.eye}
         self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)

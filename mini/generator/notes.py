@@ -1,4 +1,4 @@
-"""Notes behind phrases: who a mention means, whose side a word names, which lanes an item of a list tells.
+"""Notes behind phrases: who a mention means, whose side a word names, which lanes an item of a list or a road has.
 
 While a report is written, marks stand behind the words of such phrases; taken out again they say where each ends and
 what it tells, in whatever sentence it stands. A list tells the lanes of an approach item by item, and a clause that
@@ -18,15 +18,22 @@ IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
 USES = ("left", "through", "right")
 MOST = 8
 """Lanes that an item can tell."""
+PLACES = ("first", "second")
+"""Of roads whose lanes a report tells, in its order."""
 
 
 def _names() -> list[str]:
     names = [f"leg={b}" for b in range(8)] + [f"use={use}" for use in USES] + [f"lanes={n}" for n in range(MOST + 1)]
     names += [f"id={i}" for i in IDS] + [f"{i}.area={a}" for i in IDS if i.startswith("V") for a in AREAS]
-    return names + [f"heading={b}" for b in range(8)]
+    names += [f"heading={b}" for b in range(8)]
+    return names + [f"road={place}" for place in PLACES] + [f"each={n}" for n in range(1, MOST + 1)] + ["ways=one"]
 
 
-NOTES = {name: index for index, name in enumerate(_names())}
+_ASKED = _names()
+ASKED = len(_ASKED)
+"""So many notes, the first, are asked at the ends of their phrases. The others only say where a value is told: how a
+road lies may stand in a later sentence."""
+NOTES = {name: index for index, name in enumerate([*_ASKED, *(f"axis={a}" for a in range(4))])}
 _FIRST = 0xF0000
 """Private-use letters from here on are the marks, one for every name of `NOTES`."""
 _NAMES = {chr(_FIRST + index): name for name, index in NOTES.items()}
@@ -51,6 +58,15 @@ def item(text: str, leg: int, use: str, count: int) -> str:
     """An item of a list with its note: so many lanes with one use, on the way of traffic from the leg of a bearing,
     whether there is such a leg or not; "through" where no use is said."""
     return noted(text, (f"leg={leg}", f"use={use}", f"lanes={min(count, MOST)}", f"heading={(leg + 4) % 8}"))
+
+
+def road(text: str, place: int, axis: int, each: int, one_way: bool) -> str:
+    """A phrase for a road with its note: the first or second (`place`, from 0) whose lanes a report tells; `each`:
+    lanes of each way in which it is driven, 0 where they differ or its phrase leaves them open."""
+    names = [f"road={PLACES[place]}"]
+    if each:
+        names += [f"each={min(each, MOST)}", f"axis={axis}"] + ["ways=one"] * one_way
+    return noted(text, names)
 
 
 def name_of(letter: str) -> str | None:

@@ -41,6 +41,7 @@ class RoadsMixin:
     stated: set[str]
     roads_left: bool
     spoken_of: int | None
+    counted: list[int]
 
     def _legs_on(self, axis: int) -> list[Leg]:
         return [leg for leg in self.crash.legs if leg.bearing % 4 == axis % 4]
@@ -79,10 +80,19 @@ class RoadsMixin:
         elif PARTED in text or _DIVIDED.search(text):
             self.told |= {median, f"{VAGUE}.{median}"}
         text = text.replace(NAMED, "").replace(PARTED, "")
-        if bare or self.held_out or axis % 4 == self._first or rng.random() < 0.5:
-            return text
-        others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
-        return f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
+        if not (bare or self.held_out or axis % 4 == self._first or rng.random() < 0.75):
+            others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
+            text = f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
+        return text if bare else self._noted(text, leg, legs, told)
+
+    def _noted(self, text: str, leg: Leg, legs: list[Leg], told: bool) -> str:
+        """A phrase for a road with its note; `told`: whether it tells the lanes for sure."""
+        axis = leg.bearing % 4
+        if axis not in self.counted:
+            self.counted.append(axis)
+        ways = {lanes for lanes in (leg.lanes_in, leg.lanes_out) if lanes}
+        even = told and len(ways) == 1 and not any(side.turns_in for side in legs)
+        return notes.road(text, self.counted.index(axis), axis, max(ways) if even else 0, not leg.two_way)
 
     def _again(self, axis: int) -> str:
         """A road of which no more is told: "the same road" is the one that was named last."""

@@ -61,6 +61,8 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         """Who was named since the block on a vehicle began: pronouns of its driver say whom they mean."""
         self.spoken_of: int | None = None
         """Axis of the road that was named last."""
+        self.counted: list[int] = []
+        """Axes of the roads whose lanes were told, in the order of the text."""
         self.of_road = False
         """Whether the sentence is of the road: then a direction is that of its traffic, and of no vehicle."""
         self.waited = self.junction_named = False
