@@ -14,7 +14,7 @@ from typing import Any
 from mini.answers import AREAS, CONTROLS, KINDS, LIGHTS, MANEUVERS, MEDIANS, SURFACES, TURNS, WEATHERS
 from mini.generator.grammar import HINT
 from mini.generator.notes import IDS
-from mini.generator.settled import FROM_LEFT, STEM, VAGUE, driven, lanes_beside
+from mini.generator.settled import FROM_LEFT, STEM, VAGUE, driven, lanes_beside, led_to
 from mini.generator.world import Actor, Crash, Leg
 
 BEARINGS = range(8)
@@ -89,7 +89,9 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
         elif key in ("layout", "control", "curve"):
             names += [name for leg in crash.legs for name in _of_leg(key, leg)]
         elif key in ("lanes", "turns", "median", "limit"):
-            names += [n for leg in crash.legs if leg.bearing % 4 == int(rest) for n in _of_leg(key, leg)]
+            legs = [leg for leg in crash.legs if leg.bearing % 4 == int(rest)]
+            names += [name for leg in legs for name in _of_leg(key, leg)]
+            names += [f"leg={way}" for leg in legs if key == "turns" for way in led_to(leg)]
         elif key == "ways":
             names += [name for leg in crash.legs if leg.bearing % 4 == int(rest) for name in _closed(leg)]
         elif key in ("contact", "areas"):

@@ -12,12 +12,18 @@ from typing import Any
 from mini.generator import clauses_motion as motion
 from mini.generator.grammar import Told
 from mini.generator.mentions import Mentions
+from mini.generator.settled import STEM
 from mini.generator.world import Actor, Crash
 
-GOES_ON = re.compile(r"straight|no turn|no maneuver|normal driving|joined|mixed with", re.IGNORECASE)
+GOES_ON = re.compile(
+    r"straight|no turn|no maneuver|(?:normal|ordinary) (?:driving|travel)|joined|mixed with", re.IGNORECASE
+)
 """Clauses of one that stays where it drives."""
 LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
 """How maneuvers begin of one that does not."""
+
+UNSAID = 0.25
+"""Share of those on the leg that ends at a junction of whom no word says which way they drove."""
 
 
 class ApproachMixin:
@@ -44,7 +50,7 @@ class ApproachMixin:
         order = [i for i, a in enumerate(actors) if a.vehicle]
         if self.rng.random() < 0.12:
             self.rng.shuffle(order)
-        if not self.ciren and len(order) > 1 and self.rng.random() < 0.04:
+        if not self.ciren and len(order) > 1 and self.rng.random() < (0.04 if self.held_out else 0.08):
             order.pop()
         out: list[str] = []
         if not self.ciren and not self.held_out and self.rng.random() < 0.08:
@@ -80,10 +86,19 @@ class ApproachMixin:
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
             self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
             return self.say(motion.APPROACH_CURVE, index, ahead)
+        alone = [leg.bearing for leg in self.crash.stems] == [actor.leg]
+        if alone and not self.held_out and self.rng.random() < UNSAID:
+            return self._from_stem(actor, index, ahead, before)
         options = motion.PRESENTED["moving"] if presented else motion.APPROACH
         if not self.held_out and actor.maneuver.startswith(LEAVES):
             options = [clause for clause in options if not GOES_ON.search(clause)]
         return self.say(options, index, ahead, appr=lambda: self._approaching(index, bool(before)))
+
+    def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
+        """One on the leg that ends at the junction, without a word of the compass."""
+        clause = self.fitting(motion.FROM_STEM.get(self.crash.layout, motion.APPROACH), actor)
+        self.told |= {f"heading.{actor.id}"} if STEM in self.told else set()
+        return self.say([self.spoken(clause)], index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _pauses(self, index: int) -> str:
         """ "waiting" or "slowing" where one who is about to cross or turn is said to have done so; else "".

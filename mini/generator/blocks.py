@@ -13,6 +13,7 @@ from typing import Any
 from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
+from mini.generator.events import OF_TWO
 from mini.generator.grammar import Told, clause_of, families, fill
 from mini.generator.world import WORDS, Actor, Contact, Crash
 
@@ -135,7 +136,7 @@ class BlocksMixin:
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
             clear = self._clear(GROUPS[group], v)
-            if clear := [c for c in clear if others or ("{W}" not in c and "Both" not in c)]:
+            if clear := [c for c in clear if others or not OF_TWO.search(c)]:
                 out.append(self.say(clear, v, w, **self._person(v)))
         return out
 
@@ -185,8 +186,14 @@ class BlocksMixin:
             self.told |= {f"man.{self.id_of(other)}"}
         elif key == "crossing" or (index == self.who[0] and erring.maneuver in TELLS):
             self.told |= {f"man.{erring.id}"}
+        elif index == self.who[1] and self.crash.config in ("head_on", "lane_change"):  # from where, over what
+            self.told |= {f"man.{erring.id}"}
+            self.told |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.told else set()
+        options = said.EVENT[key]
+        if key == "from_side_left" and erring.out == self.crash.actors[index].heading and not self.held_out:
+            options = [phrase.replace("opposite direction", "same direction") for phrase in options]
         frames = self._clear(said.EVENT_FRAMES, index)
-        return self.say(frames, index, other, code=self._phrase(said.EVENT[key], index, other))
+        return self.say(frames, index, other, code=self._phrase(options, index, other))
 
     def _statements(self, index: int) -> list[str]:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""

@@ -62,13 +62,36 @@ With [only the driver aboard|one passenger aboard|no passengers], {Vf} was {xb} 
 """)
 """{appr} may be empty."""
 
+FROM_STEM = {
+    "t": clauses("""
+{Vf} was on the [side street|side road|street that ends there]{appr}
+{Vf} [came|was coming|drove] [up|along|on] the [side street|side road|minor road]{appr}
+The driver of {Vf} [was using|drove along|was on] the [road that ends here|side street|minor road]{appr}
+{Vf} [had come|came] down the [terminating|ending] road{appr}
+On the [side street|side road|stem of the T] was {Vf}{appr}
+{Vf} was [leaving|coming out of|about to leave] the [side street|side road]
+Out of the [side street|minor road] [came|drove] {Vf}
+The one on the [side street|side road|road that ends there] was {Vf}
+"""),
+    "driveway": clauses("""
+{Vf} was [leaving|coming out of|about to leave|at the end of] the driveway
+The driver of {Vf} was [leaving|pulling out of|exiting] the [driveway|private drive]
+{Vf} [came|drove|pulled] out of the driveway
+[From|Out of] the driveway [came|drove] {Vf}
+{Vf} was in the driveway, [about to enter|nearing|facing] the road
+{Vf} had been in the driveway and [was about to leave it|was driven out of it]
+The one in the driveway was {Vf}
+"""),
+}
+"""Of one on the leg that ends at the junction: where that leg is known, so is which way it drove. They only train."""
+
 APPROACH_STOPPED = clauses("""
 The driver of {Vf} was stopped {xb} [in the {lane}|]{why}
 {Vf} was [waiting|at a stop] in the {lane}, {xb}{why}
 {Vf} had been traveling {dir} and was now stopped{why}
 {Vf} came to a [complete |full |]stop [in the {lane}|] [while {xb}|facing {dir}]{why}
 {Vf} was stopped {xb} in the {lane}{why}
-{Vf} was stopped [facing {dir}|in the {xb} lane][ of {road}|]{why}
+{Vf} was stopped [facing {dir}|{xb} in the {lane}][ of {road}|]{why}
 {Vf} was stopped in the {lane} of {road}, facing {dir}{why}
 {Vf} had [stopped|come to a stop] [in the {lane}|] [while traveling {dir}|facing {dir}]{why}
 {Vf} was traveling {dir} [in the {lane}|on {road}] and [had stopped|came to a stop|was stopped]{why}
@@ -90,7 +113,7 @@ On {road}, {Vf} was stopped [in the {lane} |]facing {dir}{why}
 {Vf} had slowed to a stop [in the {lane} |]while [traveling|heading] {dir}{why}
 After traveling {dir} [on {road}|in the {lane}], {Vf} [stopped|had stopped|came to a stop]{why}
 While {xb} [in the {lane}|on {road}], {Vf} [had to stop|stopped|was forced to stop]{why}
-{Vf} remained stopped [in the {xb} lane|on {road} while {xb}]{why}
+{Vf} remained stopped [in the {lane} while {xb}|on {road} while {xb}]{why}
 The {lane} was occupied by {Vf}, [which was |]stopped facing {dir}{why}
 ~{Vf}, pointed {dir}, stood still [in the {lane}|on {road}]{why}
 ~{Vf} sat [motionless|at rest] in the {lane}, facing {dir}{why}
@@ -98,7 +121,7 @@ The {lane} was occupied by {Vf}, [which was |]stopped facing {dir}{why}
 
 APPROACH_WAITING = clauses("""
 {Vf} was stopped {xb} [in the {lane} |]{why}
-{Vf} was stopped [facing {dir}|in the {xb} lane] {why}
+{Vf} was stopped [facing {dir}|{xb} in the {lane}] {why}
 {Vf} had stopped [in the {lane} |]facing {dir}{why}
 {Vf} was {xb} and came to a stop [in the {lane} |]{why}
 {Vf} was traveling {dir} [in the {lane} |on {road} |]and stopped{why}
@@ -120,7 +143,7 @@ PRESENTED = {
 """),
     "stopped": clauses("""
 {Vi} [that was |which was |]stopped {xb} [in the {lane}|on {road}]{why}
-{Vi} stopped [facing {dir} |]in the {xb} lane{why}
+{Vi} stopped facing {dir} in the {lane}{why}
 {Vi}. [It|This vehicle] was stopped [facing {dir} in the {lane}|{xb} in the {lane}|{xb} on {road}]{why}
 {Vi} [and was|, which was] stopped [in the {lane}, facing {dir}|while {xb}]{why}
 ~{Vi} at a standstill in the {lane}, facing {dir}{why}

@@ -223,3 +223,20 @@ At that [point|time|moment], {V} [started|drove|went] straight across[ the path 
 """),
 }
 """What one does that has stood or slowed: it goes. Trains only."""
+
+ONWARD = clauses("""
+{V} turned {turn} to [go|head|travel] {outdir}, and {W} was [close|near|upon it]
+In order to go {outdir}, {V} [turned {turn}|made a {turn} turn|swung {turn}] [in front of|ahead of] {W}
+{V} [turned|swung] {turn} into the {outxb} lane[s|] [in front of|ahead of|before] {W}
+The driver of {V} wanted to go {outdir} and turned {turn} [in front of|ahead of] {W}
+{V} was turning {turn} [for|toward] the {outxb} lane[s|] when {W} [came|arrived|appeared]
+Meaning to [proceed|continue] {outdir}, {V} [turned {turn}|took a {turn}] without regard for {W}
+The {turn} turn of {V} onto the {outxb} side [cut off|hindered] {W}
+{V} [started|began] its {turn} turn; {outdir} was where its driver wanted to go
+By a {turn} turn {V} was to become {outxb}, but {W} was [too near|in the way]
+{V} was in a {turn} turn that would have taken it {outdir} when {W} [came|arrived]
+Turning {turn} so as to travel {outdir}, {V} [got in the way of|hindered] {W}
+{V} made a {turn} turn onto the {outxb} roadway and [did not see|overlooked] {W}
+"""
+)  # fmt: skip
+"""One that turns, and where it meant to go: with the turn that tells where it came from. They only train."""

@@ -14,7 +14,7 @@ from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
 from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
-from mini.generator.clauses_turning import PROCEEDS
+from mini.generator.clauses_turning import ONWARD, PROCEEDS
 from mini.generator.grammar import Told, choose, clause_of, clauses, families, fill
 from mini.generator.world import Actor, Contact, Crash
 
@@ -49,7 +49,7 @@ MUTUAL = re.compile(
 )
 """Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
 OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
-"""Clauses of rest that need a second vehicle."""
+"""Clauses that need a second vehicle."""
 DRIFTS = re.compile(
     r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|\bslip(?:ped|s)? right|came over|bore (?:off |curb|right)"
     r"|\beas(?:ed|ing)|sagged|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|deviat"
@@ -58,7 +58,12 @@ DRIFTS = re.compile(
     re.IGNORECASE,
 )
 """Clauses of one that hits a parked vehicle which say that it left its lane."""
+CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
+BODIES = re.compile(r"\b(?:doors?|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
+"""Parts that only motorcycles have, and that they have not."""
 TRIES = 40
+BOUND = 0.12
+"""Share of those who turn of whom it is told which way they meant to go on."""
 YIELDING = 0.25
 """Share of those who stand or slow for a turn of whom the traffic that they wait for is told, with its heading."""
 
@@ -130,6 +135,9 @@ class EventsMixin:
             return CRITICAL[key]
         if self.crash.layout == "driveway" and key == "left_opposite" and self.rng.random() < 0.5:
             return turnoffs.INTO
+        turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != "driveway")
+        if turns and self.rng.random() < BOUND:
+            return ONWARD
         if self.waited and self.rng.random() < 0.5:
             return PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
@@ -160,6 +168,7 @@ class EventsMixin:
         if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
             return self.spoken(self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key], actor))
         if key in ("sign", "light"):
+            self.told |= turnoffs.met(key, self.crash)
             return self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out))
         return self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves))
 
@@ -208,17 +217,18 @@ class EventsMixin:
         elif self.rng.random() < 0.06 and not later:
             options, areas = told.IMPACT_BARE, False
         if not self.crash.actors[contact.struck].vehicle:
-            options = clauses(_FIXED)
+            options, areas = clauses(_FIXED), True
         sides = ("left", "right", "left", "right") if options is told.SWIPE else None
-        sa = contact.striker_area if sides else self._area(contact.striker_area)
-        ta = contact.struck_area if sides else self._area(contact.struck_area)
+        striker, struck = (self.crash.actors[index].kind for index in (contact.striker, contact.struck))
+        sa = contact.striker_area if sides else self._area(contact.striker_area, striker)
+        ta = contact.struck_area if sides else self._area(contact.struck_area, struck)
         clause = self.rng.choice(self._framed(options))
         head_first = contact.striker_area == "front" != contact.struck_area
         named = "{S}" in clause or "{T}" in clause
         if (named and not MUTUAL.search(clause)) or (areas and head_first):
             self.told.add(f"contact.{number}")
-        walks = self.crash.actors[contact.struck].kind in ("pedestrian", "bicycle")  # no clause tells its side
-        self.told |= {f"areas.{number}"} if areas and not walks else set()
+        walks = struck in ("pedestrian", "bicycle")  # no clause tells its side
+        self.told |= {f"{'side' if walks else 'areas'}.{number}"} if areas else set()
         touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
         return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
 
@@ -228,13 +238,17 @@ class EventsMixin:
         if self.held_out:
             return options
         lead = f"{choose(self.rng, self.rng.choice(told.LEADS))}, " if self.rng.random() < 0.15 else ""
-        tail = choose(self.rng, self.rng.choice(told.TAILS)) if self.rng.random() < 0.12 else ""
+        tail = f" {choose(self.rng, self.rng.choice(told.TAILS))}" if self.rng.random() < 0.12 else ""
         if not lead:
             return [clause + tail for clause in options]
         return [f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith("[")]
 
-    def _area(self, area: str) -> str:
-        return clause_of(self.rng, told.AREA[area], self.held_out)
+    def _area(self, area: str, kind: str) -> str:
+        options = told.AREA[area]
+        if not self.held_out:
+            strange = BODIES if kind == "motorcycle" else CYCLES
+            options = [part for part in families(options, False) if not strange.search(part)]
+        return clause_of(self.rng, options, self.held_out)
 
 
 _FIXED = """

@@ -7,7 +7,7 @@ from typing import Any
 from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.road_phrases import RoadsMixin
-from mini.generator.settled import STEM
+from mini.generator.settled import STEM, VAGUE
 
 
 class JunctionMixin(RoadsMixin):
@@ -41,14 +41,16 @@ class JunctionMixin(RoadsMixin):
         return self._wide(text)
 
     def _wide(self, junction: str) -> str:
-        """`a five-lane T-intersection`, which counts the lanes of the main road."""
+        """`a five-lane T-intersection`, which counts the lanes of the main road, not which way they lead."""
         axis = self.crash.main % 4
-        leg = self._legs_on(axis)[0]
-        if leg.turns_in or leg.lanes_in != leg.lanes_out:
+        legs = self._legs_on(axis)
+        leg = legs[0]
+        if any(side.turns_in for side in legs) or not leg.two_way:
             return junction
-        self.told |= {f"lanes.{axis}"}
-        self.stated.add(f"lanes.{axis}")
-        return f"a {words.NUMBERS[2 * leg.lanes_in + leg.twltl]}-lane {junction.partition(' ')[2]}"
+        lanes = f"lanes.{axis}"
+        self.told |= {lanes} if leg.lanes_in == leg.lanes_out else {lanes, f"{VAGUE}.{lanes}"}
+        self.stated.add(lanes)
+        return f"a {words.NUMBERS[leg.lanes_in + leg.lanes_out + leg.twltl]}-lane {junction.partition(' ')[2]}"
 
     # -------------------------------------------------------------- control
     def _control_kind(self) -> str:

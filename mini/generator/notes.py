@@ -102,7 +102,8 @@ class Slots:
         self.areas = areas
         own = dict.fromkeys(_ONE, one) | dict.fromkeys(_OTHER, other)
         self.actors = {slot: actor for slot, actor in own.items() if slot in areas or slot not in given}
-        headings = {"dir": one.heading, "xb": one.heading, "from": one.heading, "opp": one.leg}
+        headings: dict[str, int | None] = {"dir": one.heading, "xb": one.heading, "from": one.heading, "opp": one.leg}
+        headings |= {"outdir": one.out, "outxb": one.out}
         self.headings = {slot: heading for slot, heading in headings.items() if slot not in given}
         self.joined = {a for a in areas if re.search(rf"\{{{a}\}}[^{{}}.;,]{{0,16}}\{{{OWNERS[a]}\}}", clause)}
         """Sides whose owner follows them ("the {sa} of {S}")."""

@@ -101,6 +101,8 @@ def control(rng: Random, legs: list[Leg], main: int) -> None:
     kind = pick(rng, weights)
     for leg in legs:
         minor = leg.bearing % 4 != main % 4
+        if not leg.lanes_in:
+            continue
         if kind in ("signal", "flashing") or (kind == "all"):
             leg.control = "stop" if kind == "all" else kind
         elif kind in ("stop", "yield") and minor:

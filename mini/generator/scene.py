@@ -28,8 +28,12 @@ TIMES = {
 }
 """Times of day that agree with the light."""
 IN_LANES = re.compile(r"\{xb\} lane")
-SUN = re.compile(r"(?<!not )\b(?:sunny|sunshine|sun|sunlit|blue sk(?:y|ies))\b", re.IGNORECASE)
-SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*\{road(?:bare)?\}")
+SUN = re.compile(
+    r"(?<!not )\b(?:sunny|sunshine|sun|sunlit|blue sk(?:y|ies)|sk(?:y|ies) (?:\w+ )?blue)\b", re.IGNORECASE
+)
+"""Words that tell both daylight and a clear sky."""
+BRIGHT = re.compile(rf"{SUN.pattern}|\bbright", re.IGNORECASE)
+SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*(?:\{road(?:bare)?\}|(?:on|using)\]? a )")
 """Clauses that put everybody on one road."""
 SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b", re.IGNORECASE)
 """Openings that speak of two vehicles."""
@@ -257,6 +261,11 @@ class SceneMixin(JunctionMixin):
         }[slot]
         self.told.add(key)
         options = table[getattr(self.crash, key)]
-        if slot == "wx" and self.crash.light != "day" and not self.held_out:
-            options = [words for words in families(options, False) if not SUN.search(words)]
-        return clause_of(self.rng, options, self.held_out)
+        if key == "surface" or self.held_out:
+            return clause_of(self.rng, options, self.held_out)
+        if self.crash.light != "day" or self.crash.weather != "clear":
+            unseen = SUN if self.crash.light == "day" else BRIGHT
+            options = [words for words in families(options, False) if not unseen.search(words)]
+        text = clause_of(self.rng, options, False)
+        self.told |= {"light", "weather"} if SUN.search(text) else set()
+        return text

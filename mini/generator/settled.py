@@ -116,7 +116,7 @@ def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     if crash.layout in ("plain", "four"):
         return tied or bool(_headed(crash.actors, told))
     found = driven(crash.actors, told)
-    found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in _led_to(own)}
+    found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in led_to(own)}
     stem = {leg.bearing for leg in crash.stems}
     if stem <= found and crash.layout != "t":
         return tied
@@ -135,6 +135,6 @@ def driven(actors: Iterable[Actor], told: Set[str]) -> set[int]:
     return {actor.leg for actor in headed} | {out for out in outs if out is not None}
 
 
-def _led_to(leg: Leg) -> list[int]:
+def led_to(leg: Leg) -> list[int]:
     """Legs that the lanes of one lead to."""
     return [(leg.bearing + TURN_OF[way]) % 8 for use in leg.turns_in for way in use.split("_") if way in TURN_OF]

@@ -74,7 +74,9 @@ class Targets:
             self.weights[(*path, "curve")] = RARE
         self._unsure(path, *(("median",) if f"median.{axis}" not in self.sure else ()))
         self._unsure(path, *(() if one_way or f"lanes.{axis}" in self.sure else ("center_turn_lane",)))
-        self._unsure(path, *(("turns_in",) if f"turns.{axis}" in self.known - self.sure else ()))
+        named = any(f"lane.{a.id}" in self.known and self._turning(leg, a) for a in self.crash.actors)
+        part = f"turns.{axis}" in self.known - self.sure or (named and not turns)
+        self._unsure(path, *(("turns_in",) if part else ()))
         self._unsure(path, *(("speed_limit_mph",) if f"limit.{axis}" in self.known - self.sure else ()))
         if f"limit.{axis}" in self.sure and leg.limit:
             self.weights[(*path, "speed_limit_mph")] = RARE
@@ -90,6 +92,12 @@ class Targets:
             "curve": leg.curve if "curve" in self.known else "none",
             "speed_limit_mph": leg.limit if f"limit.{axis}" in self.known else None,
         }
+
+    @staticmethod
+    def _turning(leg: Leg, actor: Actor) -> bool:
+        """Whether an actor came to a leg in a lane that is for turning only, which its name tells most often."""
+        uses = leg.turns_in if actor.leg == leg.bearing and actor.lane else []
+        return bool(uses) and uses[(actor.lane or 1) - 1] in ("left", "right")
 
     def _control(self, leg: Leg, path: tuple[Any, ...]) -> str:
         if "control" not in self.sure:
@@ -171,7 +179,8 @@ class Targets:
         sure = f"contact.{index}" in self.known
         for key in ("striker", "struck", "striker_area", "struck_area"):
             areas = key.endswith("area")
-            told = sure if not areas else f"areas.{index}" in self.known
+            known = f"areas.{index}" in self.known or (key == "striker_area" and f"side.{index}" in self.known)
+            told = known if areas else sure
             self.weights[(*path, key)] = CONTACT if told else GUESS
         ids = [actor.id for actor in self.crash.actors]
         return {

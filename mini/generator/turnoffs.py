@@ -43,6 +43,8 @@ def suits(text: str, crash: Crash, actor: Actor) -> bool:
         return False
     if SIGN.search(text) and (met is None or met.control != "stop"):
         return False
+    if crash.layout != "four" and "straight across" in text:
+        return False
     if crash.layout == "driveway":
         return not STREET.search(text)
     if crash.layout not in ("four", "t"):
@@ -55,8 +57,15 @@ def told(text: str, crash: Crash) -> set[str]:
     found = {"layout"} if crash.layout == "driveway" and _TOLD.search(text) else set()
     if SIGN.search(text) and any(leg.control == "stop" for leg in crash.legs):
         found |= {"control", f"{VAGUE}.control"}
-    signal = SIGNAL.search(text) and all(leg.control == "signal" for leg in crash.legs)
+    signal = SIGNAL.search(text) and all(leg.control == "signal" for leg in crash.legs if leg.lanes_in)
     return found | ({"control"} if signal else set())
+
+
+def met(key: str, crash: Crash) -> set[str]:
+    """Facts that one tells who stands for a "light", or for a "sign", which others may have or not."""
+    if key == "sign":
+        return {"control", f"{VAGUE}.control"}
+    return {"control"} if all(leg.control == "signal" for leg in crash.legs if leg.lanes_in) else set()
 
 
 INTO = clauses("""

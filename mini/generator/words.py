@@ -14,6 +14,9 @@ SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
 MORE = 0.4
 """How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
 
+COUNTED = 0.25
+"""Share of those who came by the only lane of whom it is said that it was the right or the first one."""
+
 
 def direction(rng: Random, bearing: int, held_out: bool) -> str:
     """`north`, `in a northerly direction`, ..."""
@@ -91,6 +94,10 @@ def lanes(count: int, way: str = "") -> str:
 def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> tuple[str, bool]:
     """The lane's name: by side, number, direction or use; and whether only who knows the lanes beside it can number it,
     from the right as answers do."""
+    if not held_out and leg.lanes_in == 1 and rng.random() < COUNTED:
+        return rng.choice(
+            ("first lane", "lane one", "lane 1", "right lane", f"right {xb} lane", "first travel lane")
+        ), False
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
         name = more.phrase(rng, more.LANE[kind], xb=xb, number=NUMBERS[number or 1], ordinal=ORDINALS[number or 1])
         return name, kind in ("left", "turn_left")

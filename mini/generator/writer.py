@@ -63,6 +63,8 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         """Axis of the road that was named last."""
         self.counted: list[int] = []
         """Axes of the roads whose lanes were told, in the order of the text."""
+        self.totals: dict[int, int] = {}
+        """Lanes of the road of an axis as they are counted throughout the report: with those for turns or without."""
         self.of_road = False
         """Whether the sentence is of the road: then a direction is that of its traffic, and of no vehicle."""
         self.waited = self.junction_named = False
@@ -179,7 +181,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
             return text
         if slot in ("V", "W", "S", "T"):
             return self._mention(v if slot in ("V", "S") else w)
-        if slot in ("dir", "xb", "opp", "from", "lane", "W0", "side0", "surf0"):
+        if slot in ("dir", "xb", "opp", "from", "lane", "outdir", "outxb", "W0", "side0", "surf0"):
             return self._motion_slot(slot, v, w)
         if slot in ("any4", "any8", "any8b", "anyside", "deg", "m", "k", "kk", "spd"):
             return self._noise_slot(slot, v)
@@ -202,10 +204,15 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
             return words.direction(self.rng, actor.heading, self.held_out)
         if slot == "from":
             return WORDS[actor.leg]
+        if slot in ("outdir", "outxb"):  # of one that turns: with the turn, where it goes tells where it came from
+            self.told |= {f"{fact}.{actor.id}" for fact in ("heading", "man", "exit")}
+            way: int = actor.out  # type: ignore[assignment] - who turns takes a leg
+            return WORDS[way] if slot == "outdir" else words.bound(self.rng, way)
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
             xb = words.bound(self.rng, actor.heading)
             name, from_left = words.lane(self.rng, leg, actor.lane, xb, self.held_out)  # type: ignore[arg-type]
+            self.told |= {f"heading.{actor.id}"} if xb in name else set()
             self.told |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if from_left else set())
             return name  # the leg is there: actors stand on legs
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
