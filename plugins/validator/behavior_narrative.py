@@ -25,6 +25,7 @@ _FAR_RAD = math.radians(70)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
+_SIDED: tuple[Maneuver, ...] = ("turn_left", "turn_right")
 _Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
 """Ways of a road spec by road and direction."""
 
@@ -33,7 +34,7 @@ class BehaviorNarrative(Validator):
     """Compares a behavior spec with the narrative's stated facts."""
 
     stage: ClassVar[str] = "scenario"
-    version: ClassVar[str] = "3"
+    version: ClassVar[str] = "4"
 
     areas: Literal["repair", "note"] = "repair"
     """Severity where a declared side is none that the text allows."""
@@ -53,6 +54,7 @@ class BehaviorNarrative(Validator):
         if spec is not None:
             ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
             found += [*_headings(behavior, facts, spec, ways), *_following(behavior, facts, spec, ways)]
+            found += _exits(behavior, facts, spec, ways)
         found += _maneuvers(behavior, facts, spec, self.maneuvers)
         return [*found, *_contact(behavior, facts, self.areas)]
 
@@ -157,8 +159,37 @@ def _maneuvers(
                        f"use {fact.maneuver}", severity, courses(fact, spec))  # fmt: skip
 
 
+def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
+    """A turn that leaves by the road of another turn; one that is told otherwise is asked again anyway."""
+    every = tuple(ways.values())
+    for actor in behavior.actors:
+        fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
+        if fact is None or way is None or actor.exit_road is None or actor.maneuver not in _SIDED:
+            continue
+        leaves = course(way, every, actor.maneuver)["exit_road"]
+        if actor.exit_road in leaves or (fact.maneuver_stated and fact.maneuver != actor.maneuver):
+            continue
+        turns = (actor.maneuver,) if fact.maneuver_stated else _SIDED
+        choices = [c for turn in turns for c in _choices(replace(fact, maneuver=turn, maneuver_stated=True), spec)]
+        choices = [choice for choice in choices if choice.get("exit_road")]
+        if not choices:  # the road as written has no such turn, whatever is asked again
+            continue
+        yield _finding(
+            f"{actor.id} would leave {actor.road} by {actor.exit_road}, which is no {actor.maneuver}",
+            f"{actor.id}.exit_road", f"{actor.road} to {actor.exit_road}",
+            f"leave by {' or '.join(leaves)}" if leaves else "start it on a road with that turn",
+            holds=(held(actor.id, choices),),
+        )  # fmt: skip
+
+
 def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     """The starts, exits and maneuvers that the report leaves a vehicle, as far as it states heading and maneuver."""
+    choices = _choices(fact, spec)
+    return (held(fact.id, choices),) if choices != [{}] else ()
+
+
+def _choices(fact: VehicleFacts, spec: RoadSpec | None) -> list[dict[str, tuple[str, ...]]]:
+    """Those courses; [{}] where nothing of them is stated."""
     does: dict[str, tuple[str, ...]] = {"maneuver": (fact.maneuver,)} if fact.maneuver_stated else {}
     every = ways_of(spec) if spec is not None else ()
     ways = every
@@ -169,9 +200,7 @@ def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
     choices = [start for start in starts if start.get("exit_road") != ()]
     if not choices:  # the road as written has no such turn: what is left to hold is the start
         choices = [{k: v for k, v in start.items() if k != "exit_road"} for start in starts] or [does]
-    if choices == [{}]:
-        return ()
-    return (held(fact.id, choices),)
+    return choices
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:

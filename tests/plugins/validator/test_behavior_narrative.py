@@ -128,6 +128,7 @@ def _held(actor: Actor, choice: Mapping[str, Sequence[Any]]) -> Iterator[Actor]:
         (0, {"direction": "backward"}),
         (1, {"maneuver": "straight"}),
         (1, {"road": "S"}),
+        (1, {"exit_road": "W"}),
     ],
 )
 def test_whatever_a_finding_holds_an_answer_to_passes(index: int, wrong: dict[str, str]) -> None:
@@ -148,6 +149,33 @@ def test_a_held_turn_leaves_by_a_road_on_that_side() -> None:
     (finding,) = _found(_changed(1, maneuver="straight"))
     starts = {(*choice["road"], *choice["direction"]): choice["exit_road"] for choice in finding.holds[0].either}
     assert starts == {("N", "forward"): ("E",)}
+
+
+@pytest.mark.parametrize(("road", "exit_road", "leaves"), [("N", "W", "E"), ("N", "S", "E"), ("E", "N", "S")])
+def test_a_turn_that_leaves_by_the_road_of_another_is_asked_again(road: str, exit_road: str, leaves: str) -> None:
+    text = TEXT.replace("V2 was traveling south and turned", "V2 turned")
+    (finding,) = _found(_changed(1, road=road, exit_road=exit_road), text)
+    assert finding.severity == "repair"
+    assert finding.what == f"V2 would leave {road} by {exit_road}, which is no turn_left"
+    assert finding.remedy == f"leave by {leaves}"
+    starts = {choice["road"][0]: choice["exit_road"] for choice in finding.holds[0].either}
+    assert starts == {"N": ("E",), "E": ("S",), "S": ("W",), "W": ("N",)}
+    assert {choice["maneuver"] for choice in finding.holds[0].either} == {("turn_left",)}
+
+
+def test_of_a_turn_that_no_text_tells_either_side_may_be_meant() -> None:
+    text = "V1 was traveling north. V2 came out. The front of V1 struck the right side of V2."
+    (finding,) = _found(_changed(1, exit_road="W"), text)
+    assert {choice["maneuver"] for choice in finding.holds[0].either} == {("turn_left",), ("turn_right",)}
+    assert _found(_changed(1, maneuver="turn_right", exit_road="W"), text) == []
+
+
+def test_a_turn_without_an_exit_or_on_a_road_without_any_is_left_alone() -> None:
+    assert _found(_changed(1, exit_road=None)) == []
+    plain = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "S"))))
+    evidence = Evidence(report=CrashReport(case="x", narrative=TEXT), network=RoadNetwork(spec=plain))
+    found = BehaviorNarrative().findings(Scenario(actors=(), behavior=_changed(1, exit_road="S")), evidence)
+    assert [f for f in found if "which is no" in f.what] == []
 
 
 def test_a_missing_vehicle_is_held_to_its_place_and_a_contact_to_the_first() -> None:
