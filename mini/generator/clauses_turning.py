@@ -240,3 +240,17 @@ Turning {turn} so as to travel {outdir}, {V} [got in the way of|hindered] {W}
 """
 )  # fmt: skip
 """One that turns, and where it meant to go: with the turn that tells where it came from. They only train."""
+
+STRAYS = clauses("""
+{V} lost control and [slid|skidded|spun] {turn} [over the lane line|across the line|into the next lane][, where {W} was| in front of {W}|]
+The driver of {V} [lost control|could not hold the vehicle], and it [slid|spun|went] into the {turn} lane[ beside {W}|]
+[Out of control|Sliding|Fishtailing], {V} [crossed|went over] the lane line to the {turn} [toward|in front of] {W}
+{V} [fishtailed|began to spin|got out of control] and came {turn} across the lane line
+A tire of {V} [blew|failed|went flat], and {V} [veered|pulled] {turn} into the lane of {W}
+{V} [swerved|was steered] {turn} [to avoid something in the road|around debris|for an animal] and [crossed into|entered] the lane of {W}
+{V} came [back |]from the {aside} shoulder into the lane[ of {W}|]
+{V} had [stopped|been] on the {aside} shoulder and [pulled|moved|came] {turn} into the lane of {W}
+[Leaving|From] the {aside} shoulder, {V} [moved|pulled|came] {turn} [in front of|beside|toward] {W}
+{V} [had drifted|had gone] onto the {aside} shoulder, and its driver [overcorrected|steered back] {turn}[ into the next lane|, toward {W}|]
+""")
+"""One that comes into the next lane without meaning to change lanes, or from beside the road. They only train."""

@@ -200,5 +200,7 @@ def _same_lane(crash: Crash, first: Actor, other: Actor) -> None:
     if crash.config == "lane_change":
         changer, straight = (first, other) if first.maneuver.startswith("lane_change") else (other, first)
         straight.lane = changer.lane + (1 if changer.maneuver.endswith("left") else -1)  # type: ignore[operator]
+    if crash.config == "merge":
+        (first if crash.is_main(first.leg) else other).lane = 1
     if crash.config == "overtaking" and first.leg == other.leg:
         other.lane = first.lane

@@ -14,7 +14,7 @@ from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
 from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
-from mini.generator.clauses_turning import ONWARD, PROCEEDS
+from mini.generator.clauses_turning import ONWARD, PROCEEDS, STRAYS
 from mini.generator.grammar import Told, choose, clause_of, clauses, families, fill
 from mini.generator.world import Actor, Contact, Crash
 
@@ -58,12 +58,15 @@ DRIFTS = re.compile(
     re.IGNORECASE,
 )
 """Clauses of one that hits a parked vehicle which say that it left its lane."""
+_OPPOSITE = {"left": "right", "right": "left"}
 CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
 BODIES = re.compile(r"\b(?:doors?|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
 """Parts that only motorcycles have, and that they have not."""
 TRIES = 40
 BOUND = 0.12
 """Share of those who turn of whom it is told which way they meant to go on."""
+STRAYING = 0.2
+"""Share of those who come into the next lane who lose control, or come from beside the road."""
 YIELDING = 0.25
 """Share of those who stand or slow for a turn of whom the traffic that they wait for is told, with its heading."""
 
@@ -112,7 +115,7 @@ class EventsMixin:
             if self.crash.actors[v].maneuver == "departing_road_right" and self._drifts(clause):
                 self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
             self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
-            out.append(self.say([self.spoken(clause)], v, w, turn=self._turn(v)))
+            out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=_OPPOSITE[side]))
         alone, rest = not self.crash.actors[w].vehicle, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
@@ -138,6 +141,8 @@ class EventsMixin:
         turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != "driveway")
         if turns and self.rng.random() < BOUND:
             return ONWARD
+        if key == "lane_change" and self.rng.random() < STRAYING:
+            return STRAYS
         if self.waited and self.rng.random() < 0.5:
             return PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
