@@ -1,11 +1,14 @@
 """How vehicles come to the crash: what a sentence tells is what its words say."""
 
 import re
+from random import Random
 
 import pytest
 
-from mini.generator import clauses_motion
+from mini.generator import approaches, clauses_motion, words, writer
 from mini.generator.report import make_report
+from mini.generator.settled import STEM
+from mini.generator.world import Leg
 from tests.mini.reports import sentences
 
 LISTS = ("APPROACH", "APPROACH_STOPPED", "APPROACH_SLOWING", "APPROACH_WAITING")
@@ -52,3 +55,46 @@ def test_the_same_intersection_is_one_that_was_named() -> None:
             before = text[: text.index("the same intersection")].lower()
             assert re.search(r"intersection|junction|cross(?:ing|roads)|corner", before), text
     assert seen > 30
+
+
+def test_who_came_up_the_leg_that_ends_came_from_where_that_lies(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_motion, "FROM_STEM", {"t": ["QQ {V}"], "driveway": ["QQ {V}"]})
+    monkeypatch.setattr(approaches, "UNSAID", 1.0)
+    known = open_ = 0
+    for seed in range(1500):
+        report = make_report(seed, False, 0.0, {"text": 1.0})
+        before: set[str] = set()
+        for text, facts in sentences(report):
+            if text.startswith("QQ"):
+                headed = {fact for fact in facts if fact.startswith("heading.")}
+                assert bool(headed) == (STEM in before)
+                assert all(actor.leg == report.crash.stems[0].bearing for actor in report.crash.actors
+                           if f"heading.{actor.id}" in headed)  # fmt: skip
+                known, open_ = known + bool(headed), open_ + (not headed)
+            before |= facts
+    assert known > 20 < open_
+
+
+def test_the_only_lane_may_be_called_the_first_but_not_on_the_held_out_side() -> None:
+    leg = Leg(0, 1, 1)
+    counted = r"(first|right|one|1)\b"
+    found = [
+        words.lane(Random(seed), leg, 1, "southbound", held_out)[0] for held_out in (False, True) for seed in range(400)
+    ]
+    assert 60 < sum(bool(re.search(counted, name)) for name in found[:400]) < 220
+    assert not [name for name in found[400:] if re.search(counted, name)]
+
+
+def test_a_lane_that_is_named_by_its_direction_tells_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_motion, "APPROACH", ["QQ {V} in the {lane}"])
+    monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
+    named = other = 0
+    for seed in range(300):
+        report = make_report(seed, False, 0.0, {"text": 1.0})
+        for text, facts in sentences(report):
+            if not text.startswith("QQ"):
+                continue
+            bound = re.search(r"bound\b|\b[NSEW]/B", text)
+            assert bool(bound) == any(fact.startswith("heading.") for fact in facts), text
+            named, other = named + bool(bound), other + (not bound)
+    assert named > 30 < other

@@ -13,6 +13,7 @@ from mini.generator.crash import sample_crash
 from mini.generator.grammar import SLOTS, families
 from mini.generator.report import make_report
 from mini.generator.writer import Writer
+from tests.mini.reports import sentences
 
 seeds = st.integers(0, 10**6)
 SLOTS_KNOWN = "V W He he his code move kind doing did anyside spd dir lane xb"
@@ -137,3 +138,36 @@ def test_behind_a_sentence_on_somebody_else_pronouns_mean_nobody(clause: str) ->
     notes = writer.finish(text).notes
     assert not any(text[:end].endswith(("he", "his")) for end, _ in notes)
     assert 0 not in writer.lately
+
+
+def test_a_left_turn_from_the_side_is_coded_into_the_direction_that_it_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(said.EVENT, "from_side_left", ["QQ into the opposite direction"])
+    seen = {"same": 0, "opposite": 0}
+    for seed in range(1500):
+        report = make_report(seed, length=1.0, modes={"text": 1.0})
+        for text, _ in sentences(report):
+            if "QQ" not in text:
+                continue
+            crash = report.crash
+            (turner,) = (actor for actor in crash.actors if actor.maneuver == "turn_left")
+            (other,) = (actor for actor in crash.actors[:2] if actor is not turner)
+            way = "same" if turner.out == other.heading else "opposite"
+            assert f"{way} direction" in text
+            seen[way] += 1
+    assert min(seen.values()) > 10
+
+
+def test_an_encroachment_over_a_line_tells_what_the_other_did(monkeypatch: pytest.MonkeyPatch) -> None:
+    for key in ("from_opposite", "from_left_lane", "from_right_lane"):
+        monkeypatch.setitem(said.EVENT, key, ["QQ"])
+    seen = 0
+    for seed in range(1500):
+        report = make_report(seed, length=1.0, modes={"text": 1.0})
+        if report.crash.config not in ("head_on", "lane_change"):
+            continue
+        for text, facts in sentences(report):
+            if "QQ" in text:
+                seen += 1
+                told = [actor for actor in report.crash.actors if f"man.{actor.id}" in facts]
+                assert [actor.maneuver.startswith(("crossing", "lane_change")) for actor in told] == [True]
+    assert seen > 40

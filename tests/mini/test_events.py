@@ -1,11 +1,16 @@
 """Sentences about the collision: what they say beside their slots is so."""
 
 import re
+from random import Random
 
 import pytest
 
+from mini.generator import clauses_motion, events, writer
+from mini.generator.crash import sample_crash
 from mini.generator.events import DRIFTS
 from mini.generator.report import make_report
+from mini.generator.settled import VAGUE
+from mini.generator.world import WORDS
 from tests.mini.reports import sentences
 
 
@@ -51,3 +56,66 @@ def test_one_that_keeps_its_lane_is_not_said_to_drift_into_a_parked_vehicle() ->
         told = [text for text, facts in sentences(report) if re.search(drifts, text) and "~named0.V1" in facts]
         assert not [text for text in told if "parked" in text], told
     assert seen > 30
+
+
+@pytest.mark.parametrize("slot", ["outdir", "outxb"])
+def test_where_one_that_turns_goes_tells_where_it_came_from(slot: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "ONWARD", [f"QQ {{V}} {{turn}} {{{slot}}}"])
+    monkeypatch.setattr(events, "BOUND", 1.0)
+    monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
+    seen = 0
+    for seed in range(400):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for text, facts in sentences(report):
+            if not text.startswith("QQ"):
+                continue
+            seen += 1
+            (actor,) = (a for a in report.crash.actors if f"man.{a.id}" in facts)
+            assert {f"heading.{actor.id}", f"exit.{actor.id}"} <= facts
+            assert actor.maneuver in {f"turn_{word}" for word in text.split()}
+            assert slot == "outxb" or text.rstrip(".").endswith(f" {WORDS[actor.out or 0]}")
+    assert seen > 60
+
+
+def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "STRAYS", ["QQ {turn} from {aside}"])
+    monkeypatch.setattr(events, "STRAYING", 1.0)
+    monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
+    told = [
+        (text, report.crash)
+        for report in (make_report(seed, length=0.0, modes={"text": 1.0}) for seed in range(1500))
+        for text, _ in sentences(report)
+        if text.startswith("QQ")
+    ]
+    assert len(told) > 30
+    for text, crash in told:
+        side = next(a.maneuver for a in crash.actors if a.maneuver.startswith("lane_change")).rsplit("_", 1)[1]
+        assert text.split()[1] == side
+        assert {text.split()[1], text.rstrip(".").split()[3]} == {"left", "right"}
+
+
+@pytest.mark.parametrize(("kind", "strange"), [("motorcycle", events.BODIES), ("car", events.CYCLES)])
+def test_no_vehicle_is_hit_on_a_part_that_it_has_not(kind: str, strange: re.Pattern[str]) -> None:
+    crash = sample_crash(Random(3))
+    own = writer.Writer(Random(0), crash, False, 0.0)
+    for area in ("front", "left", "right", "back"):
+        found = {own._area(area, kind) for _ in range(300)}
+        assert len(found) > 30
+        assert not [part for part in found if strange.search(part)]
+
+
+def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(clauses_motion.WHY, "light", ["QLIGHT"])
+    monkeypatch.setitem(clauses_motion.WHY, "sign", ["QSIGN"])
+    lights = signs = 0
+    for seed in range(1200):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        controls = {leg.control for leg in report.crash.legs if leg.lanes_in}
+        for text, facts in sentences(report):
+            if "QLIGHT" in text:
+                lights += 1
+                assert ("control" in facts) == (controls == {"signal"})
+            if "QSIGN" in text:
+                signs += 1
+                assert {"control", f"{VAGUE}.control"} <= facts
+    assert lights > 20 < signs

@@ -108,3 +108,28 @@ def test_the_sun_does_not_shine_at_night() -> None:
             )
     assert suns.pop("day") > 50
     assert not any(suns.values())
+
+
+def test_sun_tells_daylight_and_a_clear_sky(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_scene, "CONDITIONS", ["QQ {wx}", "RR {light}"])
+    for name, key in (("LIGHT", "day"), ("WEATHER", "clear")):
+        monkeypatch.setitem(getattr(clauses_scene, name), key, ["in bright sunshine", "plain"])
+    sunny = 0
+    for text, facts, report in [*_said("QQ", 300), *_said("RR", 300)]:
+        assert ("sunshine" in text) == ({"light", "weather"} <= facts)
+        if "sunshine" in text:
+            sunny += 1
+            assert (report.crash.light, report.crash.weather) == ("day", "clear")
+    assert sunny > 40
+
+
+def test_legs_that_nobody_comes_by_have_no_control() -> None:
+    crashes = [sample_crash(Random(seed)) for seed in range(600)]
+    legs = [leg for crash in crashes for leg in crash.legs if crash.layout in ("four", "t")]
+    assert {leg.control for leg in legs if not leg.lanes_in} == {"none"}
+    assert len({leg.control for leg in legs if leg.lanes_in}) > 3
+
+
+def test_who_merges_meets_the_lane_at_the_ramp() -> None:
+    crashes = [sample_crash(Random(seed), "merge") for seed in range(60)]
+    assert {actor.lane for crash in crashes for actor in crash.actors} == {1}
