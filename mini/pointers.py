@@ -25,6 +25,7 @@ def sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:
     """Places that tell the value at a path: ends of sentences, or picture tokens where no sentence does."""
     fact, shown = tags.fact_of(path, report.crash)
     alike = {fact, *([fact.replace("lanes.", "ways.")] if _closed(path, report) else [])}
+    alike |= {fact.replace("areas.", "side.")} if path[-1] == "striker_area" else set()
     legs = {tags.TEXT[shown]} if fact == "legs" else set()  # told in parts, by those who use a leg
     told = zip(row.text_tags, report.sentences, strict=True)
     if fact.startswith("lane.") and fact in report.doubtful:

@@ -94,6 +94,8 @@ def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[
             names += [f"leg={way}" for leg in legs if key == "turns" for way in led_to(leg)]
         elif key == "ways":
             names += [name for leg in crash.legs if leg.bearing % 4 == int(rest) for name in _closed(leg)]
+        elif key == "side":
+            names += _of_contact("areas", int(rest), crash)[:1]
         elif key in ("contact", "areas"):
             names += _of_contact(key, int(rest), crash)
         elif key in ("light", "weather", "surface"):

@@ -57,9 +57,12 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
 
 
 def hub_control(legs: Sequence[Leg]) -> NodeControl:
-    """What stands at the hub: signal before flashing before stop before yield; none on a plain road."""
-    seen = [leg.control for leg in legs]
-    if len(legs) < 3:
+    """What stands at the hub: signal before flashing before stop before yield; none on a plain road.
+
+    Legs that nobody comes by are not asked.
+    """
+    seen = [leg.control for leg in legs if leg.lanes_in]
+    if len(legs) < 3 or not seen:
         return "none"
     if seen.count("stop") == len(seen):
         return "all_way_stop"

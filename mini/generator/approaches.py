@@ -86,8 +86,8 @@ class ApproachMixin:
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
             self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
             return self.say(motion.APPROACH_CURVE, index, ahead)
-        alone = [leg.bearing for leg in self.crash.stems] == [actor.leg]
-        if alone and not self.held_out and self.rng.random() < UNSAID:
+        alone = self.crash.layout in motion.FROM_STEM and [leg.bearing for leg in self.crash.stems] == [actor.leg]
+        if alone and actor.maneuver != "backing" and not self.held_out and self.rng.random() < UNSAID:
             return self._from_stem(actor, index, ahead, before)
         options = motion.PRESENTED["moving"] if presented else motion.APPROACH
         if not self.held_out and actor.maneuver.startswith(LEAVES):
@@ -96,7 +96,7 @@ class ApproachMixin:
 
     def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
         """One on the leg that ends at the junction, without a word of the compass."""
-        clause = self.fitting(motion.FROM_STEM.get(self.crash.layout, motion.APPROACH), actor)
+        clause = self.fitting(motion.FROM_STEM[self.crash.layout], actor)
         self.told |= {f"heading.{actor.id}"} if STEM in self.told else set()
         return self.say([self.spoken(clause)], index, ahead, appr=lambda: self._approaching(index, bool(before)))
 

@@ -13,7 +13,6 @@ from typing import Any
 from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.events import OF_TWO
 from mini.generator.grammar import Told, clause_of, families, fill
 from mini.generator.world import WORDS, Actor, Contact, Crash
 
@@ -34,6 +33,8 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
+OF_OTHERS = re.compile(r"\{W\}|\b(?:both|neither|two) (?:vehicle|driver|operator|car|motorist|of the)", re.IGNORECASE)
+"""Noise that needs a second vehicle."""
 TELLING = re.compile(r"\{(?:spd|dir|lane|doing|code|move)\}")
 """Slots that tell something of the one whom a clause is about."""
 
@@ -83,6 +84,7 @@ class BlocksMixin:
     length: float
     told: Told
     who: tuple[int, int]
+    waited: bool
     people: dict[int, dict[str, str]]
     lately: set[int]
 
@@ -136,7 +138,7 @@ class BlocksMixin:
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
             clear = self._clear(GROUPS[group], v)
-            if clear := [c for c in clear if others or not OF_TWO.search(c)]:
+            if clear := [c for c in clear if others or not OF_OTHERS.search(c)]:
                 out.append(self.say(clear, v, w, **self._person(v)))
         return out
 
@@ -144,7 +146,8 @@ class BlocksMixin:
         rng = self.rng
         if slot == "spd":
             actor = self.crash.actors[v]
-            if not actor.speed or f"speed.{actor.id}" in self.told:
+            waited = self.waited and v == self.who[0]  # and drove as fast as its road allows only before that
+            if not actor.speed or f"speed.{actor.id}" in self.told or waited:
                 return rng.choice(("slowly", "at an unknown speed", "at normal speed"))
             text, actor.speed = words.driver_speed(rng, actor.speed)
             self.told.add(f"speed.{actor.id}")
@@ -171,12 +174,14 @@ class BlocksMixin:
             out.append(self._event(index, key))
         maneuver = self.crash.actors[index].maneuver
         if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
-            if not maneuver.startswith("lane_change"):
+            move = self._phrase(said.MOVEMENT[maneuver])
+            if not maneuver.startswith("lane_change") or maneuver.rpartition("_")[2] in move:
                 self.told |= {f"man.{self.id_of(index)}"}
-            frames = self._clear(said.MOVEMENT_FRAMES, index)
-            out.append(self.say(frames, index, move=self._phrase(said.MOVEMENT[maneuver])))
+            out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=move))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
-            out.append(self.say(said.TYPE_FRAMES, index, kind=self._phrase(said.CRASH_TYPE[self.crash.config])))
+            kind = self._phrase(said.CRASH_TYPE[self.crash.config])
+            if index == self.who[0] or "turn" not in kind:  # of the one that turns
+                out.append(self.say(said.TYPE_FRAMES, index, kind=kind))
         return out
 
     def _event(self, index: int, key: str) -> str:

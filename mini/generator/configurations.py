@@ -9,7 +9,7 @@ from __future__ import annotations
 from random import Random
 
 from mini.generator.vehicles import KIND_WEIGHTS
-from mini.generator.world import TURN_OF, Actor, Contact, Crash, pick
+from mini.generator.world import OPPOSITE, TURN_OF, Actor, Contact, Crash, pick
 
 
 def _vehicle(rng: Random, leg: int, out: int | None, maneuver: str, purpose: str = "") -> Actor:
@@ -176,7 +176,7 @@ def lane_change(rng: Random, crash: Crash) -> bool:
     if not found:
         return False
     a, side = rng.choice(found), rng.choice(("left", "right"))
-    other = {"left": "right", "right": "left"}[side]
+    other = OPPOSITE[side]
     crash.actors = [_vehicle(rng, a, a + 4, f"lane_change_{side}"), _vehicle(rng, a, a + 4, "straight")]
     way = pick(rng, {"swipe": 55.0, "behind": 20.0, "into": 25.0})
     crash.contacts = {
@@ -247,7 +247,7 @@ def backing(rng: Random, crash: Crash) -> bool:
         _vehicle(rng, b, b + 4, "straight"),
     ]
     heading = (drive + 4) % 8
-    facing = {"left": "right", "right": "left"}[_side_facing(heading, b)]
+    facing = OPPOSITE[_side_facing(heading, b)]
     crash.contacts = [Contact(1, 0, "front", rng.choice((facing, "back")))]
     if rng.random() < 0.3:
         crash.contacts = [Contact(0, 1, "back", _side_facing((b + 4) % 8, drive))]

@@ -16,7 +16,7 @@ from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
 from mini.generator.clauses_turning import ONWARD, PROCEEDS, STRAYS
 from mini.generator.grammar import Told, choose, clause_of, clauses, families, fill
-from mini.generator.world import Actor, Contact, Crash
+from mini.generator.world import OPPOSITE, Actor, Contact, Crash
 
 _BEHIND = {
     "stopped": "stopped|stand|stood|sitting|sat|stationary|halted|motionless|not moving|at rest|to a [a-z ]*stop|waiting|last vehicle",
@@ -49,7 +49,7 @@ MUTUAL = re.compile(
 )
 """Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
 OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
-"""Clauses that need a second vehicle."""
+"""Clauses of rest that need a second vehicle."""
 DRIFTS = re.compile(
     r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|\bslip(?:ped|s)? right|came over|bore (?:off |curb|right)"
     r"|\beas(?:ed|ing)|sagged|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|deviat"
@@ -58,9 +58,8 @@ DRIFTS = re.compile(
     re.IGNORECASE,
 )
 """Clauses of one that hits a parked vehicle which say that it left its lane."""
-_OPPOSITE = {"left": "right", "right": "left"}
 CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
-BODIES = re.compile(r"\b(?:doors?|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
+BODIES = re.compile(r"\b(?:door\w*|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
 """Parts that only motorcycles have, and that they have not."""
 TRIES = 40
 BOUND = 0.12
@@ -115,7 +114,7 @@ class EventsMixin:
             if self.crash.actors[v].maneuver == "departing_road_right" and self._drifts(clause):
                 self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
             self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
-            out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=_OPPOSITE[side]))
+            out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=OPPOSITE[side]))
         alone, rest = not self.crash.actors[w].vehicle, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
@@ -142,10 +141,16 @@ class EventsMixin:
         if turns and self.rng.random() < BOUND:
             return ONWARD
         if key == "lane_change" and self.rng.random() < STRAYING:
-            return STRAYS
+            at_edge = self._at_edge(self.crash.actors[self.who[0]])
+            return [clause for clause in STRAYS if at_edge or "shoulder" not in clause]
         if self.waited and self.rng.random() < 0.5:
             return PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
+
+    def _at_edge(self, actor: Actor) -> bool:
+        """Whether one that changes lanes comes from the lane beside the shoulder behind it."""
+        leg = self.crash.leg(actor.leg)
+        return leg is not None and actor.lane == (1 if actor.maneuver.endswith("left") else leg.lanes_in)
 
     def _true_of(self, index: int, options: list[str]) -> str:
         """A clause that says of the other vehicle only what it does: that it slowed, that it had stopped; of a good many

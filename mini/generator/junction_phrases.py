@@ -54,7 +54,7 @@ class JunctionMixin(RoadsMixin):
 
     # -------------------------------------------------------------- control
     def _control_kind(self) -> str:
-        kinds = [leg.control for leg in self.crash.legs]
+        kinds = [leg.control for leg in self.crash.legs if leg.lanes_in]
         if all(k == "stop" for k in kinds):
             return "all"
         return next((k for k in ("signal", "flashing", "stop", "yield") if k in kinds), "none")
@@ -68,14 +68,13 @@ class JunctionMixin(RoadsMixin):
 
     def _controlled(self, slot: str) -> str:
         signed = [leg for leg in self.crash.legs if leg.control in ("stop", "yield")]
-        legs = [leg for leg in signed if leg.lanes_in or self.held_out] or signed
-        axis = legs[0].bearing if legs else 0
+        axis = signed[0].bearing if signed else 0
         rng = self.rng
         if slot == "caxis":
             self.spoken_of = axis % 4
             return words.axis(rng, axis)
-        self.told |= {STEM} if len(legs) == 1 and not self.crash.is_main(axis) else set()
-        names = [words.bound(rng, leg.bearing + 4) for leg in legs]
+        self.told |= {STEM} if len(signed) == 1 and not self.crash.is_main(axis) else set()
+        names = [words.bound(rng, leg.bearing + 4) for leg in signed]
         return " and ".join(names)
 
     def _control_sentence(self, odds: float) -> list[str]:

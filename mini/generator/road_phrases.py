@@ -128,7 +128,9 @@ class RoadsMixin:
         extra = sum(use in ("left", "right") for use in leg.turns_in)
         if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
             total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
-        total = self.totals.setdefault(leg.bearing % 4, total) if not bracket else total
+        if not self.held_out:
+            total = self.totals.setdefault(leg.bearing % 4, total) if not bracket else total
+            self.totals[leg.bearing % 4] = total
         word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")
@@ -139,12 +141,12 @@ class RoadsMixin:
         divided += NAMED * bool(divided)
         if plain and not self.held_out and rng.random() < 0.3:
             return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
-        if even and leg.lanes_in > 1 and not bracket and not turns and rng.random() < 0.35:
+        if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35 and not turns:
             text = f"a {rng.choice(('two-way ', 'divided ', '') if divided else ('two-way ', 'undivided ', ''))}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction"
             return text + (f" {divided}" if divided else ""), True
         ways = (
             ("divided", "two-way, divided", "physically divided")
-            if divided and leg.median != "painted"
+            if divided and (leg.median != "painted" or self.held_out)
             else ("divided", "two-way, divided")
             if divided
             else ("two-way", "two-way", "undivided", "two-way, undivided", "not physically divided")

@@ -9,7 +9,7 @@ from dataclasses import replace
 from random import Random
 
 from mini.answers import MAX_ACCESSES
-from mini.generator.world import TURN_OF, Access, Actor, Crash, Leg, pick
+from mini.generator.world import OPPOSITE, TURN_OF, Access, Actor, Crash, Leg, pick
 
 LIMITS = {
     "rural": (35, 40, 45, 45, 50, 55, 55, 55),
@@ -50,7 +50,7 @@ def pair(rng: Random, bearing: int, area: str, least: int = 1, one_way: bool = F
 def curve(rng: Random, legs: list[Leg]) -> None:
     """Bend a plain road: what is a left curve one way is a right curve the other way."""
     side = rng.choice(("left", "right"))
-    other = {"left": "right", "right": "left"}[side]
+    other = OPPOSITE[side]
     legs[0].curve, legs[1].curve = side, other
 
 

@@ -31,10 +31,14 @@ IN_LANES = re.compile(r"\{xb\} lane")
 SUN = re.compile(
     r"(?<!not )\b(?:sunny|sunshine|sun|sunlit|blue sk(?:y|ies)|sk(?:y|ies) (?:\w+ )?blue)\b", re.IGNORECASE
 )
-"""Words that tell both daylight and a clear sky."""
+"""Words of the weather that tell daylight."""
+SUNNY = re.compile(r"\bsunny|\bsunshine|\bblue sk(?:y|ies)|\bsk(?:y|ies) (?:\w+ )?blue", re.IGNORECASE)
+"""Words of the light that tell a clear sky."""
 BRIGHT = re.compile(rf"{SUN.pattern}|\bbright", re.IGNORECASE)
 SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*(?:\{road(?:bare)?\}|(?:on|using)\]? a )")
 """Clauses that put everybody on one road."""
+POINTS = re.compile(r"^\[?(?:It|This|Here)\b|\bhere\b|\bthis (?:\[?road|\[?street|\[?highway|section|stretch)")
+"""Clauses that mean the road that was spoken of last."""
 SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b", re.IGNORECASE)
 """Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
@@ -121,6 +125,8 @@ class SceneMixin(JunctionMixin):
     def _of_road(self, options: list[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
         true = [clause for clause in families(options, self.held_out) if self._true(clause)]
+        if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
+            true = [clause for clause in true if "{axis}" in clause or not POINTS.search(clause)]
         self.of_road = True
         text = [self.say(true, main)] if true else []
         self.of_road = False
@@ -263,9 +269,10 @@ class SceneMixin(JunctionMixin):
         options = table[getattr(self.crash, key)]
         if key == "surface" or self.held_out:
             return clause_of(self.rng, options, self.held_out)
-        if self.crash.light != "day" or self.crash.weather != "clear":
-            unseen = SUN if self.crash.light == "day" else BRIGHT
-            options = [words for words in families(options, False) if not unseen.search(words)]
-        text = clause_of(self.rng, options, False)
-        self.told |= {"light", "weather"} if SUN.search(text) else set()
+        other, untrue = ("light", BRIGHT) if key == "weather" else ("weather", SUNNY)
+        if getattr(self.crash, other) not in ("day", "clear"):
+            options = [words for words in families(options, False) if not untrue.search(words)]
+        text, told = clause_of(self.rng, options, False), SUN if key == "weather" else SUNNY
+        sunny = (self.crash.light, self.crash.weather) == ("day", "clear") and told.search(text)
+        self.told |= {other} if sunny else set()
         return text

@@ -36,7 +36,8 @@ BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     """Facts that sentences tell in part or of no known leg; "legs" where nobody could say which legs there are.
 
-    Then nothing about the legs beside the main road is known either, nor which legs a control stands at.
+    Then nothing about the legs beside the main road is known either, nor which legs a control stands at, unless all who
+    come here meet the same.
     """
     sentences = list(sentences)
     told = {fact for facts in sentences for fact in facts}
@@ -46,7 +47,9 @@ def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     out = {fact for fact, _ in roads} - {fact for fact, facts in roads if _placed(crash, fact, facts, tied, sentences)}
     if not _legs(crash, told, tied):
         stems = {leg.bearing % 4 for leg in crash.stems}
-        out |= {"legs", "control"} | (told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems})
+        alike = len({leg.control for leg in crash.legs if leg.lanes_in}) == 1
+        out |= {"legs"} | (set() if alike else {"control"})
+        out |= told & {f"{key}.{axis}" for key in BY_AXIS for axis in stems}
     return out | (told - whole) | _uncounted(crash, sentences, told - out)
 
 

@@ -140,7 +140,9 @@ class Targets:
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and actor.vehicle else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
         self._unsure(path, *(("exit_road",) if not sure or f"heading.{actor.id}" not in known else ()))
-        self._unsure(path, *(("lane",) if f"lane.{actor.id}" in known - self.sure else ()))
+        named = f"lane.{actor.id}"
+        beside = self._changes and named not in known and self._lane(actor) is None
+        self._unsure(path, *(("lane",) if named in known - self.sure or beside else ()))
         if f"kind.{actor.id}" in known and actor.kind not in USUAL:
             self.weights[(*path, "kind")] = RARE
         for key in ("direction", "length_m", "width_m"):
@@ -164,8 +166,15 @@ class Targets:
     def _lane(self, actor: Actor) -> int | None:
         leg = self.crash.leg(actor.leg)
         counted = leg is not None and {f"lanes.{leg.bearing % 4}", f"heading.{actor.id}"} <= self.known
-        only = counted and leg.lanes_in == 1 and actor.maneuver != "parked"  # type: ignore[union-attr]
+        lanes = leg.lanes_in if counted and leg is not None else 0
+        only = (lanes == 1 and actor.maneuver != "parked") or (lanes == 2 and self._changes)
         return actor.lane if only or f"lane.{actor.id}" in self.known else None
+
+    @property
+    def _changes(self) -> bool:
+        """Whether it is known of two side by side which way one of them came into the other's lane."""
+        changers = [actor for actor in self.crash.actors if actor.maneuver.startswith("lane_change")]
+        return self.crash.config == "lane_change" and any(f"man.{actor.id}" in self.known for actor in changers)
 
     def _speed(self, actor: Actor, sure: bool) -> int | None:
         if not actor.vehicle:

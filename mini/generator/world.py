@@ -44,6 +44,9 @@ class Leg:
         return (self.bearing + 4 * (self.lanes_in > 0)) % 8
 
 
+OPPOSITE = {"left": "right", "right": "left"}
+
+
 @dataclass
 class Access:
     """A driveway or side road off a leg."""

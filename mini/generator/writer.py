@@ -62,7 +62,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         self.spoken_of: int | None = None
         """Axis of the road that was named last."""
         self.counted: list[int] = []
-        """Axes of the roads whose lanes were told, in the order of the text."""
+        """Axes of the roads that phrases described, in the order of the text; bare phrases stand beside an axis."""
         self.totals: dict[int, int] = {}
         """Lanes of the road of an axis as they are counted throughout the report: with those for turns or without."""
         self.of_road = False

@@ -1,6 +1,6 @@
 """Whether a scenario's behavior says what the narrative states for sure.
 
-Vehicles, initial headings, maneuvers and the first contact. Only what the text tells outright is asked
+Vehicles, initial headings, maneuvers, exits of turns and the first contact. Only what the text tells outright is asked
 again; where the reading is inferred a note is all, and of a corner the side that the told paths make likely is a doubt.
 Reads no diagram.
 """
@@ -16,16 +16,18 @@ from plugins.validator._courses import UNNUMBERED, approaches, course, heading, 
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
-from sgcad_core.narrative.ways import Way, apart, degree, ways_of
+from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
+_HARDLY_RAD = math.radians(20)
+"""A turn of less is none; onto a ramp one turns by 28 degrees."""
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
-_SIDED: tuple[Maneuver, ...] = ("turn_left", "turn_right")
+_SIDES: dict[Maneuver, int] = {"turn_left": 1, "turn_right": -1}
 _Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
 """Ways of a road spec by road and direction."""
 
@@ -160,20 +162,20 @@ def _maneuvers(
 
 
 def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
-    """A turn that leaves by the road of another turn; one that is told otherwise is asked again anyway."""
+    """A told turn that goes straight on or to the other side where its way ends; what lies beyond is not judged."""
     every = tuple(ways.values())
     for actor in behavior.actors:
         fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
-        if fact is None or way is None or actor.exit_road is None or actor.maneuver not in _SIDED:
+        if fact is None or not fact.maneuver_stated or fact.maneuver != actor.maneuver or way is None:
             continue
-        leaves = course(way, every, actor.maneuver)["exit_road"]
-        if actor.exit_road in leaves or (fact.maneuver_stated and fact.maneuver != actor.maneuver):
+        side = _SIDES.get(actor.maneuver)
+        taken = next((w for w in exits(way, every) if w.road.id == actor.exit_road), None)
+        if side is None or taken is None or side * turn_of(way, taken) > _HARDLY_RAD:
             continue
-        turns = (actor.maneuver,) if fact.maneuver_stated else _SIDED
-        choices = [c for turn in turns for c in _choices(replace(fact, maneuver=turn, maneuver_stated=True), spec)]
-        choices = [choice for choice in choices if choice.get("exit_road")]
+        choices = [choice for choice in _choices(fact, spec) if choice.get("exit_road")]
         if not choices:  # the road as written has no such turn, whatever is asked again
             continue
+        leaves = course(way, every, actor.maneuver)["exit_road"]
         yield _finding(
             f"{actor.id} would leave {actor.road} by {actor.exit_road}, which is no {actor.maneuver}",
             f"{actor.id}.exit_road", f"{actor.road} to {actor.exit_road}",

@@ -117,9 +117,8 @@ def test_sun_tells_daylight_and_a_clear_sky(monkeypatch: pytest.MonkeyPatch) -> 
     sunny = 0
     for text, facts, report in [*_said("QQ", 300), *_said("RR", 300)]:
         assert ("sunshine" in text) == ({"light", "weather"} <= facts)
-        if "sunshine" in text:
-            sunny += 1
-            assert (report.crash.light, report.crash.weather) == ("day", "clear")
+        sunny += "sunshine" in text
+        assert "sunshine" not in text or (report.crash.light, report.crash.weather) == ("day", "clear")
     assert sunny > 40
 
 

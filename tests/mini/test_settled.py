@@ -22,8 +22,9 @@ NOWHERE = {"legs", "control"}
 
 
 def _crash(layout: str, *legs: tuple[int, int], actors: tuple[Actor, ...] = ()) -> Crash:
-    """A crash on legs (bearing, lanes each way), the first of the main road."""
-    made = [Leg(bearing, lanes, lanes) for bearing, lanes in legs]
+    """A crash on legs (bearing, lanes each way), the first of the main road; the others have signs."""
+    signs = {True: "none", False: "stop"}
+    made = [Leg(bearing, lanes, lanes, control=signs[(bearing - legs[0][0]) % 4 == 0]) for bearing, lanes in legs]
     return Crash("crossing", layout, legs[0][0], made, list(actors), [], "day", "clear", "dry")
 
 
@@ -38,6 +39,13 @@ SAID = [frozenset({"layout", *LANES, f"{ROAD}.0", f"{ROAD}.2"})]
 
 def test_lanes_without_a_direction_belong_to_no_leg() -> None:
     assert unsettled(_crash("four", *CROSS), SAID) == LANES | NOWHERE
+
+
+def test_a_control_that_all_meet_is_known_wherever_they_come_from() -> None:
+    crash = _crash("four", *CROSS)
+    for leg in crash.legs:
+        leg.control = "signal"
+    assert unsettled(crash, SAID) == LANES | {"legs"}
 
 
 @pytest.mark.parametrize("tie", [{"heading.V1", f"{ROAD}.0"}, {f"{AXIS}.2"}])

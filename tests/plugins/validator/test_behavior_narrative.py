@@ -13,7 +13,7 @@ from sgcad_core.layout import road_spec
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import crash_facts
 from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
-from sgcad_core.specs import Actor, BehaviorSpec, Leg, RoadLayout
+from sgcad_core.specs import Access, Actor, BehaviorSpec, Leg, RoadLayout, RoadSpec
 
 SPEC = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "E", "S", "W"))))
 TEXT = (
@@ -163,11 +163,36 @@ def test_a_turn_that_leaves_by_the_road_of_another_is_asked_again(road: str, exi
     assert {choice["maneuver"] for choice in finding.holds[0].either} == {("turn_left",)}
 
 
-def test_of_a_turn_that_no_text_tells_either_side_may_be_meant() -> None:
+def test_of_a_turn_that_no_text_tells_nobody_knows_what_is_wrong() -> None:
     text = "V1 was traveling north. V2 came out. The front of V1 struck the right side of V2."
-    (finding,) = _found(_changed(1, exit_road="W"), text)
-    assert {choice["maneuver"] for choice in finding.holds[0].either} == {("turn_left",), ("turn_right",)}
-    assert _found(_changed(1, maneuver="turn_right", exit_road="W"), text) == []
+    assert _found(_changed(1, exit_road="W"), text) == []
+
+
+def _layout(*bearings: str, accesses: tuple[Access, ...] = (), **legs: Leg) -> RoadSpec:
+    return road_spec(RoadLayout(
+        legs=tuple(legs.get(b) or Leg(bearing=b, lanes_in=1, lanes_out=1) for b in bearings), accesses=accesses
+    ))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("spec", "start", "exit_road"),
+    [
+        (_layout("N", "E", "S", "W", accesses=(Access(leg="N", side="right", distance_m=40),)), "N_outer", "E"),
+        (_layout("N", "E", "S", "W", accesses=(Access(leg="E", side="right", distance_m=40),)), "N", "E_outer"),
+        (_layout("N", "E", "S", "W", accesses=(Access(leg="S", side="left", distance_m=40),)), "N", "S_access_left"),
+        (_layout("N", "E", "S", "W"), "N", "N"),
+        (_layout("N", "E", "S", "W", E=Leg(bearing="E", lanes_in=1, lanes_out=0)), "N", "E"),
+        (_layout("N", "S", "SE"), "N", "SE"),
+    ],
+)
+def test_a_turn_further_on_or_the_wrong_way_is_not_judged_by_the_next_junction(
+    spec: RoadSpec, start: str, exit_road: str
+) -> None:
+    evidence = Evidence(report=CrashReport(case="x", narrative=TEXT), network=RoadNetwork(spec=spec))
+    behavior = _changed(1, road=start, exit_road=exit_road)
+    assert {road.id for road in spec.roads} >= {start, exit_road}
+    found = BehaviorNarrative().findings(Scenario(actors=(), behavior=behavior), evidence)
+    assert [f for f in found if "which is no" in f.what] == []
 
 
 def test_a_turn_without_an_exit_or_on_a_road_without_any_is_left_alone() -> None:
@@ -192,9 +217,7 @@ def test_a_start_is_held_where_the_road_has_no_such_turn() -> None:
     wrong = _changed(1, road="S", exit_road="N")
     found = BehaviorNarrative().findings(Scenario(actors=(), behavior=wrong), evidence)
     held = [hold for finding in found if finding.where == "V2.road" for hold in finding.holds]
-    assert [hold.line() for hold in held] == [
-        "actors with id V2: road N, direction forward, maneuver turn_left"
-    ]
+    assert [hold.line() for hold in held] == ["actors with id V2: road N, direction forward, maneuver turn_left"]
 
 
 def test_an_invented_vehicle_behind_the_numbered_ones_becomes_something_else() -> None:
