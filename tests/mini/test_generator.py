@@ -399,7 +399,7 @@ def test_driveways_are_spoken_of_where_there_is_one() -> None:
 
 def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
     lanes = []
-    for seed in range(2000):
+    for seed in range(4000):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
         for leg in report.crash.legs if report.behavior and "refuse" not in report.road else ():
             axis = leg.bearing % 4
