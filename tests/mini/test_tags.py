@@ -290,3 +290,18 @@ def test_vehicles_that_share_a_token_are_told_apart_by_name(seed: int) -> None:
         assert own == {f"{actor.id}.{name}" for name in found if f"{actor.id}.{name}" in tags.PICTURE}
         shown |= own
     assert sum(".area=" in name for name in shown) == 2
+
+
+def test_the_side_that_hit_a_pedestrian_is_asked_where_it_is_named(coder: Coder) -> None:
+    seen = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        if "side.0" not in report.told or report.behavior is None:
+            continue
+        seen += 1
+        contact, row = report.crash.contacts[0], training_row(coder, report, None)
+        said = {tag for _, some in row.text_tags for tag in some}
+        assert tags.TEXT[f"contact0.striker_area={contact.striker_area}"] in said
+        assert not [area for area in tags.AREAS if tags.TEXT[f"contact0.struck_area={area}"] in said]
+        assert report.weight(("contacts", 0, "striker_area")) > report.weight(("contacts", 0, "struck_area"))
+    assert seen > 10

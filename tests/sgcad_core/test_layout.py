@@ -104,6 +104,11 @@ def test_the_strongest_control_stands_at_the_hub(controls: tuple[str, str, str],
     assert node(road_spec(RoadLayout(legs=legs)), "hub").control == want
 
 
+def test_a_leg_that_nobody_comes_by_makes_no_all_way_stop_a_lesser_one() -> None:
+    legs = (leg("N", control="stop"), leg("E", control="stop"), leg("S", 0, 1))
+    assert node(road_spec(RoadLayout(legs=legs)), "hub").control == "all_way_stop"
+
+
 def test_two_legs_make_no_junction() -> None:
     spec = road_spec(RoadLayout(legs=(leg("N", control="stop"), leg("S"))))
     assert node(spec, "hub").control == "none"
