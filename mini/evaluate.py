@@ -84,6 +84,7 @@ def _road_fields(report: Report, road: Any) -> Iterator[tuple[str, str, bool]]:
     want = {leg["bearing"]: leg for leg in report.road["legs"]}
     got = {leg["bearing"]: leg for leg in road["legs"]}
     turning = {COMPASS[leg.bearing]: leg.turns_in for leg in report.crash.legs}
+    unplaced = " legs" * ("legs" in report.doubtful)  # what all meet may be told, but not where
     if len(want) > 2:
         yield "junction", "layout", len(got) > 2
     yield "legs", "legs", set(want) == set(got)
@@ -93,7 +94,7 @@ def _road_fields(report: Report, road: Any) -> Iterator[tuple[str, str, bool]]:
         hidden = f" turns.{axis}" if turning.get(bearing) else ""
         yield "lanes", f"lanes.{axis}{hidden}", all(have.get(k) == leg[k] for k in ("lanes_in", "lanes_out"))
         yield "median", f"median.{axis}", have.get("median") == leg["median"]
-        yield "control", "control", have.get("control") == leg["control"]
+        yield "control", f"control{unplaced}", have.get("control") == leg["control"]
         if leg["turns_in"]:
             yield "turns", f"turns.{axis}", have.get("turns_in") == leg["turns_in"]
         if leg["curve"] != "none":
