@@ -194,11 +194,10 @@ class BlocksMixin:
         elif index == self.who[1] and self.crash.config in ("head_on", "lane_change"):  # from where, over what
             self.told |= {f"man.{erring.id}"}
             self.told |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.told else set()
-        options = said.EVENT[key]
+        frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other)
         if key == "from_side_left" and erring.out == self.crash.actors[index].heading and not self.held_out:
-            options = [phrase.replace("opposite direction", "same direction") for phrase in options]
-        frames = self._clear(said.EVENT_FRAMES, index)
-        return self.say(frames, index, other, code=self._phrase(options, index, other))
+            code = code.replace("opposite direction", "same direction")
+        return self.say(frames, index, other, code=code)
 
     def _statements(self, index: int) -> list[str]:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""

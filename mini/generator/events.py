@@ -7,6 +7,7 @@ A part of the writer.
 from __future__ import annotations
 
 import re
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -254,11 +255,15 @@ class EventsMixin:
         return [f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith("[")]
 
     def _area(self, area: str, kind: str) -> str:
-        options = told.AREA[area]
-        if not self.held_out:
-            strange = BODIES if kind == "motorcycle" else CYCLES
-            options = [part for part in families(options, False) if not strange.search(part)]
+        options = told.AREA[area] if self.held_out else _parts(area, kind == "motorcycle")
         return clause_of(self.rng, options, self.held_out)
+
+
+@cache
+def _parts(area: str, cycle: bool) -> list[str]:
+    """Words that train for a side, of motorcycles or of all others."""
+    strange = BODIES if cycle else CYCLES
+    return [part for part in families(told.AREA[area], False) if not strange.search(part)]
 
 
 _FIXED = """

@@ -128,9 +128,10 @@ class RoadsMixin:
         extra = sum(use in ("left", "right") for use in leg.turns_in)
         if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
             total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
-        if not self.held_out:
-            total = self.totals.setdefault(leg.bearing % 4, total) if not bracket else total
+        if bracket:
             self.totals[leg.bearing % 4] = total
+        elif not self.held_out:
+            total = self.totals.setdefault(leg.bearing % 4, total)
         word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")

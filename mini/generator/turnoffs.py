@@ -56,9 +56,8 @@ def told(text: str, crash: Crash) -> set[str]:
     """Facts of the roads that the words tell beside their own: that there is a driveway, a signal or a stop sign."""
     found = {"layout"} if crash.layout == "driveway" and _TOLD.search(text) else set()
     if SIGN.search(text) and any(leg.control == "stop" for leg in crash.legs):
-        found |= {"control", f"{VAGUE}.control"}
-    signal = SIGNAL.search(text) and all(leg.control == "signal" for leg in crash.legs if leg.lanes_in)
-    return found | ({"control"} if signal else set())
+        found |= met("sign", crash)
+    return found | (met("light", crash) if SIGNAL.search(text) else set())
 
 
 def met(key: str, crash: Crash) -> set[str]:

@@ -14,6 +14,8 @@ _TURN_RAD = math.radians(30)
 """A change of heading that is a turn."""
 _NEAR_RAD = math.radians(50)
 """A way within this of a told heading goes that way."""
+SIDES: Mapping[Maneuver, int] = {"turn_left": 1, "turn_right": -1}
+"""Signs of the change of heading that a turn to a side is, counterclockwise."""
 _NUMBERS = range(1, 10)
 UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
 """Road users and objects that reports do not number as vehicles."""
@@ -24,7 +26,7 @@ Course = Mapping[str, tuple[str, ...]]
 def course(way: Way, ways: Sequence[Way], maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
     """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
     start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
-    side = {"turn_left": 1, "turn_right": -1}.get(maneuver)
+    side = SIDES.get(maneuver)
     if side is None:
         return start
     onward = (w.road.id for w in exits(way, ways) if side * turn_of(way, w) > _TURN_RAD)

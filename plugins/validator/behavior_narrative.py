@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar, Literal
 
-from plugins.validator._courses import UNNUMBERED, approaches, course, heading, held
+from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
@@ -27,7 +27,6 @@ _HARDLY_RAD = math.radians(20)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
-_SIDES: dict[Maneuver, int] = {"turn_left": 1, "turn_right": -1}
 _Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
 """Ways of a road spec by road and direction."""
 
@@ -168,7 +167,7 @@ def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Way
         fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
         if fact is None or not fact.maneuver_stated or fact.maneuver != actor.maneuver or way is None:
             continue
-        side = _SIDES.get(actor.maneuver)
+        side = SIDES.get(actor.maneuver)
         taken = next((w for w in exits(way, every) if w.road.id == actor.exit_road), None)
         if side is None or taken is None or side * turn_of(way, taken) > _HARDLY_RAD:
             continue
