@@ -16,7 +16,7 @@ from mini.generator import clauses_motion as motion
 from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
 from mini.generator.clauses_turning import ONWARD, PROCEEDS, STRAYS
-from mini.generator.grammar import Told, choose, clause_of, clauses, families, fill
+from mini.generator.grammar import SLOTS, Told, choose, clause_of, clauses, families, fill
 from mini.generator.world import OPPOSITE, Actor, Contact, Crash
 
 _BEHIND = {
@@ -62,6 +62,8 @@ DRIFTS = re.compile(
 CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
 BODIES = re.compile(r"\b(?:door\w*|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
 """Parts that only motorcycles have, and that they have not."""
+ORDERS = ("striker", "struck", "place")
+"""What a clause of a contact names first: the striker or its side, the struck as its subject, where the struck is hit."""
 TRIES = 40
 BOUND = 0.12
 """Share of those who turn of whom it is told which way they meant to go on."""
@@ -233,8 +235,8 @@ class EventsMixin:
         striker, struck = (self.crash.actors[index].kind for index in (contact.striker, contact.struck))
         sa = contact.striker_area if sides else self._area(contact.striker_area, striker)
         ta = contact.struck_area if sides else self._area(contact.struck_area, struck)
-        clause = self.rng.choice(self._framed(options))
         head_first = contact.striker_area == "front" != contact.struck_area
+        clause = self._framed(self._contact(options, not head_first))
         named = "{S}" in clause or "{T}" in clause
         if (named and not MUTUAL.search(clause)) or (areas and head_first):
             self.told.add(f"contact.{number}")
@@ -243,20 +245,41 @@ class EventsMixin:
         touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
         return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
 
-    def _framed(self, options: list[str]) -> list[str]:
-        """The clauses of this side of the split, now and then with a few words before or behind every one."""
+    def _contact(self, options: list[str], alike: bool) -> str:
+        """A clause of a contact. Where sides do not tell who strikes (`alike`), every order of words trains equally
+        often, since most clauses name the striker first and the rest would hardly be learned."""
         options = families(options, self.held_out)
+        clause = self.rng.choice(options)
+        if self.held_out or not alike:
+            return clause
+        order = self.rng.choice(ORDERS)
+        for _ in range(TRIES):
+            if order_of(clause) == order:
+                break
+            clause = self.rng.choice(options)
+        return clause
+
+    def _framed(self, clause: str) -> str:
+        """A clause of a contact, in training now and then with a few words before or behind it."""
         if self.held_out:
-            return options
-        lead = f"{choose(self.rng, self.rng.choice(told.LEADS))}, " if self.rng.random() < 0.15 else ""
+            return clause
+        if self.rng.random() < 0.15 and not clause.startswith("["):
+            clause = f"{choose(self.rng, self.rng.choice(told.LEADS))}, {clause[:1].lower()}{clause[1:]}"
         tail = f" {choose(self.rng, self.rng.choice(told.TAILS))}" if self.rng.random() < 0.12 else ""
-        if not lead:
-            return [clause + tail for clause in options]
-        return [f"{lead}{clause[:1].lower()}{clause[1:]}{tail}" for clause in options if not clause.startswith("[")]
+        return clause + tail
 
     def _area(self, area: str, kind: str) -> str:
         options = told.AREA[area] if self.held_out else _parts(area, kind == "motorcycle")
         return clause_of(self.rng, options, self.held_out)
+
+
+@cache
+def order_of(clause: str) -> str:
+    """Which of `ORDERS` a clause of a contact has."""
+    first = next((slot for slot in SLOTS.finditer(clause) if slot[1] in ("S", "sa", "T", "ta")), None)
+    if first is None or first[1] in ("S", "sa"):
+        return "striker"
+    return "struck" if clause[: first.start()] in ("", "The ") else "place"
 
 
 @cache

@@ -1,13 +1,14 @@
 """Sentences about the collision: what they say beside their slots is so."""
 
 import re
+from collections import Counter
 from random import Random
 
 import pytest
 
-from mini.generator import clauses_motion, events, writer
+from mini.generator import clauses_contact, clauses_motion, events, writer
 from mini.generator.crash import sample_crash
-from mini.generator.events import DRIFTS
+from mini.generator.events import DRIFTS, ORDERS, order_of
 from mini.generator.report import make_report
 from mini.generator.settled import VAGUE
 from mini.generator.world import WORDS
@@ -121,3 +122,44 @@ def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.Monkey
                 signs += 1
                 assert {"control", f"{VAGUE}.control"} <= facts
     assert lights > 20 < signs
+
+
+@pytest.mark.parametrize(
+    ("clause", "order"),
+    [
+        ("The {sa} of {S} struck the {ta} of {T}", "striker"),
+        ("With its {sa}, {S} damaged the {ta} of {T}", "striker"),
+        ("By {S} was struck the {ta} of {T}", "striker"),
+        ("The {ta} of {T} was struck by the {sa} of {S}", "struck"),
+        ("{T} caught the {sa} of {S} on its {ta}", "struck"),
+        ("{T}'s {ta} was struck by {S}", "struck"),
+        ("Up the {ta} of {T} rode the {sa} of {S}", "place"),
+        ("On its {ta} {T} was struck by {S}", "place"),
+        ("The vehicles collided", "striker"),
+    ],
+)
+def test_a_clause_of_a_contact_names_somebody_first(clause: str, order: str) -> None:
+    assert order_of(clause) == order
+
+
+def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}
+    contact = events.EventsMixin._contact
+
+    def recorded(self: events.EventsMixin, options: list[str], alike: bool) -> str:
+        clause = contact(self, options, alike)
+        made[alike][order_of(clause)] += options is clauses_contact.IMPACT
+        return clause
+
+    monkeypatch.setattr(events.EventsMixin, "_contact", recorded)
+    for seed in range(900):
+        make_report(seed, length=0.0, modes={"text": 1.0})
+    alike, apart = made[True], made[False]
+    assert min(alike[order] for order in ORDERS) > 0.25 * alike.total()
+    assert apart["striker"] > 0.5 * apart.total() > 0 < apart["place"] < 0.2 * apart.total()
+
+
+def test_held_out_clauses_of_a_contact_are_drawn_as_they_stand(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "order_of", lambda clause: pytest.fail(f"asked for the order of {clause}"))
+    found = {text for seed in range(60) for text, facts in sentences(make_report(seed, True)) if "contact.0" in facts}
+    assert len(found) > 30
