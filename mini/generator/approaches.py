@@ -16,7 +16,7 @@ from mini.generator.settled import STEM
 from mini.generator.world import Actor, Crash
 
 GOES_ON = re.compile(
-    r"straight|no turn|no maneuver|(?:normal|ordinary) (?:driving|travel)|joined|mixed with", re.IGNORECASE
+    r"straight|no turn|no maneuver|(?:normal|ordinary)\]? (?:driving|travel)|joined|mixed with", re.IGNORECASE
 )
 """Clauses of one that stays where it drives."""
 LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
@@ -110,8 +110,15 @@ class ApproachMixin:
         chance, turns = self.rng.random(), self.crash.config != "crossing"
         waits, slows = (0.15, 0.15) if self.held_out else (0.4, 0.54) if turns else (0.25, 0.25)
         how = "waiting" if chance < waits else "slowing" if chance < slows else ""
+        if not turns and not self.held_out and self._has_way(self.crash.actors[index]):
+            how = ""
         self.waited = bool(how)
         return how
+
+    def _has_way(self, actor: Actor) -> bool:
+        """Whether the others have a sign at which they give way to one that has none."""
+        own = {leg.control for leg in self.crash.legs if leg.bearing == actor.leg}
+        return own == {"none"} and any(leg.control in ("stop", "yield") for leg in self.crash.legs)
 
     def _why_waiting(self, actor: Actor) -> str:
         """What for: a sign, a light, a gap in traffic, a turn."""

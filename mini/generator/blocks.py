@@ -7,6 +7,7 @@ often told there, or by a driver, more plainly than among the events.
 from __future__ import annotations
 
 import re
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -33,6 +34,9 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
+PEDESTRIAN = re.compile(r"pedestrian(?!.*(?:pedalcycl|nonmotor|cyclist))", re.IGNORECASE)
+GREEN = re.compile(r"\b(?:green|red|yellow) (?:light|signal|arrow)|\blight was (?:green|red|yellow)", re.IGNORECASE)
+"""Statements of a signal."""
 OF_OTHERS = re.compile(r"\{W\}|\b(?:both|neither|two) (?:vehicle|driver|operator|car|motorist|of the)", re.IGNORECASE)
 """Noise that needs a second vehicle."""
 TELLING = re.compile(r"\{(?:spd|dir|lane|doing|code|move)\}")
@@ -75,6 +79,12 @@ def _encroachment(crash: Crash, culprit: Actor, actor: Actor) -> str | None:
     }.get(crash.config)
 
 
+@cache
+def suits(clause: str, others: bool, signals: bool) -> bool:
+    """Whether a clause of noise speaks of no second vehicle and of no signal where there is none."""
+    return (others or not words.OF_TWO.search(clause)) and (signals or not GREEN.search(clause))
+
+
 class BlocksMixin:
     """The sentences on one vehicle, noise and truths; needs the writer's fields."""
 
@@ -91,7 +101,7 @@ class BlocksMixin:
     say: Any
     id_of: Any
     _slot: Any
-    _impact: Any
+    impact: Any
 
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
@@ -138,6 +148,9 @@ class BlocksMixin:
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
             clear = self._clear(GROUPS[group], v)
+            if not self.held_out:
+                signals = any(leg.control == "signal" for leg in self.crash.legs)
+                clear = [c for c in clear if suits(c, bool(others), signals)]
             if clear := [c for c in clear if others or not OF_OTHERS.search(c)]:
                 out.append(self.say(clear, v, w, **self._person(v)))
         return out
@@ -148,7 +161,8 @@ class BlocksMixin:
             actor = self.crash.actors[v]
             waited = self.waited and v == self.who[0]  # and drove as fast as its road allows only before that
             if not actor.speed or f"speed.{actor.id}" in self.told or waited:
-                return rng.choice(("slowly", "at an unknown speed", "at normal speed"))
+                slowly = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
+                return rng.choice((*slowly, "at an unknown speed", "at normal speed"))
             text, actor.speed = words.driver_speed(rng, actor.speed)
             self.told.add(f"speed.{actor.id}")
             return text
@@ -180,6 +194,8 @@ class BlocksMixin:
             out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=move))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
             kind = self._phrase(said.CRASH_TYPE[self.crash.config])
+            if any(actor.kind == "bicycle" for actor in self.crash.actors):
+                kind = PEDESTRIAN.sub("bicyclist", kind)
             if index == self.who[0] or "turn" not in kind:  # of the one that turns
                 out.append(self.say(said.TYPE_FRAMES, index, kind=kind))
         return out
@@ -197,6 +213,8 @@ class BlocksMixin:
         frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other)
         if key == "from_side_left" and erring.out == self.crash.actors[index].heading and not self.held_out:
             code = code.replace("opposite direction", "same direction")
+        if any(actor.kind == "bicycle" for actor in self.crash.actors):
+            code = PEDESTRIAN.sub("bicyclist", code)
         return self.say(frames, index, other, code=code)
 
     def _statements(self, index: int) -> list[str]:
@@ -216,7 +234,7 @@ class BlocksMixin:
         if rng.random() < 0.1 * share:
             contact: Contact = self.crash.contacts[0]
             if index in (contact.striker, contact.struck):
-                out.append(self._impact(0, contact))
+                out.append(self.impact(0, contact))
         return out
 
     def _opponent(self, index: int) -> int | None:

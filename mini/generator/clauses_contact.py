@@ -38,7 +38,7 @@ The {ta} of {T} was [run into|crashed into|rammed] by the {sa} of {S}
 {S} was damaged at the {sa} when it [hit|struck|ran into] the {ta} of {T}
 {T} was damaged at the {ta} when {S} [hit|struck|ran into] it with the {sa}
 In the [collision|crash|impact], {S} struck {T} in the {ta} with the {sa}
-At impact the {sa} of {S} [engaged|hit|was against] the {ta} of {T}
+At impact the {sa} of {S} [engaged|hit] the {ta} of {T}
 {S} went into the {ta} of {T}, {sa} first
 It was the {sa} of {S} that [struck|hit|contacted] the {ta} of {T}
 What {S} [hit|struck] with its {sa} was the {ta} of {T}
@@ -80,7 +80,7 @@ This caused the {sa} of {S} to [strike|contact|impact|hit] the {ta} of {T}
 The {ta} of {T} was [damaged|hit|struck] when {S} contacted it with its {sa}
 [The vehicles|Both vehicles] collided, the {sa} of {S} against the {ta} of {T}
 The {sa} of {S} [struck|struck|struck|impacted|contacted|hit|made contact with|collided with] the {ta} of {T}
-The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type configuration| in an offset-frontal mode|]
+The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type configuration||]
 {S} [struck|hit|impacted|contacted] {T} [in|on] the {ta} with its {sa}
 {S}'s {sa} [struck|impacted|contacted|hit] {T}'s {ta}
 {S}'s {sa} [struck|impacted|made contact with] the {ta} of {T}
@@ -89,7 +89,7 @@ The {sa} of {S} [struck|impacted|struck] the {ta} of {T}[ in a [T|L]-type config
 The {ta} of {T} was [struck|hit|impacted|contacted] by the {sa} of {S}
 The {sa} of {S} [and the {ta} of {T} made contact|[came into contact with|contacted] the {ta} of {T}]
 {S} [struck|impacted] the {ta} of {T} with [its|it's] {sa}
-{T} [was then|was] [struck|contacted] [in|on] its {ta} by {S}[ with its {sa}|]
+{T} [was then|was] [struck|contacted] [in|on] its {ta} by {S} with its {sa}
 ~Contact was made between the {sa} of {S} and the {ta} of {T}
 ~{T} took the {sa} of {S} in its {ta}
 ~The {ta} of {T} met the {sa} of {S}
@@ -162,7 +162,7 @@ The {ta} of {T} was then [struck|hit] by the {sa} of {S}
 After this, {S} [struck|hit] {T}, {sa} to {ta}
 [As a result|From the impact], {S} was forced into {T}, its {sa} striking the {ta} of {T}
 The {sa} of {S} then [struck|impacted|contacted] the {ta} of {T}
-{T} was then [struck|hit] [in|on] the {ta} by {S}
+{T} was then [struck|hit] [in|on] the {ta} by the {sa} of {S}
 {S} was pushed [forward |]and its {sa} [struck|contacted] the {ta} of {T}
 ~Next, {S} ran its {sa} into the {ta} of {T}
 """)

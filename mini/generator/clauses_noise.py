@@ -123,7 +123,7 @@ The last thing {he} [remembered|recalled] was [seeing headlights|looking {anysid
 As {he} [glanced|looked] [{anyside}|in the mirror|at the speedometer], {he} [felt the impact|heard a bang|lost sight of {W}]
 {His} view [of {W} |]was [blocked|obstructed|limited] by [a parked truck|a van|a hedge|a building]
 [A|The] police officer reported that {he} was [talking on the phone|confused|upset] [after the crash|at the scene]
-What {he} remembered was [a flash|a horn|the sound of brakes] and then [the air bag|being hit|a spin]
+What {he} remembered was [a flash|a horn|the sound of brakes] and then [the air bag|the crash|a spin]
 Asked about the crash, {he} [replied that {W} should have stopped|could give no details|said {he} was looking for a parking space]
 The driver said {he} was [unsure|not sure] [which way {W} had come from|what had happened|how fast {he} was going]
 {He} knew the road and [drove it often|had no reason to hurry|was not surprised by the traffic]

@@ -195,7 +195,7 @@ def lane_for(rng: Random, leg: Leg, actor: Actor) -> int:
 def _same_lane(crash: Crash, first: Actor, other: Actor) -> None:
     """Those that meet in one lane or in neighboring lanes of one road."""
     if crash.config == "rear_end":
-        lead = next(a for a in crash.actors if a.maneuver != "straight" or a is first)
+        lead = crash.actors[crash.contacts[0].struck]
         other.lane = first.lane = lead.lane
     if crash.config == "lane_change":
         changer, straight = (first, other) if first.maneuver.startswith("lane_change") else (other, first)

@@ -7,7 +7,6 @@ A part of the writer.
 from __future__ import annotations
 
 import re
-from functools import cache
 from random import Random
 from typing import Any
 
@@ -16,8 +15,9 @@ from mini.generator import clauses_motion as motion
 from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
 from mini.generator.clauses_turning import ONWARD, PROCEEDS, STRAYS
-from mini.generator.grammar import SLOTS, Told, choose, clause_of, clauses, families, fill
-from mini.generator.world import OPPOSITE, Actor, Contact, Crash
+from mini.generator.grammar import Told, clause_of, families, fill
+from mini.generator.impacts import TRIES, ImpactsMixin
+from mini.generator.world import OPPOSITE, Actor, Crash
 
 _BEHIND = {
     "stopped": "stopped|stand|stood|sitting|sat|stationary|halted|motionless|not moving|at rest|to a [a-z ]*stop|waiting|last vehicle",
@@ -42,15 +42,14 @@ STATES = {
     for word, behind in _BEHIND.items()
 }
 """Clauses that say of the other vehicle that it had stopped or was slowing."""
-MUTUAL = re.compile(
-    r"^(?!.*(?:hit|str[iu]c?k)).*"
-    r"(?:\bmet the\b|\bbetween\b|in (?:contact|collision)\b|each other|(?:^|, )\[?(?:The two|Both|The vehicles|They)\b"
-    r"|\{S\} and \{T\}|\{S\} and the \{ta\}|\{S\}'s \{sa\} side and)",
+PAIR = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
+"""Clauses of rest that need a second vehicle."""
+MOVED = re.compile(
+    r"\{([VW])\}[^{.;]*\b(?:pushed|shoved|shunted|dragged|bulldozed|plowed|knocked|where it was|hardly|scarcely|barely)\b"
+    r"|\b(?:pushed|moved|drove|knocked|sent|pushes)\]? \{([VW])\}",
     re.IGNORECASE,
 )
-"""Clauses of a contact that do not tell who strikes; where a front meets a side or a back, that tells it."""
-OF_TWO = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
-"""Clauses of rest that need a second vehicle."""
+"""Clauses of rest that say of one that another moved it, or that it stood where it was struck: the struck one."""
 DRIFTS = re.compile(
     r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|\bslip(?:ped|s)? right|came over|bore (?:off |curb|right)"
     r"|\beas(?:ed|ing)|sagged|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|deviat"
@@ -59,12 +58,6 @@ DRIFTS = re.compile(
     re.IGNORECASE,
 )
 """Clauses of one that hits a parked vehicle which say that it left its lane."""
-CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
-BODIES = re.compile(r"\b(?:door\w*|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
-"""Parts that only motorcycles have, and that they have not."""
-ORDERS = ("striker", "struck", "place")
-"""What a clause of a contact names first: the striker or its side, the struck as its subject, where the struck is hit."""
-TRIES = 40
 BOUND = 0.12
 """Share of those who turn of whom it is told which way they meant to go on."""
 STRAYING = 0.2
@@ -73,7 +66,7 @@ YIELDING = 0.25
 """Share of those who stand or slow for a turn of whom the traffic that they wait for is told, with its heading."""
 
 
-class EventsMixin:
+class EventsMixin(ImpactsMixin):
     """Sentences about the collision; needs the writer's fields."""
 
     rng: Random
@@ -108,7 +101,8 @@ class EventsMixin:
         key = {"left_lateral": "turn_left", "right_into": "turn_right"}.get(config, config)
         out = []
         if self.waited or (rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4)):
-            if config != "parked":  # whether it kept its lane until then no clause tells
+            bent = self.crash.actors[v].maneuver == "negotiating_curve"
+            if config != "parked" and not bent:  # whether it kept its lane until then, or in a bend, no clause tells
                 self.told.add(f"man.{self.id_of(v)}")
             if config not in ("parked", "backing"):  # nor which way one that backs out would have gone
                 self.told.add(f"exit.{self.id_of(v)}")
@@ -121,18 +115,31 @@ class EventsMixin:
         alone, rest = not self.crash.actors[w].vehicle, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
+            if alone and not self.held_out:
+                avoids = [c for c in avoids if not words.OF_TWO.search(c)]
             out += [self.say(avoids, v, w)] if avoids else []
         for number, contact in enumerate(self.crash.contacts):
-            out.append(self._impact(number, contact))
+            out.append(self.impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
         if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
             rest = [clause for clause in families(rest, False) if "median" not in clause]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
-            rest = [clause for clause in rest if not OF_TWO.search(clause)]
+            rest = [clause for clause in rest if not PAIR.search(clause)]
         if self.crash.layout not in ("four", "t") and not self.held_out:
             rest = [clause for clause in rest if "intersection" not in clause]
-        return out + [self.say(rest, v, w) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+        return out + [self._rests(rest, alone) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+
+    def _rests(self, options: list[str], alone: bool) -> str:
+        """Where they come to rest, with the struck as the one that is pushed."""
+        v, w = self.who
+        if self.held_out or alone:
+            return str(self.say(options, v, w))
+        clause, first = self.rng.choice(options), self.crash.contacts[0]
+        if moved := MOVED.search(clause):
+            v, w = first.striker, first.struck
+            v, w = (w, v) if "V" in moved.groups() else (v, w)
+        return str(self.say([clause], v, w))
 
     def _error(self, key: str) -> list[str]:
         """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
@@ -217,82 +224,3 @@ class EventsMixin:
     def _turn(self, index: int) -> str:
         maneuver = self.crash.actors[index].maneuver
         return "left" if maneuver.endswith("left") else "right"
-
-    def _impact(self, number: int, contact: Contact) -> str:
-        rear = contact.striker_area == "front" and contact.struck_area == "back"
-        swipe = {contact.striker_area, contact.struck_area} <= {"left", "right"}
-        later = number > 0
-        options, areas = (told.THEN if later else told.IMPACT), True
-        if swipe and self.rng.random() < 0.6:
-            options = told.SWIPE
-        elif rear and self.rng.random() < 0.3:
-            options = told.THEN_REAR if later else told.IMPACT_REAR
-        elif self.rng.random() < 0.06 and not later:
-            options, areas = told.IMPACT_BARE, False
-        if not self.crash.actors[contact.struck].vehicle:
-            options, areas = clauses(_FIXED), True
-        sides = ("left", "right", "left", "right") if options is told.SWIPE else None
-        striker, struck = (self.crash.actors[index].kind for index in (contact.striker, contact.struck))
-        sa = contact.striker_area if sides else self._area(contact.striker_area, striker)
-        ta = contact.struck_area if sides else self._area(contact.struck_area, struck)
-        head_first = contact.striker_area == "front" != contact.struck_area
-        clause = self._framed(self._contact(options, not head_first))
-        named = "{S}" in clause or "{T}" in clause
-        if (named and not MUTUAL.search(clause)) or (areas and head_first):
-            self.told.add(f"contact.{number}")
-        walks = struck in ("pedestrian", "bicycle")  # no clause tells its side
-        self.told |= {f"{'side' if walks else 'areas'}.{number}"} if areas else set()
-        touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
-        return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
-
-    def _contact(self, options: list[str], alike: bool) -> str:
-        """A clause of a contact. Where sides do not tell who strikes (`alike`), every order of words trains equally
-        often, since most clauses name the striker first and the rest would hardly be learned."""
-        options = families(options, self.held_out)
-        clause = self.rng.choice(options)
-        if self.held_out or not alike:
-            return clause
-        order = self.rng.choice(ORDERS)
-        for _ in range(TRIES):
-            if order_of(clause) == order:
-                break
-            clause = self.rng.choice(options)
-        return clause
-
-    def _framed(self, clause: str) -> str:
-        """A clause of a contact, in training now and then with a few words before or behind it."""
-        if self.held_out:
-            return clause
-        if self.rng.random() < 0.15 and not clause.startswith("["):
-            clause = f"{choose(self.rng, self.rng.choice(told.LEADS))}, {clause[:1].lower()}{clause[1:]}"
-        tail = f" {choose(self.rng, self.rng.choice(told.TAILS))}" if self.rng.random() < 0.12 else ""
-        return clause + tail
-
-    def _area(self, area: str, kind: str) -> str:
-        options = told.AREA[area] if self.held_out else _parts(area, kind == "motorcycle")
-        return clause_of(self.rng, options, self.held_out)
-
-
-@cache
-def order_of(clause: str) -> str:
-    """Which of `ORDERS` a clause of a contact has."""
-    first = next((slot for slot in SLOTS.finditer(clause) if slot[1] in ("S", "sa", "T", "ta")), None)
-    if first is None or first[1] in ("S", "sa"):
-        return "striker"
-    return "struck" if clause[: first.start()] in ("", "The ") else "place"
-
-
-@cache
-def _parts(area: str, cycle: bool) -> list[str]:
-    """Words that train for a side, of motorcycles or of all others."""
-    strange = BODIES if cycle else CYCLES
-    return [part for part in families(told.AREA[area], False) if not strange.search(part)]
-
-
-_FIXED = """
-The {sa} of {S} [struck|impacted|contacted|hit] {T}
-{S} [struck|impacted|hit] {T} with its {sa}
-{S}'s {sa} [struck|impacted] {T}
-{T} was [struck|hit] by the {sa} of {S}
-~With its {sa} {S} ran into {T}
-"""

@@ -77,7 +77,7 @@ def fill(clause: str, slot: Fill) -> str:
     text = SLOTS.sub(lambda m: slot(m[1]), clause)
     text = re.sub(r" +", " ", text)
     text = re.sub(r" ([,.;])", r"\1", text)
-    text = re.sub(r",+(?=[,.;:])", "", text)
+    text = re.sub(r",+(?=[,.;:]|'s\b)", "", text)
     text = _NUMBERED.sub(r"\1", text)
     return _ARTICLE.sub(r"\1n ", text).strip()
 

@@ -60,10 +60,13 @@ class Mentions:
             return _numbered(self.second, number)
         if self.mixed and self.rng.random() < 0.3:
             make = actor.model.split(" ")[0]
-            return self.rng.choice(
-                (f"the {make}", f"the {actor.model}", f"the {make} ({plain})", f"{plain}, the {make},", f"V{number}")
-            )
+            own = [f"the {name}" if self._only(name) else plain for name in (make, actor.model)]
+            return self.rng.choice((*own, f"the {make} ({plain})", f"{plain}, the {make},", f"V{number}"))
         return plain
+
+    def _only(self, name: str) -> bool:
+        """Whether a make or a model is that of one vehicle."""
+        return sum(f"{actor.model} ".startswith(f"{name} ") for actor in self.crash.actors) == 1
 
     def full(self, index: int, body_odds: float = 0.6) -> tuple[str, bool]:
         """The first mention, and whether it tells what kind of vehicle it is."""

@@ -270,5 +270,5 @@ class RoadsMixin:
     def _limit(self, slot: str) -> str:
         axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
-        self.told.add(f"limit.{axis}")
+        self.told |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
         return words.limit(self.rng, limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so

@@ -30,7 +30,7 @@ def main_road(rng: Random, area: str, least: int = 1) -> tuple[int, int, str, bo
         other = max(1, one + rng.choice((-1, 1)))
     twltl = area == "urban" and one + other >= 2 and rng.random() < (0.2 if one + other >= 4 else 0.07)
     divided = not twltl and one + other >= 4 and rng.random() < (0.9 if area == "highway" else 0.4)
-    median = pick(rng, MEDIANS) if divided else ("painted" if one > 1 and rng.random() < 0.05 else "none")
+    median = pick(rng, MEDIANS) if divided else ("painted" if one > 1 and rng.random() < 0.05 and not twltl else "none")
     return one, other, median, twltl
 
 

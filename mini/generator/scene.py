@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
-from mini.generator import words
-from mini.generator.grammar import clause_of, families
+from mini.generator import conditions, words
+from mini.generator.grammar import choose, families
 from mini.generator.junction_phrases import JunctionMixin
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
@@ -28,13 +28,7 @@ TIMES = {
 }
 """Times of day that agree with the light."""
 IN_LANES = re.compile(r"\{xb\} lane")
-SUN = re.compile(
-    r"(?<!not )\b(?:sunny|sunshine|sun|sunlit|blue sk(?:y|ies)|sk(?:y|ies) (?:\w+ )?blue)\b", re.IGNORECASE
-)
-"""Words of the weather that tell daylight."""
-SUNNY = re.compile(r"\bsunny|\bsunshine|\bblue sk(?:y|ies)|\bsk(?:y|ies) (?:\w+ )?blue", re.IGNORECASE)
-"""Words of the light that tell a clear sky."""
-BRIGHT = re.compile(rf"{SUN.pattern}|\bbright", re.IGNORECASE)
+NO_CURVE = re.compile(r"straight|\b(?:no|not|nor|neither|without)\b.*\b(?:curve|bend|turn)", re.IGNORECASE)
 SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*(?:\{road(?:bare)?\}|(?:on|using)\]? a )")
 """Clauses that put everybody on one road."""
 POINTS = re.compile(r"^\[?(?:It|This|Here)\b|\bhere\b|\bthis (?:\[?road|\[?street|\[?highway|section|stretch)")
@@ -43,6 +37,12 @@ SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b",
 """Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
 """Share of openings that name the road and leave the driveway to those who turn there."""
+
+
+@cache
+def unbent(clause: str) -> bool:
+    """Whether a clause says that a road does not bend."""
+    return "{curve}" not in clause and bool(NO_CURVE.search(clause))
 
 
 class SceneMixin(JunctionMixin):
@@ -118,9 +118,13 @@ class SceneMixin(JunctionMixin):
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
-        if not all(actor.vehicle for actor in self.crash.actors[:2]):
+        if self._alone():
             options = [clause for clause in families(options, self.held_out) if not SEVERAL.search(clause)]
         return self._of_road(options, main)
+
+    def _alone(self) -> bool:
+        """Whether the crash is one of a single vehicle."""
+        return not all(actor.vehicle for actor in self.crash.actors[:2])
 
     def _of_road(self, options: list[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
@@ -137,7 +141,9 @@ class SceneMixin(JunctionMixin):
         for slot in ("lim", "lim2"):
             if f"{{{slot}}}" in clause and self._limit_of(slot) is None:
                 return False
-        if "straight" in clause and "{curve}" not in clause and any(leg.curve != "none" for leg in self.crash.legs):
+        if unbent(clause) and any(leg.curve != "none" for leg in self.crash.legs):
+            return False
+        if not self.held_out and self._alone() and words.OF_TWO.search(clause):
             return False
         vehicles = [actor for actor in self.crash.actors if actor.vehicle]
         if SHARED.search(clause) and len({actor.leg % 4 for actor in vehicles}) > 1:
@@ -182,7 +188,7 @@ class SceneMixin(JunctionMixin):
         rng = self.rng
         axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
         legs, self.spoken_of = self._legs_on(axis), axis
-        if not self.roads_left or not legs[0].two_way:
+        if not self.roads_left or not legs[0].two_way or legs[0].twltl:
             return []
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
         one, other = rng.sample((legs[0], back), 2)
@@ -257,7 +263,10 @@ class SceneMixin(JunctionMixin):
         return [self.say([clause], acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])]
 
     def _conditions(self, odds: float) -> list[str]:
-        return [self.say(scene.CONDITIONS)] if self.rng.random() < odds else []
+        if self.rng.random() >= odds:
+            return []
+        alone = self._alone() and not self.held_out
+        return [self.say([c for c in scene.CONDITIONS if not (alone and words.OF_TWO.search(c))])]
 
     def _condition(self, slot: str) -> str:
         key, table = {
@@ -265,14 +274,8 @@ class SceneMixin(JunctionMixin):
             "wx": ("weather", scene.WEATHER),
             "surf": ("surface", scene.SURFACE),
         }[slot]
-        self.told.add(key)
-        options = table[getattr(self.crash, key)]
-        if key == "surface" or self.held_out:
-            return clause_of(self.rng, options, self.held_out)
-        other, untrue = ("light", BRIGHT) if key == "weather" else ("weather", SUNNY)
-        if getattr(self.crash, other) not in ("day", "clear"):
-            options = [words for words in families(options, False) if not untrue.search(words)]
-        text, told = clause_of(self.rng, options, False), SUN if key == "weather" else SUNNY
-        sunny = (self.crash.light, self.crash.weather) == ("day", "clear") and told.search(text)
-        self.told |= {other} if sunny else set()
+        options = families(table[getattr(self.crash, key)], self.held_out)
+        options = options if self.held_out else conditions.fitting(key, options, self.crash)
+        text = choose(self.rng, self.rng.choice(options))
+        self.told |= {key} if self.held_out else {key, *conditions.beside(key, text, self.crash)}
         return text

@@ -139,7 +139,8 @@ class Targets:
         self._unsure(path, *(("kind",) if f"kind.{actor.id}" not in known else ()))
         self._unsure(path, *(("road",) if f"heading.{actor.id}" not in known and actor.vehicle else ()))
         self._unsure(path, *(("maneuver",) if not sure else ()))
-        self._unsure(path, *(("exit_road",) if not sure or f"heading.{actor.id}" not in known else ()))
+        open_end = actor.meant and f"exit.{actor.id}" not in known  # the same words as of one that means to go on
+        self._unsure(path, *(("exit_road",) if not sure or open_end or f"heading.{actor.id}" not in known else ()))
         named = f"lane.{actor.id}"
         beside = self._changes and named not in known and self._lane(actor) is None
         self._unsure(path, *(("lane",) if named in known - self.sure or beside else ()))

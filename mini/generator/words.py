@@ -3,10 +3,19 @@
 
 from __future__ import annotations
 
+import re
 from random import Random
 
 from mini.generator import clauses_road as more
 from mini.generator.world import WORDS, Crash, Leg
+
+OF_TWO = re.compile(
+    r"\{W\}|\b(?:both(?! (?:directions|ways))|either(?! (?:way|side|direction))|neither (?:driver|vehicle|of)|each other"
+    r"|another (?:driver|vehicle|car|motorist)|other (?:driver|vehicle|car|motorist)|drivers|the two\b(?! lanes)|they collided"
+    r"|two (?:vehicle|driver|car|motorist)|vehicles (?:met|collided|came)|pileup|\[?(?:the|both|two) vehicles)\b",
+    re.IGNORECASE,
+)
+"""Words that tell of a second vehicle."""
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")

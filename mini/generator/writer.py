@@ -218,6 +218,8 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
         if bearing is not None:
             return words.bound(self.rng, bearing)
+        if slot == "surf0":
+            self.told.add("surface")
         return {
             "W0": "vehicle",
             "side0": self.rng.choice(("left", "right")),

@@ -6,9 +6,10 @@ from random import Random
 
 import pytest
 
-from mini.generator import clauses_contact, clauses_motion, events, writer
+from mini.generator import clauses_contact, clauses_motion, events, impacts, writer
 from mini.generator.crash import sample_crash
-from mini.generator.events import DRIFTS, ORDERS, order_of
+from mini.generator.events import DRIFTS
+from mini.generator.impacts import ORDERS, order_of
 from mini.generator.report import make_report
 from mini.generator.settled import VAGUE
 from mini.generator.world import WORDS
@@ -144,14 +145,14 @@ def test_a_clause_of_a_contact_names_somebody_first(clause: str, order: str) -> 
 
 def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     made: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}
-    contact = events.EventsMixin._contact
+    contact = impacts.ImpactsMixin._contact
 
-    def recorded(self: events.EventsMixin, options: list[str], alike: bool) -> str:
-        clause = contact(self, options, alike)
+    def recorded(self: impacts.ImpactsMixin, options: list[str], number: int, alike: bool) -> str:
+        clause = contact(self, options, number, alike)
         made[alike][order_of(clause)] += options is clauses_contact.IMPACT
         return clause
 
-    monkeypatch.setattr(events.EventsMixin, "_contact", recorded)
+    monkeypatch.setattr(impacts.ImpactsMixin, "_contact", recorded)
     for seed in range(900):
         make_report(seed, length=0.0, modes={"text": 1.0})
     alike, apart = made[True], made[False]
@@ -160,6 +161,6 @@ def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(m
 
 
 def test_held_out_clauses_of_a_contact_are_drawn_as_they_stand(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(events, "order_of", lambda clause: pytest.fail(f"asked for the order of {clause}"))
+    monkeypatch.setattr(impacts, "order_of", lambda clause: pytest.fail(f"asked for the order of {clause}"))
     found = {text for seed in range(60) for text, facts in sentences(make_report(seed, True)) if "contact.0" in facts}
     assert len(found) > 30
