@@ -113,3 +113,7 @@ def test_others_are_said_to_do_what_they_do(held_out: bool) -> None:
 )
 def test_states_of_the_other_vehicle_are_recognised(clause: str, states: set[str]) -> None:
     assert {word for word, found in STATES.items() if found.search(clause)} == states
+
+
+def test_a_name_with_a_comma_owns_its_parts() -> None:
+    assert fill("{S}'s front", {"S": "V1, the Ford,"}.__getitem__) == "V1, the Ford's front"
