@@ -117,8 +117,9 @@ class ApproachMixin:
 
     def _has_way(self, actor: Actor) -> bool:
         """Whether the others have a sign at which they give way to one that has none."""
-        own = {leg.control for leg in self.crash.legs if leg.bearing == actor.leg}
-        return own == {"none"} and any(leg.control in ("stop", "yield") for leg in self.crash.legs)
+        own = self.crash.leg(actor.leg)
+        free = own is not None and own.control == "none"
+        return free and any(leg.control in ("stop", "yield") for leg in self.crash.legs)
 
     def _why_waiting(self, actor: Actor) -> str:
         """What for: a sign, a light, a gap in traffic, a turn."""

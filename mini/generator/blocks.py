@@ -15,6 +15,7 @@ from mini.generator import clauses_codes as said
 from mini.generator import words
 from mini.generator.clauses_noise import GROUPS, SPEED
 from mini.generator.grammar import Told, clause_of, families, fill
+from mini.generator.turnoffs import SIGNAL
 from mini.generator.world import WORDS, Actor, Contact, Crash
 
 BY_MANEUVER = {
@@ -34,9 +35,10 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
-PEDESTRIAN = re.compile(r"pedestrian(?!.*(?:pedalcycl|nonmotor|cyclist))", re.IGNORECASE)
-GREEN = re.compile(r"\b(?:green|red|yellow) (?:light|signal|arrow)|\blight was (?:green|red|yellow)", re.IGNORECASE)
-"""Statements of a signal."""
+PEDESTRIAN = re.compile(
+    r"(?:pedestrian|person on foot|walking person|walker)(?!.*(?:pedalcycl|nonmotor|cyclist))", re.IGNORECASE
+)
+"""Words for the one whom a vehicle hits, where they name no cyclist too."""
 OF_OTHERS = re.compile(r"\{W\}|\b(?:both|neither|two) (?:vehicle|driver|operator|car|motorist|of the)", re.IGNORECASE)
 """Noise that needs a second vehicle."""
 TELLING = re.compile(r"\{(?:spd|dir|lane|doing|code|move)\}")
@@ -80,9 +82,10 @@ def _encroachment(crash: Crash, culprit: Actor, actor: Actor) -> str | None:
 
 
 @cache
-def suits(clause: str, others: bool, signals: bool) -> bool:
-    """Whether a clause of noise speaks of no second vehicle and of no signal where there is none."""
-    return (others or not words.OF_TWO.search(clause)) and (signals or not GREEN.search(clause))
+def allowed(clause: str, alone: bool, signals: bool) -> bool:
+    """Whether a clause of noise speaks of a second vehicle or of a signal only where there is one."""
+    signal = not signals and (SIGNAL.search(clause) or "the light was" in clause)
+    return not signal and not (alone and words.OF_TWO.search(clause))
 
 
 class BlocksMixin:
@@ -150,8 +153,11 @@ class BlocksMixin:
             clear = self._clear(GROUPS[group], v)
             if not self.held_out:
                 signals = any(leg.control == "signal" for leg in self.crash.legs)
-                clear = [c for c in clear if suits(c, bool(others), signals)]
-            if clear := [c for c in clear if others or not OF_OTHERS.search(c)]:
+                alone = not others and group != "noncontact"
+                clear = [c for c in clear if allowed(c, alone, signals)]
+            elif not others:
+                clear = [c for c in clear if not OF_OTHERS.search(c)]
+            if clear:
                 out.append(self.say(clear, v, w, **self._person(v)))
         return out
 

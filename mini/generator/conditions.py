@@ -14,24 +14,26 @@ SUN = re.compile(
 SUNNY = re.compile(r"\bsunny|\bsunshine|\bblue sk(?:y|ies)|\bsk(?:y|ies) (?:\w+ )?blue", re.IGNORECASE)
 """Words of the light that tell a clear sky."""
 BRIGHT = re.compile(rf"{SUN.pattern}|\bbright", re.IGNORECASE)
+"""Words of the weather that no night allows."""
 SUNLIT = re.compile(rf"{SUN.pattern}|\bsunlight", re.IGNORECASE)
 """Words of the light that no clouds allow."""
 DRY = re.compile(r"\bdry\b", re.IGNORECASE)
-FALLS = {"snow": "rain", "sleet": "rain", "clear": "sleet|freezing rain"}
+"""Words of the weather that may be of the road."""
+FALLS = {"snow": "rain", "sleet": "rain", **dict.fromkeys(("clear", "cloudy", "fog"), "sleet|freezing rain")}
 """Words of a surface that the weather does not allow."""
 
 
-def fitting(key: str, options: list[str], crash: Crash) -> list[str]:
-    """The words of "light", "weather" or "surface" that agree with the other two; all where none does."""
-    return [words for words in options if agrees(words, key, crash.light, crash.weather)] or options
-
-
 @cache
+def fitting(key: str, words: tuple[str, ...], light: str, weather: str) -> list[str]:
+    """Those of the words of "light", "weather" or "surface" that agree with that light and that weather."""
+    return [said for said in words if agrees(said, key, light, weather)]
+
+
 def agrees(words: str, key: str, light: str, weather: str) -> bool:
     """Whether words of "light", "weather" or "surface" may stand beside that light and that weather."""
     if key == "surface":
         return weather not in FALLS or not re.search(FALLS[weather], words, re.IGNORECASE)
-    if key == "weather":  # "dry" is the air or the road, who knows
+    if key == "weather":
         return not DRY.search(words) and (light == "day" or not BRIGHT.search(words))
     return weather == "clear" or not SUNLIT.search(words)
 

@@ -42,11 +42,10 @@ STATES = {
     for word, behind in _BEHIND.items()
 }
 """Clauses that say of the other vehicle that it had stopped or was slowing."""
-PAIR = re.compile(r"\{W\}|\b(?:[Bb]oth|The two|They|[Vv]ehicles)\b")
-"""Clauses of rest that need a second vehicle."""
 MOVED = re.compile(
-    r"\{([VW])\}[^{.;]*\b(?:pushed|shoved|shunted|dragged|bulldozed|plowed|knocked|where it was|hardly|scarcely|barely)\b"
-    r"|\b(?:pushed|moved|drove|knocked|sent|pushes)\]? \{([VW])\}",
+    r"\{([VW])\} was (?:pushed|shoved|shunted|dragged|bulldozed|plowed|knocked)\b"
+    r"|\{([VW])\}[^{.;]*\b(?:where it was|hardly|scarcely|barely)\b"
+    r"|\b(?:pushed|moved|drove|knocked|sent|pushes) \{([VW])\}",
     re.IGNORECASE,
 )
 """Clauses of rest that say of one that another moved it, or that it stood where it was struck: the struck one."""
@@ -115,7 +114,7 @@ class EventsMixin(ImpactsMixin):
         alone, rest = not self.crash.actors[w].vehicle, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
-            if alone and not self.held_out:
+            if not self.held_out and (alone or self.crash.actors[w].maneuver == "parked"):
                 avoids = [c for c in avoids if not words.OF_TWO.search(c)]
             out += [self.say(avoids, v, w)] if avoids else []
         for number, contact in enumerate(self.crash.contacts):
@@ -125,7 +124,7 @@ class EventsMixin(ImpactsMixin):
         if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
             rest = [clause for clause in families(rest, False) if "median" not in clause]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
-            rest = [clause for clause in rest if not PAIR.search(clause)]
+            rest = [clause for clause in rest if not words.OF_TWO.search(clause)]
         if self.crash.layout not in ("four", "t") and not self.held_out:
             rest = [clause for clause in rest if "intersection" not in clause]
         return out + [self._rests(rest, alone) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
@@ -133,12 +132,13 @@ class EventsMixin(ImpactsMixin):
     def _rests(self, options: list[str], alone: bool) -> str:
         """Where they come to rest, with the struck as the one that is pushed."""
         v, w = self.who
-        if self.held_out or alone:
+        if self.held_out:
             return str(self.say(options, v, w))
-        clause, first = self.rng.choice(options), self.crash.contacts[0]
+        clause, first = clause_of(self.rng, options, False), self.crash.contacts[0]
+        while alone and MOVED.search(clause):
+            clause = clause_of(self.rng, options, False)
         if moved := MOVED.search(clause):
-            v, w = first.striker, first.struck
-            v, w = (w, v) if "V" in moved.groups() else (v, w)
+            v, w = (first.struck, first.striker) if "V" in moved.groups() else (first.striker, first.struck)
         return str(self.say([clause], v, w))
 
     def _error(self, key: str) -> list[str]:

@@ -129,6 +129,8 @@ class SceneMixin(JunctionMixin):
     def _of_road(self, options: list[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
         true = [clause for clause in families(options, self.held_out) if self._true(clause)]
+        if self._alone() and not self.held_out:
+            true = [clause for clause in true if not words.OF_TWO.search(clause)]
         if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
             true = [clause for clause in true if "{axis}" in clause or not POINTS.search(clause)]
         self.of_road = True
@@ -142,8 +144,6 @@ class SceneMixin(JunctionMixin):
             if f"{{{slot}}}" in clause and self._limit_of(slot) is None:
                 return False
         if unbent(clause) and any(leg.curve != "none" for leg in self.crash.legs):
-            return False
-        if not self.held_out and self._alone() and words.OF_TWO.search(clause):
             return False
         vehicles = [actor for actor in self.crash.actors if actor.vehicle]
         if SHARED.search(clause) and len({actor.leg % 4 for actor in vehicles}) > 1:
@@ -187,15 +187,16 @@ class SceneMixin(JunctionMixin):
         """What lanes either direction of a road has."""
         rng = self.rng
         axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
-        legs, self.spoken_of = self._legs_on(axis), axis
+        legs = self._legs_on(axis)
         if not self.roads_left or not legs[0].two_way or legs[0].twltl:
             return []
+        self.spoken_of = axis
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
         one, other = rng.sample((legs[0], back), 2)
         ab, bb = (words.bound(rng, leg.bearing + 4) for leg in (one, other))
         self.told |= {f"lanes.{axis}", f"turns.{axis}", f"{AXIS}.{axis}"}
         self.stated.add(f"lanes.{axis}")
-        if one.lanes_in == one.lanes_out and not (one.turns_in or one.twltl or back.turns_in) and rng.random() < 0.4:
+        if one.lanes_in == one.lanes_out and not (one.turns_in or back.turns_in) and rng.random() < 0.4:
             return [self._alike(one, axis, ab, bb)]
         lists = {"alist": lane_phrase(rng, one), "blist": lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]
@@ -275,7 +276,8 @@ class SceneMixin(JunctionMixin):
             "surf": ("surface", scene.SURFACE),
         }[slot]
         options = families(table[getattr(self.crash, key)], self.held_out)
-        options = options if self.held_out else conditions.fitting(key, options, self.crash)
+        if not self.held_out:
+            options = conditions.fitting(key, tuple(options), self.crash.light, self.crash.weather)
         text = choose(self.rng, self.rng.choice(options))
         self.told |= {key} if self.held_out else {key, *conditions.beside(key, text, self.crash)}
         return text

@@ -10,9 +10,9 @@ from mini.generator import clauses_road as more
 from mini.generator.world import WORDS, Crash, Leg
 
 OF_TWO = re.compile(
-    r"\{W\}|\b(?:both(?! (?:directions|ways))|either(?! (?:way|side|direction))|neither (?:driver|vehicle|of)|each other"
-    r"|another (?:driver|vehicle|car|motorist)|other (?:driver|vehicle|car|motorist)|drivers|the two\b(?! lanes)|they collided"
-    r"|two (?:vehicle|driver|car|motorist)|vehicles (?:met|collided|came)|pileup|\[?(?:the|both|two) vehicles)\b",
+    r"\{W\}|\bboth (?!directions|ways|straight|hands|arms|front|facts|\{)|\beither(?! (?:way|side|direction))"
+    r"|\bneither (?:driver|vehicle|of)|\beach other|other \[?(?:driver|vehicle|car|motorist)|\bthey\b"
+    r"|\bthe two\b(?! lanes)|\b(?:two|the) \[?(?:two )?(?:vehicles|cars|drivers|motorists)\b|\bpileup",
     re.IGNORECASE,
 )
 """Words that tell of a second vehicle."""

@@ -6,6 +6,7 @@ from random import Random
 import pytest
 
 from mini.generator import approaches, clauses_motion, words, writer
+from mini.generator.crash import sample_crash
 from mini.generator.report import make_report
 from mini.generator.settled import STEM
 from mini.generator.world import Leg
@@ -98,3 +99,14 @@ def test_a_lane_that_is_named_by_its_direction_tells_it(monkeypatch: pytest.Monk
             assert bool(bound) == any(fact.startswith("heading.") for fact in facts), text
             named, other = named + bool(bound), other + (not bound)
     assert named > 30 < other
+
+
+def test_who_has_the_way_does_not_stop_where_the_others_have_a_sign() -> None:
+    paused = {True: 0, False: 0}
+    for seed in range(400):
+        own = writer.Writer(Random(seed), sample_crash(Random(seed), "crossing"), False, 1.0)
+        controls = {leg.bearing: leg.control for leg in own.crash.legs}
+        free = controls[own.crash.actors[own.who[0]].leg] == "none" and {"stop", "yield"} & set(controls.values())
+        paused[bool(free)] += bool(own._pauses(own.who[0]))
+    assert paused[True] == 0
+    assert paused[False] > 30

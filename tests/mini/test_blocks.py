@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mini.generator import clauses_codes as said
-from mini.generator.blocks import BY_MANEUVER, event_of
+from mini.generator.blocks import BY_MANEUVER, PEDESTRIAN, allowed, event_of
 from mini.generator.clauses_noise import GROUPS, SPEED
 from mini.generator.crash import sample_crash
 from mini.generator.grammar import SLOTS, families
@@ -171,3 +171,29 @@ def test_an_encroachment_over_a_line_tells_what_the_other_did(monkeypatch: pytes
                 told = [actor for actor in report.crash.actors if f"man.{actor.id}" in facts]
                 assert [actor.maneuver.startswith(("crossing", "lane_change")) for actor in told] == [True]
     assert seen > 40
+
+
+@pytest.mark.parametrize(
+    ("clause", "alone", "signals", "may"),
+    [
+        ("{He} did not see {W}", True, True, False),
+        ("Neither driver was hurt", True, True, False),
+        ("The vehicles were photographed", True, True, False),
+        ("Traffic moved in both directions", True, True, True),
+        ("{He} kept both hands on the wheel", True, True, True),
+        ("Neither driver was hurt", False, True, True),
+        ("{He} said that {he} had a green light", False, False, False),
+        ("{He} said that {he} had a green light", False, True, True),
+    ],
+)
+def test_noise_speaks_of_others_and_of_signals_where_there_are_some(
+    clause: str, alone: bool, signals: bool, may: bool
+) -> None:
+    assert allowed(clause, alone, signals) is may
+
+
+def test_a_cyclist_is_coded_as_no_pedestrian() -> None:
+    codes = families(said.EVENT["pedestrian"], False)
+    assert [code for code in codes if PEDESTRIAN.search(code)]
+    assert PEDESTRIAN.sub("bicyclist", "pedestrian in roadway") == "bicyclist in roadway"
+    assert PEDESTRIAN.sub("bicyclist", "pedestrian, pedalcyclist, in roadway") == "pedestrian, pedalcyclist, in roadway"

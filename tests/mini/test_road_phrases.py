@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mini.generator import clauses_road, lane_lists, words, writer
+from mini.generator import clauses_road, clauses_scene, lane_lists, words, writer
 from mini.generator.grammar import unmark
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, ROAD
@@ -189,3 +189,15 @@ def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -
             axes = {actor.leg % 4 for actor in crash.actors if f"heading.{actor.id}" in facts}
             assert not (limits and axes) or axes <= limits
     assert crossing > 20
+
+
+def test_the_limit_of_the_other_road_is_laid_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(clauses_scene, "ROAD2", ["QQ the side street has {lim2}"])
+    told = 0
+    for seed in range(900):
+        for text, facts in sentences(make_report(seed, length=0.0, modes={"text": 1.0})):
+            if text.startswith("QQ"):
+                told += 1
+                (axis,) = {fact.partition(".")[2] for fact in facts if fact.startswith("limit.")}
+                assert f"{ROAD}.{axis}" in facts
+    assert told > 30

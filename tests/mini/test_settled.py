@@ -247,3 +247,19 @@ def test_the_lane_of_one_parked_or_of_no_known_heading_is_not_taken_from_the_roa
                 seen += 1
                 assert have["lane"] is None
     assert seen > 50
+
+
+def test_where_one_that_stands_goes_is_a_guess_until_it_is_told() -> None:
+    guesses = told = 0
+    for seed in range(2500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for index, actor in enumerate(report.crash.actors):
+            if not actor.meant or f"man.{actor.id}" not in report.told:
+                continue
+            weight = report.weight(("actors", index, "exit_road"))
+            if f"exit.{actor.id}" in report.told:
+                told += weight != GUESS
+            else:
+                guesses += 1
+                assert weight == GUESS
+    assert guesses > 20 < told
