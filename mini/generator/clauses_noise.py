@@ -48,14 +48,14 @@ The driver of {V}, a {age} {sex}, [was transported to a local hospital|reported 
 A {age} [belted |]{sex} passenger in the front right seat was [also |][not injured|transported with minor injuries]
 The driver of {V} was [alone in the vehicle|properly restrained|ejected from the vehicle]
 Both drivers were transported to [local hospitals|an area hospital] with [minor|unknown|serious] injuries
-There were [no passengers|{k} passengers] in {V}[ and none were injured|]
+There were [no passengers|{k} passengers|{k} passengers, none of them injured,] in {V}
 The [only |]occupant of {V}, a {age} {sex}, [was unhurt|complained of {anyside} shoulder pain|suffered a broken wrist]
 {His} seat belt was [in use|fastened|not in use] and the [frontal|driver's|steering wheel] air bag [deployed|did not deploy]
 The driver, a {age} {sex}, was [transported|taken|flown] to a [hospital|trauma center] with [minor|incapacitating|non-life-threatening] injuries
 [Paramedics|Emergency crews|Rescue workers] had to [extricate|free] the driver of {V}
 The driver of {V} had to be [extricated|cut out|helped out] by [the fire department|rescue personnel|bystanders]
 [A|One] passenger in {V} was [seated in the rear|in the second row|in the {anyside} rear seat] and was [belted|in a booster seat|unrestrained]
-{V} carried [no passengers|a family of four|{k} passengers][, all of whom were belted|]
+{V} carried [no passengers|[a family of four|{k} passengers][, all of whom were belted|]]
 All [occupants|{k} occupants] of {V} were [wearing their seat belts|restrained|treated at the scene and released]
 As a result of the crash, the {age} {sex} [sustained|suffered] [a head injury|rib fractures|a fractured pelvis|cuts to the {anyside} hand]
 {He} [complained of|was treated for] [neck and back pain|chest pain|a bruised {anyside} knee|a headache] [at the scene|at a hospital|the next day]
@@ -111,7 +111,7 @@ The driver of {V} was [interviewed|contacted] [by telephone|at home|at the hospi
 The driver of {V} [was not|could not be] interviewed[ due to injuries| because {he} could not be reached|]
 An interview with the driver of {V} [was conducted|was completed] [at the scene|by phone|{k} days later]
 A passenger in {V} [said|stated|reported] that [the driver was looking {anyside}|{W} appeared suddenly|the radio was on]
-[Witnesses|Two witnesses|Several bystanders] [reported|said|told police] that {V} was [speeding|weaving|traveling slowly|changing lanes]
+[Witnesses|Two witnesses|Several bystanders] [reported|said|told police] that {V} was [speeding|weaving|traveling slowly]
 {He} had [just left|been on {his} way from] [work|a restaurant|a relative's house|the gym] when the crash [happened|occurred]
 {He} was [headed|going] {any8} [to pick up a child|to a doctor's appointment|to the store|to visit a friend]
 {He} was [late|running late|in no hurry] and [was thinking about|was on the way to] [work|a meeting|an interview]
@@ -174,7 +174,7 @@ Rested and [alert|in good spirits], {he} [was not distracted|had left on time|wa
 """)
 
 CODES = clauses("""
-Precrash [event|stability|location] for {V}: [tracking|stayed in the original travel lane|departed roadway]
+Precrash [event|stability|location] for {V}: [tracking|stayed in the original travel lane]
 The critical reason was [not assigned to {V}|assigned to {V}], [a driver error|inadequate surveillance|misjudgment of gap or other's speed]
 The [first|only] harmful event was a collision with [a motor vehicle|another vehicle] in transport
 The critical reason for the critical event was [coded as |]a driver[-| ]related [recognition|decision|performance] [factor|error][: inadequate surveillance|: too fast for conditions|: false assumption of other's actions|: internal distraction|]

@@ -89,7 +89,7 @@ The crash site was {roadbare}
 The {axis} road[way|] was [straight|level|straight and level] with a speed limit of {lim}
 {Road} [was posted at|had a limit of|carried a limit of] {lim}
 The area had a speed limit of {lim}
-The [roadway|road] was [straight and level|level|straight] [and|with] [had |]a posted speed limit of {lim}
+The [roadway|road] was [straight and level|level|straight] [and had|with] a posted speed limit of {lim}
 The posted speed limit [was|is] {lim}
 The speed limit [was|is] posted at {lim}[ and the road was [level|straight]|]
 The {axis} [roadway|road|street] [is|was] {roadbare}[ and level|]

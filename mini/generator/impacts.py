@@ -56,8 +56,12 @@ UNLED = re.compile(
 """Clauses before which no further words stand."""
 GOES_ON = re.compile(r"\b(?:kept going|carried on|went on|continued)\b")
 """Words behind a clause that go on with whoever it names first."""
-CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar", re.IGNORECASE)
-BODIES = re.compile(r"\b(?:door\w*|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield)\b", re.IGNORECASE)
+CYCLES = re.compile(r"saddlebag|\bforks?\b|handlebar|foot ?peg|fairing|pannier|crash bar", re.IGNORECASE)
+BODIES = re.compile(
+    r"\b(?:door\w*|cab|hood|trunk|tailgate|hatch|box|sill|roof|pillar|windshield|window\w*|rocker|quarter|bed"
+    r"|lift ?gate|deck ?lid|running board|toolbox|trailer|passenger compartment|wipers?)\b",
+    re.IGNORECASE,
+)
 """Parts that only motorcycles have, and that they have not."""
 ORDERS = ("striker", "struck", "place")
 """What a clause of a contact names first: the striker or its side, the struck as its subject, where that is hit."""

@@ -43,7 +43,8 @@ class Targets:
         self.behavior = self._behavior()
 
     def weight(self, path: tuple[Any, ...]) -> float:
-        """Weight of a pick; paths not named are sure."""
+        """Weight of a pick; paths not named are sure. Lists of turn lanes weigh as a whole."""
+        path = path[:3] if "turns_in" in path else path
         return self.weights.get(path, SURE) if self.flat is None else self.flat
 
     # -------------------------------------------------------------- road
@@ -106,7 +107,7 @@ class Targets:
 
     def _access(self, index: int, access: Access) -> Json:
         wide = 1
-        if access.mouth is not None:
+        if self.alone or access.mouth is not None:  # no text tells how far it lies
             self._unsure(("accesses", index), "distance_m")
         return {
             "leg": COMPASS[access.leg],

@@ -17,7 +17,11 @@ from tests.mini.reports import sentences
 
 
 @pytest.mark.parametrize(
-    ("kind", "strange"), [("motorcycle", "door|hood|trunk|cab "), ("car", "saddlebag|fork|handlebar")]
+    ("kind", "strange"),
+    [
+        ("motorcycle", "door|hood|trunk|cab |window|quarter|trailer"),
+        ("car", "saddlebag|fork|handlebar|foot peg|pannier"),
+    ],
 )
 def test_no_vehicle_is_hit_on_a_part_that_it_has_not(kind: str, strange: str) -> None:
     crash = sample_crash(Random(3))

@@ -263,3 +263,29 @@ def test_where_one_that_stands_goes_is_a_guess_until_it_is_told() -> None:
                 guesses += 1
                 assert weight == GUESS
     assert guesses > 20 < told
+
+
+def test_a_list_of_turn_lanes_weighs_as_a_whole() -> None:
+    named = told = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for index, leg in enumerate(report.crash.legs):
+            path = ("legs", index, "turns_in")
+            weights = {report.weight((*path, 0)), report.weight((*path, 0, "more")), report.weight(path)}
+            assert len(weights) == 1
+            turns = f"turns.{leg.bearing % 4}"
+            named += weights == {GUESS}
+            told += weights == {SURE} and turns in report.told and bool(leg.turns_in)
+            assert turns not in report.doubtful or weights == {GUESS}
+    assert named > 20 < told
+
+
+def test_how_far_a_driveway_lies_no_text_tells() -> None:
+    found = 0
+    for seed in range(1500):
+        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        for index, _ in enumerate(report.road["accesses"] if report.road else ()):
+            found += 1
+            assert report.weight(("accesses", index, "distance_m")) == GUESS
+            assert report.weight(("accesses", index, "side")) == SURE
+    assert found > 20
