@@ -134,7 +134,7 @@ class BlocksMixin:
         found = families(options, self.held_out)
         if self.crash.actors[index].maneuver in ("stopped", "parked"):
             found = [clause for clause in found if "{spd}" not in clause]
-        if index in self.lately or sum(actor.vehicle for actor in self.crash.actors) == 1:
+        if index in self.lately or self.crash.alone:
             return found
         return [clause for clause in found if "{V}" in clause or not TELLING.search(clause)]
 
@@ -143,6 +143,8 @@ class BlocksMixin:
         wanted = mean * self.length
         count = int(wanted) + (self.rng.random() < wanted % 1)
         vehicles = [i for i, a in enumerate(self.crash.actors) if a.vehicle]
+        signals = any(leg.control == "signal" for leg in self.crash.legs)
+        alone = self.crash.alone and group != "noncontact"
         out = []
         for _ in range(count):
             v = index if index in vehicles else self.rng.choice(vehicles)
@@ -152,8 +154,6 @@ class BlocksMixin:
                 self.lately.clear()
             clear = self._clear(GROUPS[group], v)
             if not self.held_out:
-                signals = any(leg.control == "signal" for leg in self.crash.legs)
-                alone = not others and group != "noncontact"
                 clear = [c for c in clear if allowed(c, alone, signals)]
             elif not others:
                 clear = [c for c in clear if not OF_OTHERS.search(c)]
@@ -199,9 +199,7 @@ class BlocksMixin:
                 self.told |= {f"man.{self.id_of(index)}"}
             out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=move))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
-            kind = self._phrase(said.CRASH_TYPE[self.crash.config])
-            if any(actor.kind == "bicycle" for actor in self.crash.actors):
-                kind = PEDESTRIAN.sub("bicyclist", kind)
+            kind = self._of_whom(self._phrase(said.CRASH_TYPE[self.crash.config]))
             if index == self.who[0] or "turn" not in kind:  # of the one that turns
                 out.append(self.say(said.TYPE_FRAMES, index, kind=kind))
         return out
@@ -219,9 +217,12 @@ class BlocksMixin:
         frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other)
         if key == "from_side_left" and erring.out == self.crash.actors[index].heading and not self.held_out:
             code = code.replace("opposite direction", "same direction")
-        if any(actor.kind == "bicycle" for actor in self.crash.actors):
-            code = PEDESTRIAN.sub("bicyclist", code)
-        return self.say(frames, index, other, code=code)
+        return self.say(frames, index, other, code=self._of_whom(code))
+
+    def _of_whom(self, code: str) -> str:
+        """A code that calls a cyclist no pedestrian."""
+        rides = any(actor.kind == "bicycle" for actor in self.crash.actors)
+        return PEDESTRIAN.sub("bicyclist", code) if rides else code
 
     def _statements(self, index: int) -> list[str]:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""

@@ -111,11 +111,13 @@ class EventsMixin(ImpactsMixin):
                 self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
             self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
             out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=OPPOSITE[side]))
-        alone, rest = not self.crash.actors[w].vehicle, told.REST
+        alone, rest = self.crash.alone, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
-            avoids = [c for c in families(told.AVOID, self.held_out) if not alone or "{W}" not in c]
+            avoids = families(told.AVOID, self.held_out)
             if not self.held_out and (alone or self.crash.actors[w].maneuver == "parked"):
-                avoids = [c for c in avoids if not words.OF_TWO.search(c)]
+                avoids = words.of_one(avoids)
+            elif alone:
+                avoids = [clause for clause in avoids if "{W}" not in clause]
             out += [self.say(avoids, v, w)] if avoids else []
         for number, contact in enumerate(self.crash.contacts):
             out.append(self.impact(number, contact))
@@ -124,18 +126,18 @@ class EventsMixin(ImpactsMixin):
         if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
             rest = [clause for clause in families(rest, False) if "median" not in clause]
         if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
-            rest = [clause for clause in rest if not words.OF_TWO.search(clause)]
+            rest = words.of_one(rest)
         if self.crash.layout not in ("four", "t") and not self.held_out:
             rest = [clause for clause in rest if "intersection" not in clause]
-        return out + [self._rests(rest, alone) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
+        return out + [self._rests(rest) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
-    def _rests(self, options: list[str], alone: bool) -> str:
+    def _rests(self, options: list[str]) -> str:
         """Where they come to rest, with the struck as the one that is pushed."""
         v, w = self.who
         if self.held_out:
             return str(self.say(options, v, w))
         clause, first = clause_of(self.rng, options, False), self.crash.contacts[0]
-        while alone and MOVED.search(clause):
+        while self.crash.alone and MOVED.search(clause):
             clause = clause_of(self.rng, options, False)
         if moved := MOVED.search(clause):
             v, w = (first.struck, first.striker) if "V" in moved.groups() else (first.striker, first.struck)

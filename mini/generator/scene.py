@@ -118,19 +118,15 @@ class SceneMixin(JunctionMixin):
         options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
             options = [clause for clause in options if "{jn}" in clause.lower()]
-        if self._alone():
+        if self.crash.alone:
             options = [clause for clause in families(options, self.held_out) if not SEVERAL.search(clause)]
         return self._of_road(options, main)
-
-    def _alone(self) -> bool:
-        """Whether the crash is one of a single vehicle."""
-        return not all(actor.vehicle for actor in self.crash.actors[:2])
 
     def _of_road(self, options: list[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
         true = [clause for clause in families(options, self.held_out) if self._true(clause)]
-        if self._alone() and not self.held_out:
-            true = [clause for clause in true if not words.OF_TWO.search(clause)]
+        if self.crash.alone and not self.held_out:
+            true = words.of_one(true)
         if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
             true = [clause for clause in true if "{axis}" in clause or not POINTS.search(clause)]
         self.of_road = True
@@ -266,8 +262,8 @@ class SceneMixin(JunctionMixin):
     def _conditions(self, odds: float) -> list[str]:
         if self.rng.random() >= odds:
             return []
-        alone = self._alone() and not self.held_out
-        return [self.say([c for c in scene.CONDITIONS if not (alone and words.OF_TWO.search(c))])]
+        alone = self.crash.alone and not self.held_out
+        return [self.say(words.of_one(scene.CONDITIONS) if alone else scene.CONDITIONS)]
 
     def _condition(self, slot: str) -> str:
         key, table = {

@@ -17,6 +17,12 @@ OF_TWO = re.compile(
 )
 """Words that tell of a second vehicle."""
 
+
+def of_one(clauses: list[str]) -> list[str]:
+    """The clauses that speak of no second vehicle."""
+    return [clause for clause in clauses if not OF_TWO.search(clause)]
+
+
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
 SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")

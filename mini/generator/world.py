@@ -140,6 +140,11 @@ class Crash:
             and self.actors[contact.striker].leg == self.actors[contact.struck].leg
         ]
 
+    @property
+    def alone(self) -> bool:
+        """Whether a single vehicle crashes, into a thing or a person."""
+        return sum(actor.vehicle for actor in self.actors) == 1
+
     def is_main(self, bearing: int) -> bool:
         """Whether a leg belongs to the main road."""
         return bearing % 4 == self.main % 4
