@@ -1,6 +1,6 @@
 """What the sandbox costs: wall and processor time of a script, against the same script in this process.
 
-    python -m benchmarks.sandbox [--runs 20]
+python -m benchmarks.sandbox [--runs 20]
 """
 
 from __future__ import annotations

@@ -85,9 +85,7 @@ def table(count: int, overrides: list[str]) -> str:
         f"- start-up of a batch: {small.wall - SMALL * (large.wall - small.wall) / more:.1f} s",
         "", "| stage | ms a case | share |", "|---|---|---|",
     ]  # fmt: skip
-    lines += [
-        f"| {n} | {1000 * s:.0f} | {s / total:.0%} |" for n, s in sorted(per_case.items(), key=lambda i: -i[1])
-    ]
+    lines += [f"| {n} | {1000 * s:.0f} | {s / total:.0%} |" for n, s in sorted(per_case.items(), key=lambda i: -i[1])]
     return "\n".join(lines)
 
 

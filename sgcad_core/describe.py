@@ -87,9 +87,7 @@ def _ways_of_graph(graph: LaneGraph) -> list[_Way]:
     for edge in graph.edges.values():
         if lanes := edge.car_lanes:
             road, direction = road_of(edge.id)
-            ways[edge.id] = _Way(
-                road, direction, len(lanes), edge.from_node, edge.to_node, _headings(lanes[0].shape)
-            )
+            ways[edge.id] = _Way(road, direction, len(lanes), edge.from_node, edge.to_node, _headings(lanes[0].shape))
     for link in graph.connections:
         if link.from_edge in ways and link.to_edge in ways:
             word = {"through": "straight", "u_turn": "sharply back"}.get(link.direction, link.direction)

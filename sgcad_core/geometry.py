@@ -17,7 +17,6 @@ Size = tuple[float, float]
 """Length and width, metres."""
 
 
-
 class Box(NamedTuple):
     """One oriented box, metres and radians."""
 
@@ -136,6 +135,7 @@ def offset_polyline(points: Floats, left_m: ArrayLike) -> Floats:
 # ------------------------------------------------------------------ many boxes at once
 SIDES = ("front", "left", "back", "right")
 """Names of the side codes 0 to 3, counter-clockwise from the front."""
+
 
 def local_points(poses: Floats, points: Floats) -> Floats:
     """Points (n, k, 2) in the frames of (n, 3) poses: x ahead, y to the left."""

@@ -126,7 +126,7 @@ def _hidden_center(facts: LaneFacts, ends: tuple[Compass, Compass]) -> bool:
 
 
 def _other_side(facts: LaneFacts, ends: tuple[Compass, Compass], told: dict[Compass, int]) -> dict[Compass, int]:
-    (way, count), = told.items()
+    ((way, count),) = told.items()
     other = ends[1] if way == ends[0] else ends[0]
     rest = (facts.total or 0) - count - facts.center_turn_lane
     if rest < 1 or facts.divided:

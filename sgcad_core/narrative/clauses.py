@@ -86,8 +86,11 @@ _PREPOSITION = re.compile(
     r"clipped|the|a|an|this|"
     r"signaled|believed|thought|stated|that|spotted|not see)\s*)$", re.I)  # fmt: skip
 _ASIDE = re.compile(r"^\s*,\s*(?:an?|the|aged?|who (?:was|is))\b[^,;.]{0,70},", re.I)
-_BESIDE = re.compile(r"\b(?:ahead of|in front of|behind|beside|next to|alongside|past|following|passing|"
-                     r"overtaking)\s*$", re.I)
+_BESIDE = re.compile(
+    r"\b(?:ahead of|in front of|behind|beside|next to|alongside|past|following|passing|"
+    r"overtaking)\s*$",
+    re.I,
+)
 _REPORTS = re.compile(r"\b(?:that|saw|see|noticed|observed|believed|thought|stated|realized|spotted|watched)\s*$", re.I)
 _DRIVER_OF = re.compile(
     r"\b(?:driver|operator|driver's side|front|rear|side|left|right|corner|end|bumper|half|"

@@ -34,7 +34,9 @@ _SIGNAL = re.compile(
     r"\b(?:approach\w*|stop\w* (?:at|for)) (?:the|a) (?:light|signal)\b", re.I)  # fmt: skip
 _SIGNAL_OUT = re.compile(
     r"\b(?:signal|light)s?\b[^.;]{0,40}\b(?:not (?:function\w*|work\w*|operat\w*)|inoperative|out of (?:order|"
-    r"service)|dark\b)", re.I)
+    r"service)|dark\b)",
+    re.I,
+)
 _NOT_SIGNAL = re.compile(
     r"\b(?:no|without|nor|not (?:any|have)|uncontrolled|were no|was no)\b(?: \w+){0,6}? (?:signals?|lights?|"
     r"controls?|devices?|signs?)\b(?:,? (?:or|and|nor)(?: \w+){0,3} (?:signals?|signs?|lights?|devices?))*|"
@@ -42,19 +44,27 @@ _NOT_SIGNAL = re.compile(
     r"light)s?|\bturn signal\w*|\bday ?light|"
     r"\bsignals? (?:not|absent)|\bunsignali[sz]ed", re.I)  # fmt: skip
 _STOP = re.compile(
-    r"\bstop[ -]signs?\b|\bstop[ -](?:controlled|sign-controlled)|\ball-way stop|\b(?:four|three|two)-way stop", re.I)
+    r"\bstop[ -]signs?\b|\bstop[ -](?:controlled|sign-controlled)|\ball-way stop|\b(?:four|three|two)-way stop", re.I
+)
 _ALL_STOP = re.compile(
     r"\b(?:four|4|all|three|3)[ -]way stop|\bstop signs? (?:in|for|on|at) (?:all|each|every)|"
-    r"\ball(?: \w+)? (?:directions|approaches|traffic)[^.;]{0,30}stop sign", re.I)
+    r"\ball(?: \w+)? (?:directions|approaches|traffic)[^.;]{0,30}stop sign",
+    re.I,
+)
 _YIELD = re.compile(r"\byield(?: right[ -]of[ -]way)? signs?\b", re.I)
 _FLASHING = re.compile(
     r"\b(?:flashing|blinking)(?: \w+){0,3} (?:lights?|signals?|beacons?|yellow|red|amber)|\b(?:flashing|"
-    r"blinking) (?:red|yellow|amber)|\bbeacon\b", re.I)
+    r"blinking) (?:red|yellow|amber)|\bbeacon\b",
+    re.I,
+)
 _NOT_CONTROL = re.compile(
-    r"\b(?:no|without|not|were no|lack\w*|absence)\b[^.;,]{0,40}?(?:stop signs?|signs?|yield)", re.I)
+    r"\b(?:no|without|not|were no|lack\w*|absence)\b[^.;,]{0,40}?(?:stop signs?|signs?|yield)", re.I
+)
 _CONSTRUCTION = re.compile(
     r"\bconstruction|\bwork zone|\bflag(?:ger|man)|school bus\b.{0,40}flashing|police (?:car|vehicle)|"
-    r"overhead lights", re.I)
+    r"overhead lights",
+    re.I,
+)
 
 
 def control_of(told: Sequence[Told]) -> Control:
@@ -103,7 +113,9 @@ _SUBJECT = re.compile(
     r"(?=[^.;]{0,90}$)(?! (?:lanes? )?of (?:a|an|the)\b)", re.I)  # fmt: skip
 _SIDE_ROAD = re.compile(
     r"\b(?:side|intersecting|minor|secondary|crossing|cross|one[ -]way|terminating|"
-    r"residential)[ -](?:\w+ )?(?:street|road\w*|traffic)", re.I)
+    r"residential)[ -](?:\w+ )?(?:street|road\w*|traffic)",
+    re.I,
+)
 
 
 def signed_legs(

@@ -44,9 +44,12 @@ _T = re.compile(
     r"\b[TY]-intersection|\bT[- ]junction|\b[TY](?:\"|')?[- ]?(?:type|shaped?|style)[- ](?:\w+ )?(?:intersection|"
     r"junction)|\btee[- ](?:intersection|junction)|"
     r"\b(?:three|3)[- ](?:leg\w*|way)\b(?! (?:stop|crash|car|collision))|\btype (?:of )?\"?T\"? (?:intersection|"
-    r"junction)", re.I)
+    r"junction)",
+    re.I,
+)
 _FOUR = re.compile(
-    r"\bfour-leg intersection|\b(?:four|4)[- ](?:leg\w*|way)\b|\bcross(?:ing)? intersection|\bcrossroads?\b", re.I)
+    r"\bfour-leg intersection|\b(?:four|4)[- ](?:leg\w*|way)\b|\bcross(?:ing)? intersection|\bcrossroads?\b", re.I
+)
 _JUNCTION = re.compile(r"\bintersections?\b|\bjunction\b|\bcrossroads?\b|\bcrossover\b|\broundabout\b", re.I)
 _NO_JUNCTION = re.compile(
     r"\b(?:no|non|not (?:at|in|near)(?: an?)?|without an?|away from (?:the|any|an)|far from (?:the|any|an)|"
@@ -54,9 +57,8 @@ _NO_JUNCTION = re.compile(
     r"junction)s?\b|"
     r"\bnon-?(?:intersection|junction)|\bmid-?block", re.I)  # fmt: skip
 
-def junction_of(
-    told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
-) -> JunctionFacts:
+
+def junction_of(told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     kind, stated = _kind(story, told, vehicles, roads)
@@ -132,11 +134,15 @@ _SIDE_ROAD = re.compile(
     rf"\b(?P<sided>{DIRECTION}) side (?:entrance|street|road|business|driveway)", re.I)  # fmt: skip
 _SIDE_STREET = re.compile(
     r"\b(?:(?:left|right)(?:[ -]hand)?[ -]turn|turn\w* (?:left|right))\b[^.;]{0,20}? (?:on|in)to (?:an?|the) "
-    r"(?:\w+ )?(?:side|intersecting|cross|adjoining|residential|secondary|minor)[ -](?:\w+ )?(?:road\w*|street)", re.I)
+    r"(?:\w+ )?(?:side|intersecting|cross|adjoining|residential|secondary|minor)[ -](?:\w+ )?(?:road\w*|street)",
+    re.I,
+)
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
 _ENDS = re.compile(
     rf"\b(?P<dir>(?:{DIRECTION})bound)?[^.;]{{0,60}}?\b(?:dead[- ]?end\w*|terminat\w+|ends?|ended)\b (?:at|with|into|"
-    rf"in|here)", re.I)
+    rf"in|here)",
+    re.I,
+)
 
 
 def _one_sided(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
@@ -183,9 +189,7 @@ def _stem(
     return turned(lead, 90) if lead else None
 
 
-def _stem_of_paths(
-    vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], main: Compass | None
-) -> Compass | None:
+def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], main: Compass | None) -> Compass | None:
     """The leg that one vehicle comes from or turns into while the others keep to the through road (`main`)."""
     for v in vehicles:
         if v.heading and v.origin in _BESIDE and axis_of(v.heading) != main:
@@ -205,7 +209,9 @@ def _stem_of_paths(
 
 _TURN_SIDE = re.compile(
     r"\bturn(?:ed|ing|s)?(?: to the)? (?P<a>left|right)\b(?! lane)|\b(?P<b>left|"
-    r"right)(?:[ -]hand)?[ -]turn\b(?! lane|-lane| signal|ing lane)", re.I)
+    r"right)(?:[ -]hand)?[ -]turn\b(?! lane|-lane| signal|ing lane)",
+    re.I,
+)
 
 
 def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Compass | None:

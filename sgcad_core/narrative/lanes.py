@@ -133,8 +133,11 @@ _ORDINALS = {"second": 2, "third": 3, "fourth": 4, "fifth": 5}
 _NUMBERED_TURN = re.compile(
     rf"\bthe ({'|'.join(_ORDINALS)}) ({BOUND}) lane,? (?:which|that) (?:was|is) an? (left|right)[ -]turn(?:[ -]only)?"
     r"[ -]lane", re.I)  # fmt: skip
-_ONE_LANE = re.compile(r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) "
-                       rf"(?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))", re.I)
+_ONE_LANE = re.compile(
+    r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) "
+    rf"(?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))",
+    re.I,
+)
 _OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
 _CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
 

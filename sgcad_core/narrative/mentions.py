@@ -82,7 +82,8 @@ _LEFT_IT = re.compile(
     r"\b(?:approach\w*|onto|into|toward\w*|from|exit\w*|turn\w*|cross\w*|enter\w*|merg\w+|intersect\w*|junction|"
                       r"struck|off|before|edge|side of|shoulder|middle)\b", re.I)  # fmt: skip
 _FROM = re.compile(
-    r"\b(?:from|exit(?:ed|ing)|leav(?:e|ing)|left|out of|departing)(?: (?:of|off|the|a|an|its|this|that))*\s*$", re.I)
+    r"\b(?:from|exit(?:ed|ing)|leav(?:e|ing)|left|out of|departing)(?: (?:of|off|the|a|an|its|this|that))*\s*$", re.I
+)
 _ONTO = re.compile(r"\b(?:onto|into|enter(?:ed|ing)?|join(?:ed|ing)?|to)(?: (?:the|a|an|this|that|same))*\s*$", re.I)
 _RELATIVE = re.compile(
     r"^[\w ,]{0,12}?(?:(?:from|on|along|off) which |that |which |where )?(?:(?:the )?driver of )?(V\d+) (?:was|had|"

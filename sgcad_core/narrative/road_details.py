@@ -34,11 +34,13 @@ class Curve(NamedTuple):
 
 
 _LIMIT = re.compile(
-    r"\bspeed[ -]?limit\w*|\bposted\b|\bspeed zone\b|\blimit (?:is|was|of)\b|\bspeed (?:for|on) the\b", re.I)
+    r"\bspeed[ -]?limit\w*|\bposted\b|\bspeed zone\b|\blimit (?:is|was|of)\b|\bspeed (?:for|on) the\b", re.I
+)
 _VALUE = re.compile(r"(?<![\d.])(\d{1,3})\s*(mph|kmph)\b", re.I)
 _ADVISED = re.compile(r"\b(?:advisory|suggested|recommended|warning|caution)\b[^.;]{0,40}$", re.I)
 _SIDE_WORD = re.compile(
-    r"\b(?:side|intersecting|secondary|minor|crossing|cross|other|ramp)\b[ -]?(?:street|road\w*|ramp)?", re.I)
+    r"\b(?:side|intersecting|secondary|minor|crossing|cross|other|ramp)\b[ -]?(?:street|road\w*|ramp)?", re.I
+)
 _WAY = re.compile(rf"\b((?:{DIRECTION})(?:bound)?)\b", re.I)
 
 
@@ -88,10 +90,13 @@ _CURVE = re.compile(
     r"\b(?P<before>left|right)[ -](?:hand )?(?:\w+ )?curv(?:e|ing)\b|\bbend(?:s|ing)? to the (?P<bend>left|right)\b|"
     r"\bcurve (?:in the (?:road\w*|highway) )?to (?:the |his |her |its )?(?P<to>left|right)\b", re.I)  # fmt: skip
 _NEARBY = re.compile(
-    r"\b(?:prior to|before|after|past|beyond|feet|meters|away from|m (?:north|south|east|west))\b[^.;]{0,30}$", re.I)
+    r"\b(?:prior to|before|after|past|beyond|feet|meters|away from|m (?:north|south|east|west))\b[^.;]{0,30}$", re.I
+)
 _BARE_CURVE = re.compile(
     r"\b(?:is|was|a|slightly|sharply|the) curved\b|\bnegotiat\w+ (?:a|the|an) (?:\w+ ){0,2}curve\b|"
-    r"\bon a (?:\w+ )?curve\b|\bcurved,", re.I)
+    r"\bon a (?:\w+ )?curve\b|\bcurved,",
+    re.I,
+)
 
 
 def curves(told: Sequence[Told], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:

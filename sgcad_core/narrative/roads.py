@@ -157,9 +157,7 @@ def _bends(
     for bend in bends:
         if bend.toward and road.axis and axis_of(bend.toward) == road.axis:
             found.setdefault(bend.toward, bend.side)
-    return tuple(found.items()) or tuple(
-        (lead, bend.side) for bend in bends[:1] if lead and bend.toward is None
-    )
+    return tuple(found.items()) or tuple((lead, bend.side) for bend in bends[:1] if lead and bend.toward is None)
 
 
 _AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "southeast-northwest"}

@@ -59,9 +59,7 @@ def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
     return (node.entry_m + node.exit_m) / 2
 
 
-def meeting_places(
-    first: tuple[Actor, Course, float], second: tuple[Actor, Course, float]
-) -> tuple[Place, Place]:
+def meeting_places(first: tuple[Actor, Course, float], second: tuple[Actor, Course, float]) -> tuple[Place, Place]:
     """The stations where two courses (with their boxes' lengths) come nearest to each other and to preference."""
     (a, course_a, _), (b, course_b, _) = first, second
     s_a, s_b = _stations(course_a), _stations(course_b)

@@ -69,8 +69,7 @@ def test_views_of_the_same_picture_change_nothing() -> None:
     engine = Engine(model, family)
     with_, without = tiny.prompts("qwen2_5_vl", family, 0)
     one, three = (
-        engine.generate(Request(with_, without, Cad(), None, 0, TOKENS, EOS, views=[with_] * count))
-        for count in (0, 2)
+        engine.generate(Request(with_, without, Cad(), None, 0, TOKENS, EOS, views=[with_] * count)) for count in (0, 2)
     )
     engine.close()
     assert one.ids == three.ids
