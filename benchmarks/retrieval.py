@@ -29,10 +29,10 @@ from plugins.retriever.knowledge.chunk import Chunk  # noqa: E402
 from plugins.retriever.knowledge.junctions import junction_chunks  # noqa: E402
 from plugins.retriever.knowledge.sources import builtin_chunks  # noqa: E402
 from plugins.retriever.lancedb import LanceDB  # noqa: E402
-from sgcad_core.formats.netconvert import compile_network  # noqa: E402
-from sgcad_core.junction_words import describe_layout, layout_legs  # noqa: E402
-from sgcad_core.layout import COMPASS  # noqa: E402
+from sgcad_core.formats.sumo.netconvert import compile_network  # noqa: E402
 from sgcad_core.records import PlainXml  # noqa: E402
+from sgcad_core.roads.junction_words import describe_layout, layout_legs  # noqa: E402
+from sgcad_core.roads.layout import COMPASS  # noqa: E402
 from sgcad_core.specs import Leg, RoadLayout  # noqa: E402
 
 QUESTIONS = ROOT / "benchmarks" / "retrieval_questions.yaml"

@@ -25,10 +25,10 @@ sys.path.insert(0, str(ROOT))
 from mini.evaluate import Answer, fields, source, tally  # noqa: E402
 from mini.feed import HELD_OUT_BASE  # noqa: E402
 from mini.generator.report import Report, make_report  # noqa: E402
-from sgcad_core.layout import COMPASS, road_spec  # noqa: E402
 from sgcad_core.narrative.behavior import behavior_of_facts  # noqa: E402
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts  # noqa: E402
 from sgcad_core.narrative.roads import road_facts  # noqa: E402
+from sgcad_core.roads.layout import COMPASS, road_spec  # noqa: E402
 from sgcad_core.specs import Compass  # noqa: E402
 
 DEFAULTS = Defaults(lanes_each_way=1, speed_limit_mph=35)

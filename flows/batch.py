@@ -23,10 +23,10 @@ from flows.chain import Ending
 from flows.sharing import Sharing
 from flows.store import CaseFolder
 from flows.worker import Order
+from sgcad_core.asking.refine import OnAttempt
 from sgcad_core.config import Config, load
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.interfaces import Backbone
-from sgcad_core.refine import OnAttempt
 from sgcad_core.workers import Worker
 
 CASE_LIMIT_S = 600.0

@@ -18,6 +18,7 @@ from flows import picture, player, sharing, store
 from flows.cases import Case
 from flows.sharing import Sharing
 from flows.view import View
+from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
 from sgcad_core.errors import BadInput, ConfigError, MissingTool, SgcadError
 from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
@@ -36,7 +37,6 @@ from sgcad_core.records import (
     Stage,
     StageOutcome,
 )
-from sgcad_core.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.result import CaseRecord, result_of
 
 T = TypeVar("T")

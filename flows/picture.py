@@ -10,7 +10,7 @@ import numpy as np
 
 from flows.drawing import Drawing
 from flows.view import Mover, View
-from sgcad_core.geometry import Box, corners
+from sgcad_core.geometry.plane import Box, corners
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

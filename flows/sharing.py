@@ -30,9 +30,9 @@ from pydantic import BaseModel
 
 from flows import cases
 from sgcad_core import settings
+from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
-from sgcad_core.refine import Refinement, Turn
 
 T = TypeVar("T")
 WAIT_S, LOOK_S = 3600.0, 0.05

@@ -17,9 +17,9 @@ from prefect.states import Completed, Failed, State
 
 from flows.batch import Crew, Job
 from flows.chain import Ending
+from sgcad_core.asking.refine import Turn
 from sgcad_core.errors import SgcadError
 from sgcad_core.records import Attempt
-from sgcad_core.refine import Turn
 
 DECLINED = ("exhausted", "failed")
 

@@ -22,9 +22,9 @@ from flows.cases import Case
 from flows.chain import Ending
 from flows.study import machine
 from flows.study.plan import dataset_digest
-from sgcad_core.arm import Arm, Dataset
 from sgcad_core.config import SCALARS, SINGLE, Config
 from sgcad_core.errors import SgcadError
+from sgcad_core.experiment import Arm, Dataset
 from sgcad_core.interfaces import Plugin
 
 OnEnding = Callable[[Job, Ending, str], None]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flows.drawing import Drawing, drawing_of
-from sgcad_core.geometry import Box, overlap_polygon
+from sgcad_core.geometry.plane import Box, overlap_polygon
 from sgcad_core.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
 from sgcad_core.result import CaseRecord
 

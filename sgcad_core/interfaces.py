@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
-from sgcad_core.arm import Arm
+from sgcad_core.experiment import Arm
 from sgcad_core.records import (
     Context,
     CrashReport,

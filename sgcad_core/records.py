@@ -153,7 +153,7 @@ class Trajectory(Record):
 
 
 class ObservedContact(Record):
-    """The first overlap of two boxes; areas as `sgcad_core.geometry.contact_area` tells them."""
+    """The first overlap of two boxes; areas as `sgcad_core.geometry.plane.contact_area` tells them."""
 
     actor: str
     other: str

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from sgcad_core.formats.lane_graph import network_figures, segments
-from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.formats.sumo.lane_graph import network_figures, segments
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import (
     ActorInfo,
     Execution,

@@ -114,7 +114,7 @@ class Access(Spec):
 class RoadLayout(Spec):
     """One hub and its legs: three or more legs make a junction, two a plain (or curved) road.
 
-    `sgcad_core.layout.road_spec` compiles it. Road ids there: the leg's bearing ("N"; forward runs towards
+    `sgcad_core.roads.layout.road_spec` compiles it. Road ids there: the leg's bearing ("N"; forward runs towards
     the hub), behind an access the outer piece "N_outer", the access itself "N_access_left|right"
     (forward towards the leg), node ids "hub", "N_end", "N_joint", "N_access_left_end".
     """

@@ -18,8 +18,8 @@ import numpy as np
 
 from flows.results.levels import level_of
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.lane_graph import road_counts
-from sgcad_core.formats.net_xml import lanes_between
+from sgcad_core.formats.sumo.lane_graph import road_counts
+from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.generation import AttemptSeen, CaseSeen
 from sgcad_core.metrics.truth import Made
 from sgcad_core.metrics.truth_motion import Path as Motion

@@ -12,7 +12,7 @@ from flows.drawing import Drawing, drawing_of
 from flows.results.reading import Ran, paths_of
 from flows.view import COLORS
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.geometry import Box, overlap_polygon
+from sgcad_core.geometry.plane import Box, overlap_polygon
 from sgcad_core.metrics.truth_motion import Path
 from sgcad_core.records import Floats
 

@@ -14,7 +14,7 @@ from flows.results.plots import Plot, as_png, canvas
 from flows.results.reading import Ran, Study, made_of
 from flows.results.scene import Scene, scene_of
 from flows.results.table import Tables
-from sgcad_core.geometry import Box, corners
+from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.metrics.truth import compare, truth_figures
 from sgcad_core.narrative.text import sentences
 

@@ -14,15 +14,15 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from plugins.road_writer.template import Template
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.layout import COMPASS
 from sgcad_core.narrative.junction import JunctionFacts, JunctionKind
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.roads.layout import COMPASS
 from sgcad_core.specs import Compass, Leg, RoadLayout
 
 

@@ -16,10 +16,10 @@ from typing import ClassVar, Literal, cast
 from pydantic import Field, PrivateAttr
 
 from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
-from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.asking.memo import OncePerCase
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
-from sgcad_core.once import OncePerCase
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
 from sgcad_core.registry import plugin_class
 from sgcad_core.specs import Spec

@@ -13,13 +13,13 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from sgcad_core.errors import Refused
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.layout import LEG_M, road_spec
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import RoadFacts, road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
+from sgcad_core.roads.layout import LEG_M, road_spec
 
 _CRASH_WORDS = re.compile(
     r"\b(?:vehicles?|V\d+|cars?|trucks?|pickups?|sedans?|vans?|minivans?|bus(?:es)?|motorcycl\w+|tractors?|drivers?|roads?|"

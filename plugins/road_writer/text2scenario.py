@@ -13,10 +13,10 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from plugins.road_writer._maps import compiled, library, nearest
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.layout import COMPASS
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.roads.layout import COMPASS
 from sgcad_core.specs import Compass, Leg, Median, RoadLayout, Spec
 
 Place = Literal["straight_road", "curved_road", "t_junction", "crossing", "driveway", "merge"]

@@ -10,14 +10,14 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.graph_spec import spec_of_graph
-from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.sumo.graph_spec import spec_of_graph
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
-from sgcad_core.scenario import compile_scenario
 from sgcad_core.specs import RoadSpec
 
 

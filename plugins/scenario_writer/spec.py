@@ -10,13 +10,13 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from sgcad_core.describe import describe_network, road_ids
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.net_xml import LaneGraph, parse_net
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
-from sgcad_core.scenario import compile_scenario
+from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.specs import BehaviorSpec, RoadSpec
 
 

@@ -13,18 +13,18 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sgcad_core.describe import describe_network
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.graph_spec import spec_of_graph
-from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.sumo.graph_spec import spec_of_graph
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import Access
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
-from sgcad_core.scenario import compile_scenario
+from sgcad_core.roads.describe import describe_network
 from sgcad_core.specs import (
     Actor,
     ActorId,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sgcad_core.execution import execution_of, played
+from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.interfaces import Simulator
 from sgcad_core.records import Execution, RoadNetwork, Scenario
 

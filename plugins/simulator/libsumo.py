@@ -13,12 +13,12 @@ import numpy as np
 from pydantic import Field
 
 from plugins.simulator._exchange import Driven, Mover, Replayed
-from sgcad_core.contact import poses
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.execution import execution_of, played
+from sgcad_core.execution.contact import poses
+from sgcad_core.execution.playback import execution_of, played
+from sgcad_core.formats.openscenario.player import DT_S
 from sgcad_core.formats.xml import parse_xml
-from sgcad_core.formats.xosc_player import DT_S
-from sgcad_core.geometry import wrap_angle
+from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.interfaces import Simulator
 from sgcad_core.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.workers import Worker

@@ -14,7 +14,7 @@ from pydantic import Field, PrivateAttr
 
 from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
 from plugins.tracker.mlflow_store import CONFIG, Parent, Store, store_of
-from sgcad_core.arm import Arm
+from sgcad_core.experiment import Arm
 from sgcad_core.interfaces import Tracker
 from sgcad_core.records import Generation, Query
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from sgcad_core.layout import OUTER
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of
 from sgcad_core.records import Hold
+from sgcad_core.roads.layout import OUTER
 from sgcad_core.specs import Maneuver, RoadSpec
 
 _TURN_RAD = math.radians(30)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sgcad_core.formats.lane_graph import LaneGraph, road_of
+from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.specs import Compass
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sgcad_core.holds import SOME_LANES
+from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.narrative.compass import COMPASS, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import legs_used

@@ -7,14 +7,14 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from sgcad_core.contact import first_contact
-from sgcad_core.distances import distance_to
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution import sizes_of
+from sgcad_core.execution.contact import first_contact
+from sgcad_core.execution.playback import sizes_of
 from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.net_xml import LaneGraph, parse_net
-from sgcad_core.formats.xosc_player import entity_boxes, play
-from sgcad_core.geometry import Floats
+from sgcad_core.formats.openscenario.player import entity_boxes, play
+from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
+from sgcad_core.geometry.distances import distance_to
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import (
     ActorInfo,

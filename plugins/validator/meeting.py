@@ -14,8 +14,8 @@ from typing import ClassVar, Literal
 
 from plugins.validator._courses import Course, approaches, course, heading, held, straight_on
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.lane_graph import LaneGraph
-from sgcad_core.formats.net_xml import parse_net
+from sgcad_core.formats.sumo.lane_graph import LaneGraph
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts

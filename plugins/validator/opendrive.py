@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sgcad_core.formats.xodr import xodr_findings
+from sgcad_core.formats.opendrive.mend import xodr_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 

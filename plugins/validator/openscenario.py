@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sgcad_core.formats.xosc_check import xosc_findings
+from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 
 
 class OpenScenario(Validator):
-    """What `sgcad_core.formats.xosc_check` finds; scenarios without .xosc are passed over."""
+    """What `sgcad_core.formats.openscenario.check` finds; scenarios without .xosc are passed over."""
 
     stage: ClassVar[str] = "scenario"
 

@@ -12,9 +12,9 @@ from typing import ClassVar
 
 from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
+from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.net_xml import parse_net
-from sgcad_core.holds import SOME_LANES
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts

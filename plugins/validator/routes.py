@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.formats.net_xml import parse_net
-from sgcad_core.formats.routes_xml import SOURCE, routes_findings
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.routes_xml import SOURCE, routes_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.workers import Worker

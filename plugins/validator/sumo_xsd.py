@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sgcad_core.formats.plain_xml import xsd_findings
+from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 

@@ -12,13 +12,13 @@ from typing import ClassVar, get_args
 
 import numpy as np
 
+from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
-from sgcad_core.formats.road_spec import turn_findings
-from sgcad_core.geometry import arc_lengths, resample
-from sgcad_core.holds import SOME_LANES
+from sgcad_core.formats.sumo.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
+from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.roads.road_spec import turn_findings
 from sgcad_core.specs import Compass, RoadSpec
 
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.distances import distance_to
-from sgcad_core.formats.lane_graph import Edge, Lane, LaneGraph
-from sgcad_core.formats.xodr_check import RoadIndex, lane_index
-from sgcad_core.formats.xosc_roads import XodrRoads
-from sgcad_core.geometry import arc_lengths, resample
+from sgcad_core.formats.opendrive.check import RoadIndex, lane_index
+from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.geometry.distances import distance_to
+from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.records import Finding
 
 TOLERANCE_M = 0.5

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry import box_gaps
+from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.records import Floats
 
 CELL_M = 0.25

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from sgcad_core.formats.lane_graph import RoadCounts, road_counts
+from sgcad_core.formats.sumo.lane_graph import RoadCounts, road_counts
 from sgcad_core.metrics.road_network import any_error, relative_error
 from sgcad_core.metrics.truth_motion import Path, motion_marks
 

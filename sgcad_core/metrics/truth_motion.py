@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry import Box, Size, box_gaps, contact_area, wrap_angle
+from sgcad_core.geometry.plane import Box, Size, box_gaps, contact_area, wrap_angle
 from sgcad_core.records import Floats
 
 MOTION_FIELDS = (

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
-from sgcad_core.geometry import Floats, arc_lengths, resample
+from sgcad_core.formats.sumo.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
+from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
 from sgcad_core.specs import Actor

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sgcad_core.geometry import SIDES, Floats, box_gaps, overlap_centers, sides_at
+from sgcad_core.geometry.plane import SIDES, Floats, box_gaps, overlap_centers, sides_at
 from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
 from sgcad_core.specs import Area
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry import SIDES, Floats, Size
+from sgcad_core.geometry.plane import SIDES, Floats, Size
 from sgcad_core.specs import SIZE_M, ActorKind, Area
 
 MASS_KG: dict[ActorKind, float] = {

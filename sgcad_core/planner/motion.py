@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sgcad_core.geometry import Floats, Size
+from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.planner.path import Path
 
 STEP_S = 0.05

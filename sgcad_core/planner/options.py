@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 
-from sgcad_core.geometry import Floats
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.choices import (
     FROM_OTHER_LANE,
     OTHER_LANE,

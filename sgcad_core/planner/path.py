@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sgcad_core.geometry import Floats, arc_lengths, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 
 STEP_M = 0.5
 EXTENSION_M = 320.0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry import Floats
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.course import Course
 from sgcad_core.specs import Actor, Maneuver
 

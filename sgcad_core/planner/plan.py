@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.formats.lane_graph import LaneGraph
+from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import STEP_S

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sgcad_core.geometry import SIDES, Size
+from sgcad_core.geometry.plane import SIDES, Size
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.specs import Actor, Area

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sgcad_core.geometry import SIDES, Box, Floats, Size, box_gaps, contact_area, overlap_centers, sides_at
+from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area, overlap_centers, sides_at
 from sgcad_core.planner.impact import ROLLING_MPS2, SLIDING_MPS2, Body, collide, contact_normal, mass_kg, slide
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.path import Path

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sgcad_core.geometry import Floats, Size
+from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.planner.motion import Motion
 from sgcad_core.planner.path import Path
 from sgcad_core.planner.scene import Scene, Track

@@ -7,8 +7,8 @@ import pytest
 
 from flows.batch import Crew, Interrupted, batch_of
 from flows.cases import cases_in
+from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.refine import run_at_once
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from mini.generator.targets import GUESS
 from mini.generator.world import COMPASS, TURN_OF, WORDS, Crash
 from mini.generator.writer import Writer
 from mini.rows import road_ids
-from sgcad_core.layout import road_spec
+from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, Refusal, RoadLayout
 from tests.mini.reports import sentences
 

@@ -14,7 +14,7 @@ from mini.renderer.draw import draw_report
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
-from sgcad_core.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Diagram, Query
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 

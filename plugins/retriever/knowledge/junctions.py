@@ -17,9 +17,9 @@ from plugins.retriever.knowledge.cutting import Cut, cut
 from plugins.retriever.knowledge.osm import plain_of
 from plugins.retriever.knowledge.plain_graph import PlainGraph, read_plain
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.plain_xml import xsd_findings
-from sgcad_core.junction_words import JunctionLeg, describe, marks
-from sgcad_core.layout import COMPASS
+from sgcad_core.formats.sumo.plain_xml import xsd_findings
+from sgcad_core.roads.junction_words import JunctionLeg, describe, marks
+from sgcad_core.roads.layout import COMPASS
 
 MPH = 0.44704
 CONTROLS = {

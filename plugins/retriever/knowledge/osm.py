@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.formats.netconvert import plain_files
+from sgcad_core.formats.sumo.netconvert import plain_files
 
 ENDINGS = (".osm", ".osm.gz", ".osm.bz2", ".osm.pbf")
 TIMEOUT_S = 3600.0

@@ -22,7 +22,7 @@ from flows.deployments.claims import Claims
 from flows.deployments.intake import Intake
 from flows.deployments.place import Place
 from flows.tracking import track
-from sgcad_core.refine import run_at_once
+from sgcad_core.asking.refine import run_at_once
 
 inbox, config, out, staging = sys.argv[1:]
 

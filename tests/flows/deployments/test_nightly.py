@@ -8,8 +8,8 @@ from flows.batch import Crew, batch_of
 from flows.cases import cases_in
 from flows.deployments import nightly
 from flows.deployments.nightly import Tolerance, accept_latest, drops, figures_of
+from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import ConfigError
-from sgcad_core.refine import run_at_once
 
 WAS = {"mini": {"generated": 0.9, "file_errors": 0.1, "attempts": 2.0, "seconds": 1.0, "refused": 0.1}}
 

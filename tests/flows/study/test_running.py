@@ -17,7 +17,7 @@ from flows.batch import Crew
 from flows.study import running
 from flows.study.plan import plan
 from flows.study.spec import load_study
-from sgcad_core.refine import run_at_once
+from sgcad_core.asking.refine import run_at_once
 
 DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"
 ARMS = [

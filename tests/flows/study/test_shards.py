@@ -21,8 +21,8 @@ from flows.study.lease import Lease, LeaseLost, lease_name
 from flows.study.shards import Shard, Work, cut, lay_out, work_on
 from flows.study.share import Share, Unreachable
 from flows.study.watch import FRUITLESS, PATIENCE_S, START_S, Watch, follow
+from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import BadInput, ConfigError
-from sgcad_core.refine import run_at_once
 
 MINUTE_S = 60.0
 IN_THREADS = {"backbone": {"name": "scripted", "answers": ["-"]}, "decoder": "greedy"}

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused, SimulationFailed
-from sgcad_core.geometry import Box, contact_area, overlap
+from sgcad_core.geometry.plane import Box, contact_area, overlap
 from sgcad_core.interfaces import RoadWriter, ScenarioWriter, Simulator, Tracker, Validator
 from sgcad_core.records import (
     ActorInfo,

@@ -14,9 +14,9 @@ from plugins.retriever.knowledge.junctions import junction_chunks
 from plugins.retriever.knowledge.sources import file_chunks
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.junction_words import JunctionLeg, describe, describe_layout, marks, shape
+from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.records import PlainXml
+from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, marks, shape
 from sgcad_core.specs import Leg, RoadLayout
 
 LAT, LON = 40.0, -80.0

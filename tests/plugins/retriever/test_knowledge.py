@@ -18,10 +18,10 @@ from plugins.retriever.knowledge.xml_schema import xml_chunks
 from plugins.simulator.kinematic import Kinematic
 from sgcad_core import settings as paths
 from sgcad_core.errors import MissingTool
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.formats.plain_xml import plain_xml
-from sgcad_core.layout import road_spec
-from sgcad_core.scenario import compile_scenario
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.roads.layout import road_spec
 
 SNIPPETS = snippet_functions()
 needs_minilm = pytest.mark.skipif(importlib.util.find_spec(MINILM_PACKAGE) is None, reason="needs the extra 'minilm'")

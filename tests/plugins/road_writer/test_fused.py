@@ -10,7 +10,7 @@ from PIL import Image
 
 from plugins.road_writer.fused import Fused
 from plugins.road_writer.template import Template
-from sgcad_core.formats.net_xml import network_figures, parse_net, segments
+from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.records import Context, Diagram, Generation, Query, RoadNetwork
 
 OPEN_ROAD = "V1 was traveling north on a two-lane, two-way road. V2 was traveling south on the same road. V1 struck V2."

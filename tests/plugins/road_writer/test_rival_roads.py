@@ -14,7 +14,7 @@ from plugins.road_writer.template import Template
 from plugins.road_writer.text2scenario import SceneLayout, layout_of_scene
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, Refused
-from sgcad_core.formats.net_xml import network_figures, parse_net
+from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
 from sgcad_core.interfaces import RoadWriter
 from sgcad_core.records import Context, Generation, Query, RoadNetwork
 from sgcad_core.specs import RoadLayout

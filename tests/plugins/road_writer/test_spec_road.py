@@ -9,9 +9,9 @@ import llguidance
 import pytest
 
 from plugins.road_writer.spec import SpecRoad
+from sgcad_core.asking.prompts import answer_schema, load_prompt
 from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.formats.net_xml import network_figures, parse_net, segments
-from sgcad_core.prompts import answer_schema, load_prompt
+from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.records import Context, Generation, Passage
 from sgcad_core.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from plugins.road_writer.template import Template
 from sgcad_core.errors import Refused
-from sgcad_core.formats.net_xml import LaneGraph, network_figures, parse_net
+from sgcad_core.formats.sumo.net_xml import LaneGraph, network_figures, parse_net
 from sgcad_core.records import Context, Generation, Query, RoadNetwork
 
 

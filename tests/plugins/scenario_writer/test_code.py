@@ -13,8 +13,8 @@ from plugins.scenario_writer.lanes import lane_lines
 from plugins.simulator.kinematic import Kinematic
 from plugins.validator.openscenario import OpenScenario
 from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.formats.net_xml import parse_net
-from sgcad_core.formats.xosc_player import play
+from sgcad_core.formats.openscenario.player import play
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import Context, CrashReport, Evidence, Generation, Passage, RoadNetwork
 from tests.sgcad_core.formats.xosc_samples import crossroads
 from tests.transcripts import DECLARED, REFUSAL, SCRIPT, code_answer

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from plugins.scenario_writer.rules import Rules
-from sgcad_core.contact import first_contact
 from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.execution import sizes_of
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.formats.plain_xml import plain_xml
-from sgcad_core.layout import road_spec
+from sgcad_core.execution.contact import first_contact
+from sgcad_core.execution.playback import sizes_of
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records import Context, Generation, Query, RoadNetwork, Scenario
+from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Leg, RoadLayout
 
 

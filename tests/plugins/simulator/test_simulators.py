@@ -8,11 +8,11 @@ import pytest
 from plugins.simulator.kinematic import Kinematic
 from plugins.simulator.libsumo import LibSumo, _worker
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.formats.xosc_writer import write_xosc
-from sgcad_core.geometry import wrap_angle
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import RoadNetwork, Scenario
 from sgcad_core.result import realised
-from sgcad_core.scenario import compile_scenario
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(120)

@@ -12,8 +12,8 @@ import pytest
 
 from plugins.tracker.mlflow import MlflowTracker
 from plugins.tracker.mlflow_store import store_of
-from sgcad_core.arm import Arm, Dataset
 from sgcad_core.errors import ConfigError
+from sgcad_core.experiment import Arm, Dataset
 from sgcad_core.records import Generation, Query
 from sgcad_core.settings import ROOT
 

@@ -3,9 +3,9 @@
 import pytest
 
 from plugins.validator._courses import approaches, heading
-from sgcad_core.layout import road_spec
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.ways import ways_of
+from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Access, Leg, RoadLayout
 
 

@@ -11,10 +11,10 @@ from plugins.validator.opendrive import OpenDrive
 from plugins.validator.sumo_load import _WORKER, SumoLoad
 from plugins.validator.sumo_xsd import SumoXsd
 from plugins.validator.topology import Topology
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.formats.plain_xml import plain_xml
-from sgcad_core.layout import road_spec
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records import CrashReport, Evidence, PlainXml, RoadNetwork, Scenario
+from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Leg, Node, RoadLayout, RoadSpec
 from tests.sgcad_core.formats.road_samples import NAMED, compiled, road, star
 

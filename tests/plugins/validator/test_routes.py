@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from plugins.validator.routes import Routes
-from sgcad_core.formats.netconvert import compile_network
+from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.records import ActorInfo, CrashReport, Evidence, Finding, PlainXml, RoadNetwork, Scenario
 from sgcad_core.specs import Contact
 from tests.transcripts import EDGES, NODES

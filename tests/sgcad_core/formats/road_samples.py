@@ -8,8 +8,8 @@ from typing import get_args
 
 from hypothesis import strategies as st
 
-from sgcad_core.formats.netconvert import compile_network
-from sgcad_core.formats.plain_xml import plain_xml
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records import RoadNetwork
 from sgcad_core.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.geometry import Box, corners, overlap
+from sgcad_core.geometry.plane import Box, corners, overlap
 from sgcad_core.metrics import conflict
 from sgcad_core.metrics.conflict import Track
 

@@ -8,8 +8,8 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from sgcad_core.formats.lane_graph import road_counts
-from sgcad_core.formats.net_xml import lanes_between
+from sgcad_core.formats.sumo.lane_graph import road_counts
+from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.truth import Made, compare, truth_figures
 from sgcad_core.metrics.truth_motion import Path, first_touch
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.errors import Refused
-from sgcad_core.layout import road_spec
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import crash_facts
+from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Access, Actor, BehaviorSpec, Leg, Node, Road, RoadLayout, RoadSpec
 
 CROSS = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=2, lanes_out=2) for b in ("N", "E", "S", "W"))))

@@ -10,8 +10,8 @@ from crash_scenes import LAYOUTS, draw_scene, network
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.formats.lane_graph import road_of
-from sgcad_core.geometry import Box, box_gaps, contact_area
+from sgcad_core.formats.sumo.lane_graph import road_of
+from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import Plan, plan
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 

@@ -9,7 +9,7 @@ import pytest
 from crash_scenes import network
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.geometry import box_gaps
+from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
 from sgcad_core.records import Trajectory
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m

@@ -1,0 +1,1 @@
+"""How a writer asks a model, and is asked again: prompts, schemas, findings."""

@@ -1,0 +1,68 @@
+"""The first contact in an execution: exact box overlap over all pairs of actors.
+
+Knows trajectories and sizes; not who was meant to strike whom.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import cast
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
+from sgcad_core.records import ObservedContact, Trajectory
+from sgcad_core.specs import Area
+
+STILL_M = 1e-3
+"""An actor that stays within this distance of its start has not moved."""
+
+
+def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
+    """The earliest step at which any two boxes share a point; None if nothing touches.
+
+    Pairs are ordered by actor id, since who strikes whom cannot be seen in an overlap; of pairs that touch in
+    the same step the first in that order counts. Pairs that overlap from the start on and never move are parts
+    of one thing or scenery: skipped. Sizes are length and width, metres.
+    """
+    ordered = sorted(trajectories, key=lambda t: t.actor)
+    hits = ((_first_hit(a, b, sizes), i, a, b) for i, (a, b) in enumerate(combinations(ordered, 2)))
+    found = min((hit for hit in hits if hit[0] is not None), key=lambda hit: hit[:2], default=None)
+    if found is None:
+        return None
+    k, _, a, b = found
+    return observe(a, b, cast("int", k), sizes)
+
+
+def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:
+    """The contact of two actors at step k, with the sides that touch."""
+    one, two = _box(a, k, sizes[a.actor]), _box(b, k, sizes[b.actor])
+    areas = cast("tuple[Area, Area]", (contact_area(one, two), contact_area(two, one)))
+    t_s = round(float(a.t_s[k]), 6)
+    return ObservedContact(actor=a.actor, other=b.actor, actor_area=areas[0], other_area=areas[1], t_s=t_s)
+
+
+def moves(trajectory: Trajectory) -> bool:
+    """Whether an actor leaves its place."""
+    way = np.hypot(trajectory.x_m - trajectory.x_m[0], trajectory.y_m - trajectory.y_m[0])
+    return bool(way.max() > STILL_M)
+
+
+def _first_hit(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> int | None:
+    n = min(len(a.t_s), len(b.t_s))
+    gaps = box_gaps(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
+    hits = np.flatnonzero(gaps <= 0)
+    if not len(hits) or (hits[0] == 0 and not moves(a) and not moves(b)):
+        return None
+    return int(hits[0])
+
+
+def poses(trajectory: Trajectory) -> Floats:
+    """(n, 3) x, y and heading."""
+    return np.column_stack((trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
+
+
+def _box(trajectory: Trajectory, k: int, size: Size) -> Box:
+    x, y, heading = (float(v[k]) for v in (trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
+    return Box(x, y, heading, *size)

@@ -1,0 +1,1 @@
+"""OpenDRIVE: reference lines, lanes, connectors, and what is wrong with a file."""

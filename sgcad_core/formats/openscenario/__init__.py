@@ -1,0 +1,1 @@
+"""OpenSCENARIO XML: written, read, checked and played."""

@@ -1,0 +1,232 @@
+"""The storyboard while it is played: acts, maneuver groups, maneuvers and events with their states.
+
+One pass over the storyboard a step; an element sees what elements before it did in the same step. Knows no
+action's or condition's meaning.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.formats.openscenario.actions import Begin, Running, global_action, private_action
+from sgcad_core.formats.openscenario.conditions import Trigger
+from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.scene import Scene, Stage
+
+_PRIORITIES = ("override", "overwrite", "parallel", "skip")
+
+
+class Event:
+    """Runs its actions for every actor of its group each time its trigger fires, up to its count."""
+
+    def __init__(self, node: Node, path: str, actors: list[str], scene: Scene) -> None:
+        self.stage, self.actors = _stage("event", path, scene), actors
+        self.priority = node.choice("priority", _PRIORITIES) if "priority" in node.element.attrib else "override"
+        self.left = _count(node)
+        self.trigger = Trigger(node.find("StartTrigger"), missing=True)
+        self.actions = [_action(a, f"{path}::{a.text('name')}", scene) for a in node.children("Action")]
+        if not self.actions:
+            raise node.fault("has no action", remedy="give it an <Action>")
+        if not actors and any(begin for begin, _ in self.actions):
+            raise node.fault("a private action needs an actor", remedy="name one in the ManeuverGroup's <Actors>")
+        self.running: list[tuple[Running, Stage]] = []
+
+    @property
+    def is_running(self) -> bool:
+        """Whether its actions are under way."""
+        return self.stage.state == "runningState"
+
+    def wants_to_start(self, scene: Scene) -> bool:
+        """Whether its trigger fires now (evaluated in standby only)."""
+        return self.stage.state == "standbyState" and self.trigger.fires(scene)
+
+    def start(self, scene: Scene) -> None:
+        """Begin every action."""
+        self.left -= 1
+        self.stage.turn("startTransition", "runningState", scene.step)
+        self.running = []
+        for begin, stage in self.actions:
+            stage.turn("startTransition", "runningState", scene.step)
+            self.running += [(begin(scene, actor), stage) for actor in self.actors] if begin else []
+
+    def stop(self, scene: Scene) -> None:
+        """End it before its actions have ended."""
+        for running, _ in self.running:
+            running.stop()
+        self._end("stopTransition", scene, again=False)
+
+    def skip(self, scene: Scene) -> None:
+        """Its trigger fired while another event of the maneuver ran."""
+        self.left -= 1
+        state = "standbyState" if self.left > 0 else "completeState"
+        self.stage.turn("skipTransition", state, scene.step)
+
+    def settle(self, scene: Scene) -> None:
+        """Complete it when all of its actions have ended."""
+        if not self.is_running:
+            return
+        going = [(r, s) for r, s in self.running if not r.done(scene)]
+        for _, stage in self.actions:
+            if stage.state == "runningState" and not any(s is stage for _, s in going):
+                stage.turn("endTransition", "completeState", scene.step)
+        self.running = going
+        if not going:
+            self._end("endTransition", scene, again=self.left > 0)
+
+    def _end(self, transition: str, scene: Scene, again: bool) -> None:
+        self.running = []
+        self.stage.turn(transition, "standbyState" if again else "completeState", scene.step)
+
+
+class Maneuver:
+    """Events that know each other by priority."""
+
+    def __init__(self, node: Node, path: str, actors: list[str], scene: Scene) -> None:
+        node = node.scoped()
+        self.stage = _stage("maneuver", path, scene)
+        self.events = [Event(e, f"{path}::{e.text('name')}", actors, scene) for e in node.children("Event")]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every event is."""
+        return all(e.stage.state == "completeState" for e in self.events)
+
+    def step(self, scene: Scene) -> None:
+        """Settle what ended, start what is triggered."""
+        if self.stage.state == "standbyState":
+            self.stage.turn("startTransition", "runningState", scene.step)
+        for event in self.events:
+            event.settle(scene)
+        for event in self.events:
+            if event.wants_to_start(scene):
+                self._start(event, scene)
+        if self.complete and self.stage.state == "runningState":
+            self.stage.turn("endTransition", "completeState", scene.step)
+
+    def _start(self, event: Event, scene: Scene) -> None:
+        others = [e for e in self.events if e.is_running]
+        if others and event.priority == "skip":
+            event.skip(scene)
+            return
+        for other in others if event.priority in ("override", "overwrite") else []:
+            other.stop(scene)
+        event.start(scene)
+        event.settle(scene)
+
+    def stop(self, scene: Scene) -> None:
+        """End it and its events."""
+        for event in self.events:
+            if event.stage.state != "completeState":
+                event.stop(scene)
+        self.stage.turn("stopTransition", "completeState", scene.step)
+
+
+class Group:
+    """A maneuver group: maneuvers for the same actors."""
+
+    def __init__(self, node: Node, path: str, scene: Scene) -> None:
+        if _count(node) != 1:
+            raise node.unsupported("the player runs a maneuver group once (maximumExecutionCount 1)")
+        holder = node.need("Actors")
+        if holder.flag("selectTriggeringEntities", False):
+            raise holder.unsupported("the player does not select triggering entities")
+        actors = [ref.text("entityRef") for ref in holder.children("EntityRef")]
+        for actor in actors:
+            scene.body(actor, holder)
+        if node.find("CatalogReference"):
+            raise node.need("CatalogReference").unsupported()
+        self.stage = _stage("maneuverGroup", path, scene)
+        found = node.children("Maneuver")
+        self.maneuvers = [Maneuver(m, f"{path}::{m.text('name')}", actors, scene) for m in found]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every maneuver is."""
+        return all(m.complete for m in self.maneuvers)
+
+
+class Act:
+    """Groups that start together."""
+
+    def __init__(self, node: Node, path: str, scene: Scene) -> None:
+        self.stage = _stage("act", path, scene)
+        self.start_trigger = Trigger(node.find("StartTrigger"), missing=True)
+        self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
+        self.groups = [Group(g, f"{path}::{g.text('name')}", scene) for g in node.children("ManeuverGroup")]
+
+    def step(self, scene: Scene) -> None:
+        """Start, run, stop or complete it."""
+        if self.stage.state == "standbyState" and self.start_trigger.fires(scene):
+            self._turn_all("startTransition", "runningState", scene)
+        if self.stage.state != "runningState":
+            return
+        if self.stop_trigger.fires(scene):
+            self._stop(scene)
+            return
+        for group in self.groups:
+            for maneuver in group.maneuvers:
+                maneuver.step(scene)
+            if group.complete and group.stage.state == "runningState":
+                group.stage.turn("endTransition", "completeState", scene.step)
+        if all(g.complete for g in self.groups):
+            self.stage.turn("endTransition", "completeState", scene.step)
+
+    def _stop(self, scene: Scene) -> None:
+        for group in self.groups:
+            for maneuver in group.maneuvers:
+                maneuver.stop(scene)
+        self._turn_all("stopTransition", "completeState", scene)
+
+    def _turn_all(self, transition: str, state: str, scene: Scene) -> None:
+        for stage in (self.stage, *(g.stage for g in self.groups)):
+            stage.turn(transition, state, scene.step)
+
+
+class Storyboard:
+    """All stories and the trigger that ends the scenario."""
+
+    def __init__(self, node: Node, scene: Scene) -> None:
+        self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
+        self.stories: list[tuple[Stage, list[Act]]] = []
+        for story in node.children("Story"):
+            scoped, name = story.scoped(), story.text("name", "")
+            acts = [Act(a, f"{name}::{a.text('name')}", scene) for a in scoped.children("Act")]
+            stage = _stage("story", name, scene)
+            stage.turn("startTransition", "runningState", 0)
+            self.stories.append((stage, acts))
+
+    def step(self, scene: Scene) -> float | None:
+        """Play one step; the time at which the scenario ended, or None.
+
+        Only the stop trigger ends it; without one it ends when all of its stories are complete.
+        """
+        for stage, acts in self.stories:
+            for act in acts:
+                act.step(scene)
+            if stage.state == "runningState" and all(a.stage.state == "completeState" for a in acts):
+                stage.turn("endTransition", "completeState", scene.step)
+        if self.stop_trigger:
+            return self.stop_trigger.moment(scene)
+        return scene.t_s if all(s.state == "completeState" for s, _ in self.stories) else None
+
+
+def _stage(kind: str, path: str, scene: Scene) -> Stage:
+    stage = Stage(kind, path)
+    scene.stages.append(stage)
+    return stage
+
+
+def _count(node: Node) -> int:
+    count = node.number("maximumExecutionCount", 1)
+    if count < 0 or count != int(count):
+        raise node.fault("attribute 'maximumExecutionCount' is no count", f"{count:g}")
+    return int(count)
+
+
+def _action(node: Node, path: str, scene: Scene) -> tuple[Begin | None, Stage]:
+    child = node.only()
+    stage = _stage("action", path, scene)
+    if child.tag == "PrivateAction":
+        return private_action(child), stage
+    if child.tag != "GlobalAction":
+        raise child.unsupported()
+    global_action(child)
+    return None, stage

@@ -1,0 +1,1 @@
+"""SUMO's files: plain XML, .net.xml and route files."""

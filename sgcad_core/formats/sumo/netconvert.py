@@ -1,0 +1,96 @@
+"""SUMO's netconvert as a process: plain XML in, road network out.
+
+Nothing in the plain XML is trusted: the schema is checked first (negative lane numbers crash netconvert),
+and a death by signal is a result, not an exception. Knows no plugin.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError, InvalidOutput
+from sgcad_core.formats.opendrive.mend import mend
+from sgcad_core.formats.sumo.plain_xml import xsd_findings
+from sgcad_core.records import PlainXml, RoadNetwork
+from sgcad_core.specs import RoadSpec
+
+TIMEOUT_S = 60.0
+XSD_RETURNCODE = 1
+"""As netconvert's own for input that it refuses."""
+FLAGS = (
+    "--offset.disable-normalization",  # the frame of the spec stays the frame of the network
+    "--output.original-names",
+    "--no-turnarounds",
+    "--precision", "6",
+    "-X", "local",
+)  # fmt: skip
+
+
+def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwork:
+    """Compile plain XML to .net.xml and valid OpenDRIVE, about 0.1 s.
+
+    Bad content leaves net_xml and xodr None, `log` says why and `returncode` is not 0 (negative: the
+    signal netconvert died of; 124: it took longer than 60 s). Raises MissingTool only.
+    """
+    if findings := xsd_findings(plain):
+        log = "\n".join(f.line() for f in findings)
+        return RoadNetwork(plain=plain, spec=spec, log=log, returncode=XSD_RETURNCODE)
+    with tempfile.TemporaryDirectory(prefix="sgcad-net-") as folder:
+        code, log = _run(plain, Path(folder))
+        net, xodr = _read(Path(folder) / "road.net.xml"), _read(Path(folder) / "road.xodr")
+    if code != 0 or not net or not xodr:
+        return RoadNetwork(plain=plain, spec=spec, log=log or "netconvert wrote no network", returncode=code or 1)
+    try:
+        mended = mend(xodr)
+    except InvalidOutput as fault:
+        return RoadNetwork(plain=plain, spec=spec, net_xml=net, log=f"{log}\n{fault}".strip(), returncode=1)
+    return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=mended, log=log, returncode=code)
+
+
+def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:
+    command = [str(settings.netconvert()), *FLAGS, "-o", "road.net.xml", "--opendrive-output", "road.xodr"]
+    for flag, name in (("-n", "nodes"), ("-e", "edges"), ("-x", "connections")):
+        if text := getattr(plain, name):
+            (folder / f"{name}.xml").write_text(text, encoding="utf-8")
+            command += [flag, f"{name}.xml"]
+    environment = settings.subprocess_environment()
+    try:
+        done = subprocess.run(  # noqa: S603 - SUMO's binary on files that we wrote
+            command, cwd=folder, env=environment, capture_output=True, timeout=TIMEOUT_S, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return 124, f"netconvert took longer than {TIMEOUT_S:g} s"
+    said = (done.stderr + b"\n" + done.stdout).decode("utf-8", "replace")
+    return done.returncode, "\n".join(line for line in map(str.strip, said.splitlines()) if line)
+
+
+def _read(file: Path) -> str | None:
+    """The file without netconvert's comment (date, paths), so that equal inputs give equal networks."""
+    if not file.exists():
+        return None
+    return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
+
+
+def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:
+    """Node, edge and connection file of a user's map, written to `folder`; `source`: netconvert's flags for reading it.
+
+    Raises ConfigError naming the file where netconvert cannot read it or takes longer than `timeout_s`; MissingTool.
+    """
+    command = [str(settings.netconvert()), *source, "--plain-output-prefix", "map"]
+    try:
+        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
+            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=timeout_s,
+            check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as fault:
+        raise ConfigError(f"{file}: netconvert took longer than {timeout_s:g} s; cut the map smaller") from fault
+    if done.returncode:
+        said = (done.stderr + done.stdout).decode("utf-8", "replace").strip()[-500:]
+        raise ConfigError(f"{file}: netconvert cannot read it (exit {done.returncode}): {said}")
+    nodes, edges, connections = (folder / f"map.{part}.xml" for part in ("nod", "edg", "con"))
+    return nodes, edges, connections

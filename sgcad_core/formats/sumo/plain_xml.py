@@ -1,0 +1,158 @@
+"""A road spec as SUMO plain XML (nodes, edges, connections), and SUMO's schemas for such XML.
+
+Road R becomes edge "R" forward and "-R" backward; both join the road's two nodes even where a median
+parts them. A two-way left-turn lane is the innermost lane of the forward edge, closed to passenger cars.
+Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+from lxml import etree
+
+from sgcad_core import settings
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.records import Finding, PlainXml
+from sgcad_core.roads.connections import Link, links
+from sgcad_core.roads.road_geometry import (
+    Direction,
+    Roadway,
+    has_center_lane,
+    lane_width_m,
+    lanes,
+    roadways,
+)
+from sgcad_core.roads.road_spec import spec_findings
+from sgcad_core.specs import Node, NodeControl, Road, RoadSpec
+
+MPS_PER_MPH = 0.44704
+SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
+"""Where the report states no limit."""
+DRIVEWAY_RADIUS_M = 1.5
+"""Corners of driveways; SUMO's 4 m elsewhere."""
+CENTER_LANE_CLASS = "authority"
+"""The vehicle class that alone may use a two-way left-turn lane, so that no one counts it as a through lane."""
+_TYPES: Mapping[NodeControl, str] = {
+    "none": "priority", "yield": "priority", "signal": "traffic_light", "stop": "priority_stop",
+    "all_way_stop": "allway_stop", "flashing": "priority_stop",
+}  # fmt: skip
+
+
+def plain_xml(spec: RoadSpec) -> PlainXml:
+    """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold."""
+    if findings := spec_findings(spec):
+        raise InvalidOutput("\n".join(f.line() for f in findings), findings)
+    drawn = roadways(spec)
+    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn), connections=_connections(links(spec, drawn)))
+
+
+# ------------------------------------------------------------------ nodes
+def _nodes(spec: RoadSpec) -> str:
+    root = etree.Element("nodes")
+    meeting: dict[str, list[Road]] = {node.id: [] for node in spec.nodes}
+    for road in spec.roads:
+        meeting[road.from_node].append(road)
+        meeting[road.to_node].append(road)
+    for node in spec.nodes:
+        if roads := meeting[node.id]:
+            kind = _node_type(node, roads)
+            place = etree.SubElement(root, "node", id=node.id, x=_m(node.x_m), y=_m(node.y_m), type=kind)
+            if len(roads) > 2 and sum(road.kind != "driveway" for road in roads) < 3:
+                place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
+    return to_text(root)
+
+
+def _node_type(node: Node, roads: Sequence[Road]) -> str:
+    """Signs need a junction; flashing lights without a minor road flash red all round."""
+    if len(roads) < 3 and node.control != "signal":
+        return "priority"
+    if node.control == "flashing" and not any(_yields(road) for road in roads):
+        return "allway_stop"
+    return _TYPES[node.control]
+
+
+def _yields(road: Road) -> bool:
+    return road.minor or road.kind == "driveway"
+
+
+# ------------------------------------------------------------------ edges
+def _edges(drawn: Mapping[str, Roadway]) -> str:
+    root = etree.Element("edges")
+    for way in drawn.values():
+        directions: tuple[Direction, ...] = ("forward", "backward")
+        for direction in directions:
+            if lanes(way.road, direction):
+                _edge(root, way, direction)
+    return to_text(root)
+
+
+def _edge(root: Element, way: Roadway, direction: Direction) -> None:
+    road, forward = way.road, direction == "forward"
+    ends = (road.from_node, road.to_node) if forward else (road.to_node, road.from_node)
+    center = forward and has_center_lane(road)
+    count = lanes(road, direction)
+    edge = etree.SubElement(root, "edge", id=road.id if forward else f"-{road.id}")
+    edge.set("from", ends[0])
+    edge.set("to", ends[1])
+    edge.set("priority", str(_priority(road)))
+    edge.set("numLanes", str(count + center))
+    edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[road.kind]) * MPS_PER_MPH:.3f}")
+    edge.set("width", f"{lane_width_m(road):g}")
+    edge.set("spreadType", "right")
+    edge.set("shape", _shape(way.left_border(direction)))
+    if center:
+        etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
+
+
+def _priority(road: Road) -> int:
+    return 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
+
+
+def _shape(points: Floats) -> str:
+    return " ".join(f"{_m(x)},{_m(y)}" for x, y in points)
+
+
+def _m(value: float) -> str:
+    return f"{value + 0.0:.3f}"
+
+
+# ------------------------------------------------------------------ connections
+def _connections(found: tuple[Link, ...]) -> str:
+    root = etree.Element("connections")
+    for link in found:
+        connection = etree.SubElement(root, "connection")
+        connection.set("from", link.from_edge)
+        connection.set("to", link.to_edge)
+        connection.set("fromLane", str(link.from_lane))
+        connection.set("toLane", str(link.to_lane))
+    return to_text(root)
+
+
+# ------------------------------------------------------------------ schema
+def xsd_findings(plain: PlainXml) -> list[Finding]:
+    """What SUMO's own schemas say against plain XML (netconvert itself lets most of it pass, or crashes)."""
+    parts = {"nodes": plain.nodes, "edges": plain.edges, "connections": plain.connections}
+    return [f for part, text in parts.items() if text or part != "connections" for f in sumo_findings(part, text)]
+
+
+def sumo_findings(kind: str, text: str) -> list[Finding]:
+    """What SUMO's schema of a kind of file ("nodes", "edges", "connections", "net", "routes") says against it."""
+    try:
+        root = parse_xml(text, f"sumo_xsd {kind}")
+    except InvalidOutput as fault:
+        return list(fault.findings)
+    remedy = f"follow SUMO's schema of {kind} files"
+    return [
+        Finding(source="sumo_xsd", what=message, where=f"{kind}, line {line}", remedy=remedy)
+        for line, message in schema_errors(_schema(kind), root)
+    ]
+
+
+@cache
+def _schema(kind: str) -> etree.XMLSchema:
+    parser = etree.XMLParser(no_network=True)
+    return etree.XMLSchema(etree.parse(str(settings.sumo_home() / "data" / "xsd" / f"{kind}_file.xsd"), parser))

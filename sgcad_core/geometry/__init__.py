@@ -1,0 +1,1 @@
+"""Plane geometry: oriented boxes, polylines and distances. Metres and radians; knows no format."""

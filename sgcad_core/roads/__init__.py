@@ -1,0 +1,1 @@
+"""Roads before any file format: layouts, their geometry, connections and words."""

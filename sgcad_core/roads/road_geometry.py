@@ -1,0 +1,181 @@
+"""Where the lanes of a road spec lie: smooth center lines, medians, and the left border of each direction.
+
+Metres; x east, y north. Traffic keeps to the right, so a direction's lanes lie to the right of its left
+border. Knows the spec and numpy; no SUMO, no OpenDRIVE.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
+from sgcad_core.specs import Node, Road, RoadSpec
+
+Direction = Literal["forward", "backward"]
+
+LANE_M = 3.6
+"""U.S. through lane (12 ft)."""
+DRIVEWAY_LANE_M = 3.0
+MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier": 1.8}
+"""Gap between the directions. Grass medians are often wider; beyond this a junction no longer looks like one."""
+STEP_M = 3.0
+TAPER_M = 30.0
+
+
+@dataclass(frozen=True)
+class Roadway:
+    """A road with what its ends need: `gap_m` between the directions along the road and at (from, to)."""
+
+    road: Road
+    center: Floats
+    gap_m: float
+    end_gaps_m: tuple[float, float]
+    has_twin: bool = False
+    """One-way, and another one-way road joins the same nodes the other way."""
+
+    def left_border(self, direction: Direction) -> Floats:
+        """(n, 2) left border of a direction's lanes (the two-way left-turn lane included), in travel direction."""
+        line = self.center if direction == "forward" else self.center[::-1]
+        if len(line) == 2 and len({self.gap_m, *self.end_gaps_m}) > 1:
+            length = arc_lengths(line)[-1]
+            line = resample(line, np.linspace(0, length, 2 + int(length / STEP_M)))
+        left = self._shift(direction) - self._gaps(line, direction) / 2
+        return offset_polyline(line, left) if left.any() else line
+
+    def _shift(self, direction: Direction) -> float:
+        """How far the left border lies left of the center line, medians aside.
+
+        A two-way left-turn lane straddles the center line and belongs to the forward edge; a one-way road
+        lies on its line, unless another brings the traffic back beside it.
+        """
+        width = lane_width_m(self.road)
+        if two_way(self.road):
+            return has_center_lane(self.road) * width / 2 * (1 if direction == "forward" else -1)
+        return 0.0 if self.has_twin else lanes(self.road, direction) * width / 2
+
+    def _gaps(self, line: Floats, direction: Direction) -> Floats:
+        """The gap at every point: the road's own, tapered smoothly to that of its ends."""
+        along = arc_lengths(line)
+        start, end = self.end_gaps_m if direction == "forward" else self.end_gaps_m[::-1]
+        taper = max(min(TAPER_M, along[-1] / 2), 1e-9)
+        from_start, from_end = _ease(along / taper), _ease((along[-1] - along) / taper)
+        return start + (self.gap_m - start) * from_start + (end - self.gap_m) * (1 - from_end)
+
+
+def _ease(share: Floats) -> Floats:
+    """0 to 1 with level ends."""
+    x = np.clip(share, 0.0, 1.0)
+    return np.asarray(x * x * (3 - 2 * x), dtype=float)
+
+
+def lanes(road: Road, direction: Direction) -> int:
+    """Lanes that passenger cars use."""
+    return road.lanes_forward if direction == "forward" else road.lanes_backward
+
+
+def two_way(road: Road) -> bool:
+    """Whether the road has lanes in both directions."""
+    return road.lanes_forward > 0 and road.lanes_backward > 0
+
+
+def has_center_lane(road: Road) -> bool:
+    """Whether the road really has a two-way left-turn lane: a one-way road has not."""
+    return road.center_turn_lane and two_way(road)
+
+
+def lane_width_m(road: Road) -> float:
+    """Lane width in metres."""
+    return DRIVEWAY_LANE_M if road.kind == "driveway" else LANE_M
+
+
+def roadways(spec: RoadSpec) -> dict[str, Roadway]:
+    """Every road with its geometry, by id. The spec's references must hold (`road_spec.spec_findings`)."""
+    nodes = {node.id: node for node in spec.nodes}
+    meeting = _roads_at(spec)
+    return {road.id: _roadway(road, nodes, meeting) for road in spec.roads}
+
+
+def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Roadway:
+    inner = [(p.x_m, p.y_m) for p in road.via]
+    ends = nodes[road.from_node], nodes[road.to_node]
+    points = np.array([(ends[0].x_m, ends[0].y_m), *inner, (ends[1].x_m, ends[1].y_m)], dtype=float)
+    gaps = _end_gap(road, meeting[road.from_node]), _end_gap(road, meeting[road.to_node])
+    return Roadway(road, smooth(points), median_gap_m(road), gaps, _has_twin(road, meeting[road.from_node]))
+
+
+def _has_twin(road: Road, meeting: Sequence[Road]) -> bool:
+    start, end = flow(road)
+    return not two_way(road) and any(not two_way(r) and flow(r) == (end, start) for r in meeting)
+
+
+def flow(road: Road) -> tuple[str, str]:
+    """Nodes of a one-way road in travel direction (of a two-way road in forward direction)."""
+    return (road.from_node, road.to_node) if road.lanes_forward else (road.to_node, road.from_node)
+
+
+def median_gap_m(road: Road) -> float:
+    """Gap between the directions; none on a one-way road nor where a two-way left-turn lane takes its place."""
+    return MEDIAN_M[road.median] if two_way(road) and not road.center_turn_lane else 0.0
+
+
+def _roads_at(spec: RoadSpec) -> dict[str, list[Road]]:
+    found: dict[str, list[Road]] = {node.id: [] for node in spec.nodes}
+    for road in spec.roads:
+        found[road.from_node].append(road)
+        found[road.to_node].append(road)
+    return found
+
+
+def _end_gap(road: Road, meeting: Sequence[Road]) -> float:
+    """At a node of two roads both have the narrower gap, so that lanes meet; elsewhere the road keeps its own."""
+    gaps = [median_gap_m(r) for r in meeting]
+    return min(gaps) if len(meeting) == 2 else median_gap_m(road)
+
+
+# ------------------------------------------------------------------ smoothing
+def smooth(points: Floats, step_m: float = STEP_M) -> Floats:
+    """A cubic spline through (n, 2) points, a vertex about every `step_m`; two points stay a line.
+
+    Parameter: chord length; ends: as curved as their neighbors, so that points of an arc give the arc (its
+    turn is spread evenly). Points nearer than 0.5 m to the one before are dropped.
+    """
+    points = _apart(points)
+    if len(points) < 3:
+        return points
+    chords = np.hypot(*np.diff(points, axis=0).T)
+    bends = _bends(points, chords)
+    pieces = [_piece(points[i : i + 2], bends[i : i + 2], float(h), step_m) for i, h in enumerate(chords)]
+    return np.vstack([*pieces, points[-1:]])
+
+
+def _apart(points: Floats, least_m: float = 0.5) -> Floats:
+    kept = [points[0]]
+    for point in points[1:-1]:
+        if min(np.hypot(*(point - kept[-1])), np.hypot(*(point - points[-1]))) >= least_m:
+            kept.append(point)
+    return np.array([*kept, points[-1]])
+
+
+def _bends(points: Floats, chords: Floats) -> Floats:
+    """(n, 2) second derivatives of the spline at its points."""
+    n = len(points)
+    rows, slopes = np.zeros((n, n)), np.zeros((n, 2))
+    rows[0, :2], rows[-1, -2:] = (1, -1), (-1, 1)
+    for i in range(1, n - 1):
+        rows[i, i - 1 : i + 2] = chords[i - 1], 2 * (chords[i - 1] + chords[i]), chords[i]
+    speeds = np.diff(points, axis=0) / chords[:, None]
+    slopes[1:-1] = 6 * np.diff(speeds, axis=0)
+    return np.asarray(np.linalg.solve(rows, slopes), dtype=float)
+
+
+def _piece(ends: Floats, bends: Floats, chord: float, step_m: float) -> Floats:
+    """The spline between two points, without the second."""
+    t = np.linspace(0, chord, max(1, round(chord / step_m)), endpoint=False)[:, None]
+    u = chord - t
+    found: Floats = (bends[0] * u**3 + bends[1] * t**3) / (6 * chord)
+    found += (ends[0] / chord - bends[0] * chord / 6) * u + (ends[1] / chord - bends[1] * chord / 6) * t
+    return found
