@@ -103,7 +103,7 @@ def content_of(value: Any) -> str:
 
 def _feed(found: Any, value: Any) -> None:
     if isinstance(value, BaseModel):
-        value = dict(value)
+        value = {name: getattr(value, name) for name in type(value).model_fields}  # no reading, which follows from them
     if isinstance(value, dict):
         value = sorted(value.items())
     if isinstance(value, list | tuple):

@@ -17,7 +17,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
@@ -44,7 +44,7 @@ class Template(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
-        return self.network_of(context.narrative, road_facts(context.narrative))
+        return self.network_of(context.narrative, context.reading.roads)
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""

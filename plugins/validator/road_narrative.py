@@ -19,7 +19,7 @@ from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
-from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
 
@@ -50,7 +50,7 @@ class RoadNarrative(Validator):
             graph = parse_net(artifact.net_xml)
         except InvalidOutput:
             return []
-        facts = road_facts(evidence.report.narrative)
+        facts = evidence.report.reading.roads
         drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
             *self._legs(facts, len(legs[0]) if legs else 0, pictured), *self._paths(facts, legs, pictured),

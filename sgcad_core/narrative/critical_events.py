@@ -50,14 +50,14 @@ def read_code(found: dict[str, Motion], told: Told, who: Roster) -> None:
         _other_code(found, owner, text, told.number, who)
     else:
         for kind, pattern in _CODES:
-            if re.search(pattern, text):
-                found[owner].deeds.append(Deed(f"code:{kind}", 2, told.number))
+            if code := re.search(pattern, text):
+                found[owner].deeds.append(Deed(f"code:{kind}", 2, told.number, code.group()))
 
 
 def _other_code(found: dict[str, Motion], owner: str, text: str, number: int, who: Roster) -> None:
     other = who.other(owner)
     for kind, pattern in _OTHERS_CODES:
-        if not re.search(pattern, text):
+        if not (code := re.search(pattern, text)):
             continue
         whom, what = kind.split(":")
         if whom == "kin":
@@ -65,6 +65,6 @@ def _other_code(found: dict[str, Motion], owner: str, text: str, number: int, wh
                 if me:
                     found[me].kin.append((1, what, you, "code"))  # type: ignore[arg-type]
         elif whom == "self":
-            found[owner].deeds.append(Deed(f"code:{what}", 2, number))
+            found[owner].deeds.append(Deed(f"code:{what}", 2, number, code.group()))
         elif other:
-            found[other].deeds.append(Deed(f"code:{what}", 2, number))
+            found[other].deeds.append(Deed(f"code:{what}", 2, number, code.group()))

@@ -133,7 +133,7 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int) -> None:
         ):
             continue
         later = _LATER.search(before) and not _TRY.search(before[-14:])
-        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number))
+        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group()))
     for kind, pattern in _DEED_PATTERNS:
         for m in pattern.finditer(text):
             if not _NOT.search(text[max(0, m.start() - 30) : m.start()]):
@@ -147,6 +147,6 @@ def _note_deed(motion: Motion, kind: str, m: re.Match[str], weight: int, number:
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None
         if entered and own and turned(entered, 180) == own:
-            motion.deeds.append(Deed("crossing_centerline", weight, number))
+            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group()))
     else:
-        motion.deeds.append(Deed(kind, weight, number))
+        motion.deeds.append(Deed(kind, weight, number, m.group()))

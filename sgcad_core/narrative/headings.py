@@ -68,11 +68,12 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         if came and re.search(
             r"\b(?:approach|enter|travel|com|cross|turn|pull|drov|proceed|merg|exit)\w*", text[: m.start()]
         ):
-            motion.headings.append((max(1, weight - 1), turned(came, 180)))
+            motion.heard(motion.headings, max(1, weight - 1), turned(came, 180), m.group("dir"))
     for m in _EXIT.finditer(text):
         heading = compass_of(m.group("dir"))
         if heading:
             motion.exits.append(heading)
+            motion.read(f"exit {heading}", m.group("dir"))
 
 
 _BOUND_VEHICLE = re.compile(
@@ -93,4 +94,4 @@ def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
 def _note_heading(motion: Motion, word: str, weight: int) -> None:
     heading = compass_of(word)
     if heading:
-        motion.headings.append((weight, heading))
+        motion.heard(motion.headings, weight, heading, word)

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from sgcad_core.narrative.traced import Traced, joined
+
 _NUMBER = r"(?:\d{1,3}|[a-z]+(?:[- ](?:one|two|three|four|five|six|seven|eight|nine))?)"
 _ROLE = "driver|passenger|occupant|pedestrian|rider|operator|bicyclist|person"
 _HELD = r"(?:un)?(?:belted|restrained|helmeted)"
@@ -64,45 +66,57 @@ _SENTENCE_END = re.compile(r"(?<=[.!?])(?=\s+[A-Z(\"'])|(?<=\n)")
 
 def redact(text: str) -> str:
     """The narrative without persons: sentences about people alone dropped, ages, sexes and names replaced."""
-    out = "".join(_parts_without_persons(_SENTENCE_END.split(text)))
-    out = _AGE.sub(lambda m: f"{m.group('the') or 'a '}person ", out)
-    out = _NAME.sub("a person", out)
-    out = _SEX.sub(lambda m: _person(m.group(0), m.group(1)), out)
-    out = re.sub(r"\bperson (driver|passenger|occupant|pedestrian|rider|operator|bicyclist)\b", r"\1", out)
+    return redacted(Traced.of(text)).text
+
+
+def redacted(text: Traced) -> Traced:
+    """`redact` of a text whose characters know their places."""
+    out = joined(list(_parts_without_persons(text.split(_SENTENCE_END))))
+    out = out.sub(_AGE, lambda m: f"{m.group('the') or 'a '}person ").sub(_NAME, "a person")
+    out = out.sub(_SEX, lambda m: _person(m.group(0), m.group(1))).sub(_PERSON_ROLE, r"\1")
     for pattern, neutral in _PRONOUNS:
-        out = pattern.sub(neutral, out)
-    out = _AGREEMENT.sub(lambda m: m.group(1) + _PLURAL[m.group(2)], out)
-    out = re.sub(r"(^|[.!?]\s+)a person\b", r"\1A person", out)
-    return re.sub(r" +([.,;])", r"\1", re.sub(r"[ \t]{2,}", " ", out)).strip()
+        out = out.sub(pattern, neutral)
+    out = out.sub(_AGREEMENT, lambda m: m.group(1) + _PLURAL[m.group(2)]).sub(_LOWER_PERSON, r"\1A person")
+    return out.sub(_GAP, " ").sub(_SPACE_BEFORE, r"\1").strip()
 
 
-def _parts_without_persons(sentences: Iterable[str]) -> Iterator[str]:
+_PERSON_ROLE = re.compile(r"\bperson (driver|passenger|occupant|pedestrian|rider|operator|bicyclist)\b")
+_LOWER_PERSON = re.compile(r"(^|[.!?]\s+)a person\b")
+_GAP = re.compile(r"[ \t]{2,}")
+_SPACE_BEFORE = re.compile(r" +([.,;])")
+
+
+def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
     """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it."""
     named: str | None = None
     for sentence in sentences:
         kept = _without_persons(sentence)
-        mention = _MENTION.search(sentence)
-        if not kept.strip(" .!?"):
+        mention = _MENTION.search(sentence.text)
+        if not kept.text.strip(" .!?"):
             named = mention.group(0) if mention else named
-        elif _PERSON.match(kept) and named:
-            kept, named = _PERSON.sub(rf"\1The driver of {named}", kept, count=1), None
-        elif _MENTION.search(kept):
+        elif _PERSON.match(kept.text) and named:
+            kept, named = kept.sub(_PERSON, rf"\1The driver of {named}", 1), None
+        elif _MENTION.search(kept.text):
             named = None
         yield kept
 
 
-def _without_persons(sentence: str) -> str:
+def _without_persons(sentence: Traced) -> Traced:
     """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
-    if not _PERSON_ONLY.search(sentence):
+    if not _PERSON_ONLY.search(sentence.text):
         return sentence
-    body, end = re.fullmatch(r"(.*?)([.!?]*\s*)", sentence, re.DOTALL).groups()  # type: ignore[union-attr]
-    clauses = _CLAUSE.split(_UNHURT.sub("", body))
-    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause)]
-    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(kept))):
+    ends = _END_MARK.fullmatch(sentence.text).start(1)  # type: ignore[union-attr]
+    body, end = sentence.cut(0, ends), sentence.cut(ends, len(sentence.text))
+    clauses = body.sub(_UNHURT, "").split(_CLAUSE)
+    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause.text)]
+    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(k.text for k in kept))):
         kept = []  # what is left has lost its subject and tells of no motion
-    text = _CONNECTOR.sub("", "".join(kept).strip(" ,;"))
-    space = re.match(r"\s*", body).group(0)  # type: ignore[union-attr]
-    return space + text + end if text else end.strip(".!? ")
+    text = joined(kept).strip(" ,;").sub(_CONNECTOR, "")
+    space = body.cut(0, len(body.text) - len(body.text.lstrip()))
+    return joined([space, text, end]) if text.text else end.strip(".!? ")
+
+
+_END_MARK = re.compile(r".*?([.!?]*\s*)", re.DOTALL)
 
 
 def _tells_of_persons_alone(clause: str) -> bool:

@@ -1,4 +1,4 @@
-"""The roads of a crash as its narrative tells them: `road_facts` is the one entry.
+"""The roads of a crash as its narrative tells them.
 
 Roads with lanes as stated, their junction, limits and curves, and who is on them. What the text leaves open
 stays None here; `sgcad_core.narrative.layout_facts` fills it. Knows no road network format.
@@ -10,9 +10,9 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.narrative.clauses import Told, tell
+from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import COMPASS, between, compass_of, turned
-from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import BOUND, LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
@@ -20,8 +20,7 @@ from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
-from sgcad_core.narrative.text import sentences
-from sgcad_core.narrative.vehicles import roster
+from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Compass
 
 
@@ -49,8 +48,8 @@ class RoadFact:
 class RoadFacts:
     """All roads of a crash, the streets first; `crash`: the vehicles that the roads must carry.
 
-    Where no heading is told, the headings in `crash` are turned to fit the roads (`crash_facts` alone cannot);
-    a told lane ("in the eastbound lanes") then makes them `oriented`.
+    Where no heading is told, the headings in `crash` are turned to fit the roads; a told lane ("in the eastbound
+    lanes") then makes them `oriented`.
     """
 
     roads: tuple[RoadFact, ...]
@@ -66,12 +65,8 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
 
 
-def road_facts(narrative: str, crash: CrashFacts | None = None) -> RoadFacts:
-    """Read the roads off a report. Never raises; a text without roads gives none. `crash` saves reading twice."""
-    crash = crash or crash_facts(narrative)
-    found = sentences(narrative)
-    who = roster(s.text for s in found)
-    told = tell(found, who)
+def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+    """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions = road_mentions(_telling(told), who.ids)
     crash = _oriented(crash, mentions, told)
     headings = {v.id: v.heading for v in crash.vehicles if v.heading}

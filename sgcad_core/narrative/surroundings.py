@@ -70,6 +70,7 @@ def read_lane(motion: Motion, text: str) -> None:
             motion.lane = _ORDINAL[m.group("ord").lower()]
         else:
             motion.lane_word = _lane_word(m)
+        motion.read("lane", m.group())
         return
 
 
@@ -96,7 +97,7 @@ def read_speed(motion: Motion, text: str, weight: int) -> None:
         m = pattern.search(text)
         if m:
             low, high = float(m.group("a")), float(m.group("b") or m.group("a"))
-            motion.speeds_mph.append((weight, round(min(120.0, (low + high) / 2 * factor))))
+            motion.heard(motion.speeds_mph, weight, round(min(120.0, (low + high) / 2 * factor)), m.group())
             return
 
 
@@ -136,17 +137,25 @@ _SHOULDER = re.compile(
 
 def read_access(motion: Motion, text: str) -> None:
     origin = _ORIGIN.search(text)
-    if origin and motion.origin is None:
-        motion.origin = _place(origin.group("place"))
-    elif motion.origin is None and _ON_DRIVE.search(text) and not re.search(r"\bapproach\w*\W+(?:\w+ )?driveway", text):
-        motion.origin = "driveway"
-    elif motion.origin is None and _RAMP.search(text):
-        motion.origin = "ramp"
-    elif motion.origin is None and _SHOULDER.search(text):
-        motion.origin = "shoulder"
+    if motion.origin is None and (found := _came_from(text, origin)):
+        motion.origin = found[0]
+        motion.read("origin", found[1])
     target = next((m for m in _TARGET.finditer(text) if re.search(r"\bturn|pull|enter|cross", text[: m.end()])), None)
     if target and motion.target is None and not (origin and origin.start() < target.start() <= origin.end()):
         motion.target = _place(target.group("place"))
+        motion.read("target", target.group("place"))
+
+
+def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str] | None:
+    """Where a vehicle came from, and the words that tell it."""
+    if origin:
+        return _place(origin.group("place")), origin.group("place")
+    drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
+    if drive and not re.search(r"\bapproach\w*\W+(?:\w+ )?driveway", text):
+        return "driveway", drive.group()
+    if ramp:
+        return "ramp", ramp.group()
+    return ("shoulder", shoulder.group()) if shoulder else None
 
 
 def _place(word: str) -> Access:

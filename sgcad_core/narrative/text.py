@@ -1,7 +1,7 @@
 """The text of a crash report made uniform: one spelling per mention, unit and direction; sentences.
 
-`normalize` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
-"V 1" all become "V1". Knows no facts.
+`normalised` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
+"V 1" all become "V1". Every character keeps its place in the text that was given. Knows no facts.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
+from sgcad_core.narrative.traced import Traced, joined
 from sgcad_core.narrative.unnumbered import number_vehicles
 
-__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalize", "sentences"]
+__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 
 NUMBERS = {
     "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
@@ -27,12 +28,17 @@ _COMPASS = r"(?:north|south)(?:[ -]?(?:east|west))?|east|west"
 
 
 class Sentence(NamedTuple):
-    """One normalized sentence, what it is for, and where it stands (both counted from 0)."""
+    """One normalized sentence, what it is for, and where it stands (all counted from 0).
+
+    [start, end): its characters in the text as it was given, white space around left out.
+    """
 
     text: str
     role: Role
     number: int
     paragraph: int
+    start: int = 0
+    end: int = 0
 
 
 # ------------------------------------------------------------------ characters
@@ -120,47 +126,63 @@ def normalize(text: str) -> str:
 
     Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
     """
-    return "\n\n".join(filter(None, (_paragraph(block) for block in _blocks(text))))
+    return normalised(Traced.of(text)).text
 
 
-def _blocks(text: str) -> list[str]:
+def normalised(text: Traced) -> Traced:
+    """`normalize` of a text whose characters know their places."""
+    return joined([p for p in map(_paragraph, _blocks(text)) if p.text], "\n\n")
+
+
+def _blocks(text: Traced) -> list[Traced]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
-    text = re.sub(r"[ ]+\n", "\n", text.translate(_CHARACTERS))
-    return re.split(r"\n\s*\n|(?<=[.!?\"):])\n(?=\s*[A-Z\"])", text)
+    plain = text.sub(_CHARACTER, lambda m: str(_CHARACTERS[ord(m[0])]))
+    return plain.sub(_SPACE_AT_END, "\n").split(_PARAGRAPH)
 
 
-def _paragraph(block: str) -> str:
+_CHARACTER = re.compile(f"[{re.escape(''.join(map(chr, _CHARACTERS)))}]")
+_SPACE_AT_END = re.compile(r"[ ]+\n")
+_PARAGRAPH = re.compile(r"\n\s*\n|(?<=[.!?\"):])\n(?=\s*[A-Z\"])")
+
+
+def _paragraph(block: Traced) -> Traced:
     once = _spell(block)
     for _ in range(4):
         again = _spell(once)
-        if again == once:
+        if again.text == once.text:
             break
         once = again
     return once
 
 
-def _spell(text: str) -> str:
-    text = _spaces(text)
-    text = _TYPO.sub(_mend_typo, text)
+def _spell(text: Traced) -> Traced:
+    text = _spaces(text).sub(_TYPO, _mend_typo)
     for pattern, to in _PATTERNS:
-        text = pattern.sub(to, text)
-    text = re.sub(r"\bV[iIl]\b", "V1", text)
-    text = _LETTERED.sub(lambda m: f"V{ord(m.group(1)) - ord('A') + 1}", text)
-    text = _VEHICLE_WORD.sub(lambda m: f"V{NUMBERS[m.group(1).lower()]}", text)
-    text = _VEHICLE_CASE.sub(r"V\1", text)
-    text = _COUNTED_LANE.sub(_mend_lanes, text)
+        text = text.sub(pattern, to)
+    text = text.sub(_MISREAD_ONE, "V1")
+    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
     return _spaces(text)
 
 
-def _spaces(text: str) -> str:
+_MISREAD_ONE = re.compile(r"\bV[iIl]\b")
+_SPACES: tuple[tuple[re.Pattern[str], str], ...] = tuple((re.compile(pattern), to) for pattern, to in (
+    (r"\s+", " "), (r"\s*\.(?:\s*\.)+", "."),
+    (r"\s+([,;.])(?=\s|$)", r"\1"),
+    (r"(?<=[a-z\d)%\"])\.(?=[A-Z\"])|(?<=mph)\.(?=[A-Z])|(?<=MPH)\.(?=[A-Z])", ". "),
+    (r"(?<=[A-Za-z)]),(?=[A-Za-z\d])", ", "),
+    (r"(?<=[a-z\d)])\((?=\w)", " ("),
+    (r"(?<=[\w)])\)(?=[A-Za-z\d])", ") "),
+    (r" +", " "),
+))  # fmt: skip
+
+
+def _spaces(text: Traced) -> Traced:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
-    text = re.sub(r"\s*\.(?:\s*\.)+", ".", re.sub(r"\s+", " ", text))
-    text = re.sub(r"\s+([,;.])(?=\s|$)", r"\1", text)
-    text = re.sub(r"(?<=[a-z\d)%\"])\.(?=[A-Z\"])|(?<=mph)\.(?=[A-Z])|(?<=MPH)\.(?=[A-Z])", ". ", text)
-    text = re.sub(r"(?<=[A-Za-z)]),(?=[A-Za-z\d])", ", ", text)
-    text = re.sub(r"(?<=[a-z\d)])\((?=\w)", " (", text)
-    text = re.sub(r"(?<=[\w)])\)(?=[A-Za-z\d])", ") ", text)
-    return re.sub(r" +", " ", text).strip()
+    for pattern, to in _SPACES:
+        text = text.sub(pattern, to)
+    return text.strip()
 
 
 def _mend_typo(match: re.Match[str]) -> str:
@@ -184,27 +206,40 @@ _END = re.compile(r"(?<=[.!?])[\"')]*\s+(?=[\"'(]*[A-Z\d])")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
-    """The report's sentences in order, normalized, with roles; vehicles without numbers get some."""
+    """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
+    return split_sentences(normalised(Traced.of(text)))
+
+
+def split_sentences(text: Traced) -> tuple[Sentence, ...]:
+    """The sentences of a normalized text."""
     found: list[Sentence] = []
-    for number, block in enumerate(filter(None, number_vehicles(normalize(text)).split("\n\n"))):
+    blocks = [block for block in number_vehicles(text).split(_BREAK) if block.text]
+    for number, block in enumerate(blocks):
         for piece in _split(block):
-            found.append(Sentence(piece, role_of(piece), len(found), number))
+            found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))
     return tuple(found)
 
 
-def _split(block: str) -> list[str]:
-    pieces: list[str] = []
-    for part in _END.split(block):
-        joins = pieces and _ABBREVIATION.search(pieces[-1]) and not pieces[-1].lower().endswith((" dr.", " st."))
+_BREAK = re.compile("\n\n")
+
+
+def _split(block: Traced) -> list[Traced]:
+    pieces: list[Traced] = []
+    for part in block.split(_END):
+        last = pieces[-1].text if pieces else ""
+        joins = pieces and _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
         if pieces and joins:
-            pieces[-1] += " " + part
+            pieces[-1] = joined([pieces[-1], part], " ")
         else:
             pieces.append(part)
-    return [cut.strip() for piece in pieces for cut in _cut(piece) if cut.strip()]
+    return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
 
 
-def _cut(sentence: str) -> list[str]:
+_BEARABLE = re.compile(rf"(?s).{{1,{LONGEST}}}(?:\s|$)|.{{1,{LONGEST}}}")
+
+
+def _cut(sentence: Traced) -> list[Traced]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
-    if len(sentence) <= LONGEST:
+    if len(sentence.text) <= LONGEST:
         return [sentence]
-    return re.findall(rf"(?s).{{1,{LONGEST}}}(?:\s|$)|.{{1,{LONGEST}}}", sentence)
+    return [sentence.cut(m.start(), m.end()) for m in _BEARABLE.finditer(sentence.text)]

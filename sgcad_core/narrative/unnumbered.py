@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES
+from sgcad_core.narrative.traced import Traced
 
 _YEAR = r"(?:19|20)\d\d"
 _MAKE = "|".join(sorted(map(re.escape, MAKES), key=len, reverse=True))
@@ -26,17 +27,17 @@ _STRANGER = re.compile(r"\b(?:non-?contact|unknown|uninvolved|parked cars?|unide
 _MOST = 6
 
 
-def number_vehicles(text: str) -> str:
+def number_vehicles(text: Traced) -> Traced:
     """The normalized text with a number behind each first description; unchanged if there is any number."""
-    if re.search(r"\bV\d+\b", text):
+    if re.search(r"\bV\d+\b", text.text):
         return text
     seen: dict[str, int] = {}
 
     def numbered(match: re.Match[str]) -> str:
         key = (match["make"] or match["body"]).lower()
-        if key in seen or len(seen) == _MOST or _STRANGER.search(text[: match.start()]):
+        if key in seen or len(seen) == _MOST or _STRANGER.search(match.string[: match.start()]):
             return match.group()
         seen[key] = len(seen) + 1
         return f"{match.group()} (V{seen[key]})"
 
-    return _DESCRIBED.sub(numbered, text)
+    return text.sub(_DESCRIBED, numbered)

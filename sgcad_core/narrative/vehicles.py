@@ -116,13 +116,21 @@ def roster(sentences: Iterable[str]) -> Roster:
     return Roster(found, _aliases(found))
 
 
+_NO_NUMBER = re.compile(r"V\d+(?:[ -](?:engine|motor|powered)|TEC| ?[ap]\.?m\b)", re.I)
+
+
 def _numbers(told: list[str]) -> list[str]:
-    """The ids in order; a number far beyond the others is a model (Volvo V70), not a vehicle."""
+    """The ids in order, the first one whatever it is; one far beyond the others is a model (Volvo V70), no vehicle."""
+    named = (m for text in told for m in _NO_MODEL.finditer(text) if not _NO_NUMBER.match(text, m.start()))
     kept: list[int] = []
-    for n in sorted({int(m[1:]) for text in told for m in _NO_MODEL.findall(text) if int(m[1:]) < 100}):
-        if 1 <= n <= (kept[-1] if kept else 1) + 2:
+    for n in sorted({int(m[0][1:]) for m in named if len(m[0]) <= _LONGEST_ID}):
+        if n and (not kept or n <= kept[-1] + 2):
             kept.append(n)
     return [f"V{n}" for n in kept]
+
+
+_LONGEST_ID = 3
+"""Characters: V1 to V99, as specs have them."""
 
 
 def _identity(vehicle: str, told: list[str]) -> Identity:

@@ -8,7 +8,7 @@ from sgcad_core.asking.narrowing import narrowed
 from sgcad_core.asking.prompts import answer_schema
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 from sgcad_core.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Leg, RoadLayout
