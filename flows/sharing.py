@@ -29,7 +29,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from flows import cases
-from sgcad_core import settings
+from sgcad_core import records, specs
+from sgcad_core.asking import narrowing, refine
 from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
@@ -86,7 +87,7 @@ def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
 @cache
 def _records_digest() -> str:
     """What is kept is pickled: other records are another cache."""
-    files = (settings.ROOT / "sgcad_core" / f"{name}.py" for name in ("records", "specs", "refine", "holds"))
+    files = (Path(str(module.__file__)) for module in (records, specs, refine, narrowing))
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
