@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import socket
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import psutil
 import pytest
@@ -22,8 +24,13 @@ SLEEPS = ("sleep", "closed answer")
 
 
 @pytest.fixture
-def bait(tmp_path):
-    """A secret to read, a place to write, a port to call, and a look at what came of it."""
+def bait(tmp_path, monkeypatch):
+    """A secret to read, a place to write, a port to call, and a look at what came of it.
+
+    Its processes carry a mark in their command lines, which forks keep: other tests may run scripts meanwhile.
+    """
+    mark = f"# of {tmp_path}"
+    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n{mark}")
     secret, canary = tmp_path / "secret.txt", tmp_path / "canary.txt"
     secret.write_text("the-secret")
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -34,7 +41,22 @@ def bait(tmp_path):
             server.accept()
     assert secret.read_text() == "the-secret"
     assert not canary.exists()
-    assert not [p for p in psutil.process_iter(["cmdline"]) if "sandbox.inside" in " ".join(p.info["cmdline"] or ())]
+    assert not running(mark)
+
+
+def running(mark):
+    """Processes with a word in their command lines, this one's children or not."""
+    return [p for p in psutil.process_iter(["cmdline"]) if mark in " ".join(p.info["cmdline"] or ())]
+
+
+def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
+    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n# of {tmp_path}")
+    with ThreadPoolExecutor(1) as pool:
+        waiting = pool.submit(run_script, "import time\ntime.sleep(60)\n", dataclasses.replace(TIGHT, wall_s=2.0), unchecked=True)
+        while not running(f"# of {tmp_path}"):
+            assert not waiting.done(), "it ended unseen"
+            time.sleep(0.01)
+    assert not running(f"# of {tmp_path}")
 
 
 def test_there_are_a_hundred_attempts():
