@@ -68,7 +68,8 @@ test-hosts: setup ## a study on two hosts that lose network and power (Linux, ro
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,hosts]' 'moto[s3]>=5.1'
 	$(BIN)/python -m tests.hosts.run
 
-lint: setup ## ruff, mypy, import-linter
+lint: setup ## ruff (rules and format), mypy, import-linter
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports

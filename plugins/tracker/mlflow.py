@@ -101,7 +101,7 @@ def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, flo
 
 def _machine() -> dict[str, float]:
     """The machine as a case ended: processor use since the case before, memory in use, this process' memory."""
-    import psutil  # type: ignore[import-untyped]
+    import psutil
 
     memory = psutil.virtual_memory()
     return {

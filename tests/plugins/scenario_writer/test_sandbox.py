@@ -52,7 +52,9 @@ def running(mark):
 def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
     monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n# of {tmp_path}")
     with ThreadPoolExecutor(1) as pool:
-        waiting = pool.submit(run_script, "import time\ntime.sleep(60)\n", dataclasses.replace(TIGHT, wall_s=2.0), unchecked=True)
+        waiting = pool.submit(
+            run_script, "import time\ntime.sleep(60)\n", dataclasses.replace(TIGHT, wall_s=2.0), unchecked=True
+        )
         while not running(f"# of {tmp_path}"):
             assert not waiting.done(), "it ended unseen"
             time.sleep(0.01)
