@@ -123,7 +123,7 @@ def _packed(told):
     ],
 )
 def test_what_was_not_packed_here_is_told_apart(packed):
-    with pytest.raises(Unpackable, match="packed value|bare list|cut short"):
+    with pytest.raises(Unpackable, match=r"packed value|bare list|cut short"):
         unpack(packed)
 
 
