@@ -14,10 +14,11 @@ Kin = Literal["same", "opposite", "crossing"]
 
 
 class Cue(NamedTuple):
-    """Where something was read: a sentence's number (from 0) and the words, as in the resolved sentence."""
+    """Where something was read: a sentence's number (from 0), the words, as in the resolved sentence, and the rule."""
 
     number: int
     words: str = ""
+    rule: str = ""
 
 
 class Deed(NamedTuple):
@@ -27,11 +28,12 @@ class Deed(NamedTuple):
     weight: int
     number: int
     words: str = ""
+    rule: str = ""
 
     @property
     def cue(self) -> Cue:
         """Where it was read."""
-        return Cue(self.number, self.words)
+        return Cue(self.number, self.words, self.rule)
 
 
 class Heard(NamedTuple):
@@ -73,10 +75,10 @@ class Motion:
         """The first deed of that kind that is told with at least that weight."""
         return next((d for d in self.deeds if d.kind == kind and d.weight >= least), None)
 
-    def read(self, what: str, words: str) -> None:
-        """Note where something was read, if it is the first time."""
-        self.sources.setdefault(what, Cue(self.at, words))
+    def read(self, what: str, words: str, rule: str) -> None:
+        """Note where something was read and by which rule, if it is the first time."""
+        self.sources.setdefault(what, Cue(self.at, words, rule))
 
-    def heard(self, into: list[Heard], weight: int, value: Any, words: str) -> None:
+    def heard(self, into: list[Heard], weight: int, value: Any, words: str, rule: str) -> None:
         """Note a heading or a speed."""
-        into.append(Heard(weight, value, Cue(self.at, words)))
+        into.append(Heard(weight, value, Cue(self.at, words, rule)))

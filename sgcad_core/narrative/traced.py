@@ -11,6 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from sgcad_core.language import Rule
+
+Pattern = re.Pattern[str] | Rule
 Fill = Callable[["re.Match[str]"], str]
 
 
@@ -35,7 +38,7 @@ class Traced(NamedTuple):
         """Where the first character begins and the last one ends; (0, 0) of nothing."""
         return (self.starts[0], self.ends[-1]) if self.text else (0, 0)
 
-    def sub(self, pattern: re.Pattern[str], to: str | Fill, count: int = 0) -> Traced:
+    def sub(self, pattern: Pattern, to: str | Fill, count: int = 0) -> Traced:
         """`pattern.sub(to, text, count)`; of a match only what really changes loses its own place."""
         fill = _filling(to) if isinstance(to, str) else to
         edits = [(m.start(), m.end(), new) for m in _matches(pattern, self.text, count) if (new := fill(m)) != m[0]]
@@ -63,7 +66,7 @@ class Traced(NamedTuple):
         point = self.ends[begin - 1] if begin else self.starts[0] if self.text else 0
         return point, point
 
-    def split(self, pattern: re.Pattern[str]) -> list[Traced]:
+    def split(self, pattern: Pattern) -> list[Traced]:
         """`pattern.split(text)` of a pattern without groups."""
         found, at = [], 0
         for match in pattern.finditer(self.text):
@@ -126,7 +129,7 @@ def placed(text: str, where: Runs) -> Traced:
     return Traced(text, starts, ends)
 
 
-def _matches(pattern: re.Pattern[str], text: str, count: int) -> Iterable[re.Match[str]]:
+def _matches(pattern: Pattern, text: str, count: int) -> Iterable[re.Match[str]]:
     found = pattern.finditer(text)
     return found if not count else (m for m, _ in zip(found, range(count), strict=False))
 
