@@ -16,6 +16,7 @@ from pydantic import Field
 from sgcad_core.evidence import Context as Context
 from sgcad_core.evidence import CrashReport as CrashReport
 from sgcad_core.evidence import Diagram as Diagram
+from sgcad_core.evidence import Fact as Fact
 from sgcad_core.evidence import Record as Record
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, RoadLayout, RoadSpec
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from sgcad_core.evidence import Fact
 from sgcad_core.narrative.clauses import Segment, Told, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
@@ -23,6 +24,8 @@ from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
+from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
+from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
@@ -40,6 +43,8 @@ class Reading:
     crash: CrashFacts
     """Headings that nobody tells are turned to fit the roads."""
     roads: RoadFacts
+    facts: tuple[Fact, ...] = ()
+    """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
 
 def read(narrative: str | Traced) -> Reading:
@@ -104,6 +109,8 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
-    crash = crash_of(seen.draft, settle(seen.draft), seen.sky)
-    roads = roads_of(named.told, named.who, crash)
-    return Reading(narrative, found, roads.crash, roads)
+    settled = settle(seen.draft)
+    roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
+    telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
+    facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
+    return Reading(narrative, found, roads.crash, roads, facts)

@@ -13,6 +13,7 @@ from functools import cached_property
 
 from sgcad_core.language import rule
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
 
 MENTION = rule("vehicles.mention")
@@ -35,6 +36,8 @@ class Identity:
     kind: ActorKind = "car"
     kind_stated: bool = False
     trailer: bool = False
+    described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
+    """Every description of it, in order."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,8 @@ _LONGEST_ID = 3
 
 
 def _identity(vehicle: str, told: list[str]) -> Identity:
-    words = " ".join(d for text in told for d in descriptions(text, vehicle))
+    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in descriptions(text, vehicle))
+    words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
@@ -116,7 +120,7 @@ def _identity(vehicle: str, told: list[str]) -> Identity:
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer,
+        color.group().lower() if color else None, kind, stated, trailer, described,
     )  # fmt: skip
 
 
