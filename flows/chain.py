@@ -175,8 +175,9 @@ class _Run:
     def record(self) -> CaseRecord:
         """Everything known, for result.json and the player."""
         notes = self.report.notes if self.report else ()
+        reading = self.report.reading if self.report else None
         return CaseRecord(
-            self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
+            self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds, reading
         )
 
     def attempts(self) -> tuple[Attempt, ...]:

@@ -174,6 +174,16 @@ def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or k
 
 
 @app.command()
+def explain(
+    case: Annotated[Path, typer.Argument(help="A case's folder in a run, or a report, which is read on the spot.")],
+) -> None:
+    """What was read of a report: each sentence with its facts, what follows from them, what is assumed."""
+    from flows.explain import explain as account
+
+    typer.echo(account(case))
+
+
+@app.command()
 def doctor(out: Out = DEFAULT_OUT) -> None:
     """Look whether everything needed is there and works."""
     from flows.doctor import examine

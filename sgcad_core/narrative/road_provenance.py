@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sgcad_core.evidence import Fact
+from sgcad_core.narrative.compass import COMPASS
 from sgcad_core.narrative.lane_sources import stated
 from sgcad_core.narrative.provenance import Telling
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
@@ -25,6 +26,16 @@ def road_names(facts: RoadFacts) -> tuple[str, ...]:
     streets = ("main", "cross", *(f"street{n}" for n in range(3, 3 + len(facts.roads))))
     named = iter(streets)
     return tuple(next(named) if road in facts.streets else road.kind for road in facts.roads)
+
+
+def road_of_bearing(facts: RoadFacts, leg: str) -> str | None:
+    """The name of the road whose legs lie at a bearing, by a road id such as "N" or "N_outer"."""
+    bearing = leg.split("_")[0]
+    if "_access" in leg or bearing not in COMPASS:
+        return None
+    axis = COMPASS[COMPASS.index(bearing) % 4]
+    pairs = zip(road_names(facts), facts.roads, strict=True)
+    return next((name for name, road in pairs if road.axis == axis), None)
 
 
 def road_provenance(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
