@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -127,6 +128,12 @@ def placed(text: str, where: Runs) -> Traced:
         starts += range(there, last) if same else [there] * (then - here)
         ends += range(there + 1, last + 1) if same else [last] * (then - here)
     return Traced(text, starts, ends)
+
+
+def shown(text: Traced, start: int, end: int) -> tuple[int, int]:
+    """Where in an edited text that stands which was written at [start, end); empty if nothing of it is left."""
+    first, last = bisect_right(text.ends, start), bisect_left(text.starts, end)
+    return first, max(first, last)
 
 
 def _matches(pattern: Pattern, text: str, count: int) -> Iterable[re.Match[str]]:

@@ -71,8 +71,8 @@ def _says(fact, said):
     if last in ("year", "make"):
         return str(fact.value).lower()[:4] in said or last == "make"
     if last in ("striker", "struck"):
-        return bool(re.search(r"str[ui]ck|strik|hit|impact|contact|colli|rear-end|sideswip|clip|push|bump|ram|t-boned|into|"
-                              r"slap|met|together|broadsid", said))  # fmt: skip
+        return bool(re.search(r"str[ui]ck|strik|hit|impact|contact|colli|rear-end|sideswip|clip|push|bump|ram|t-boned|"
+                              r"into|slap|met|together|broadsid", said))  # fmt: skip
     return True
 
 
