@@ -176,6 +176,7 @@
       const own = data.sentences[Number(span.dataset.k)];
       span.classList.toggle("lit", sentence ? own === sentence : own.things.some((t) => lit.has(t)));
     });
+    if (!sentence) document.querySelector("#narrative .told.lit")?.scrollIntoView({ block: "nearest" });
     const because = $("because"); because.replaceChildren(); because.hidden = !facts.length;
     for (const [thing, f] of facts) {
       const text = `${thing} ${words(f.name)}: ${show(Array.isArray(f.value) ? f.value.join(", ") : f.value)}`;
