@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | study | table | report | plugins | index | check | doctor`.
+"""The command line: `sgcad run | evaluate | study | table | report | plugins | index | check | explain | doctor`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
