@@ -67,11 +67,10 @@ FAULTS = [
     ('time="0.05"', 'time="0.15"', "vertex times do not rise .*order the vertices"),
     ('x="-60.0"', 'x="-160.0"', "the actor jumps .*found 2010 m/s.*stay below 90"),
     ("<Story ", "<Storey ", "no well-formed XML"),
-    ('closed="false"', 'closed="true"', "does not support closed trajectories .*timed world polylines"),
     ('revMajor="1"', 'revMajor="2"', "unknown OpenSCENARIO version .*found 2.2"),
     ('vehicleCategory="car"', 'vehicleCategory="spaceship"', "spaceship.*follow the OpenSCENARIO schema"),
     ('conditionEdge="none"', 'conditionEdge="sharp"', "conditionEdge.*in|at line"),
-    ('maximumExecutionCount="1"', 'maximumExecutionCount="2"', "runs a maneuver group once"),
+    ('maximumExecutionCount="1"', 'maximumExecutionCount="1.5"', "maximumExecutionCount"),
 ]
 
 
