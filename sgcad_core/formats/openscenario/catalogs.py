@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 
-from sgcad_core.errors import BadInput
+from sgcad_core.errors import BadInput, InvalidOutput
 from sgcad_core.formats.openscenario.read import Book, Node, read_root
 
 MAX_FILES = 200
@@ -49,20 +49,13 @@ class CatalogFolders:
         catalog, name = reference.text("catalogName"), reference.text("entryName")
         if (catalog, name) not in self._entries:
             known = ", ".join(entry for of, entry in self._entries if of == catalog)
-            has = f"{catalog} has: {known[:500]}" if known else f"catalogs: {', '.join(self._names)[:500] or 'none'}"
+            names = ", ".join(sorted({of for of, _ in self._entries}))
+            has = f"{catalog} has: {known[:500]}" if known else f"catalogs found: {names[:500] or 'none'}"
             raise reference.fault("no such catalog entry", f"{catalog}/{name}", has)
         file, found = self._entries[catalog, name]
-        assigned = reference.find("ParameterAssignments")
-        given = {
-            a.text("parameterRef").lstrip("$"): a.text("value")
-            for a in (assigned.children("ParameterAssignment") if assigned else ())
-        }
-        book = Book(file.name, self, reference.book.notes, reference.book.depth + 1)
-        return Node(found.element, reference.scope, book).scoped(given)
-
-    @property
-    def _names(self) -> list[str]:
-        return sorted({catalog for catalog, _ in self._entries})
+        own = reference.book
+        book = Book(file.name, self, own.notes, own.strict, own.depth + 1)
+        return Node(found.element, reference.scope, book).scoped(_assigned(reference))
 
     @cached_property
     def _entries(self) -> dict[tuple[str, str], tuple[Path, Node]]:
@@ -72,7 +65,9 @@ class CatalogFolders:
             if (catalog := root.find("Catalog")) is None:
                 continue
             for entry in catalog.children():
-                found.setdefault((catalog.text("name"), entry.text("name", "")), (file, entry))
+                found.setdefault((catalog.text("name"), entry.name), (file, entry))
+        for (_, name), place in list(found.items()):  # some call a catalog by its file
+            found.setdefault((place[0].stem, name), place)
         return found
 
     def _files(self) -> Iterator[Path]:
@@ -83,3 +78,14 @@ class CatalogFolders:
             if len(files) > MAX_FILES:
                 raise kind.fault(f"more than {MAX_FILES} catalog files in one folder", str(path))
             yield from files
+
+
+def _assigned(reference: Node) -> dict[str, str]:
+    """Values that a reference gives to the entry's parameters."""
+    holder, given = reference.find("ParameterAssignments"), dict[str, str]()
+    for entry in holder.children("ParameterAssignment") if holder else ():
+        try:
+            given[str(entry.element.get("parameterRef", "")).lstrip("$")] = entry.text("value")
+        except InvalidOutput as fault:
+            entry.doubt(fault.findings[0].what, fault.findings[0].value, "the parameter's default is taken")
+    return given

@@ -7,6 +7,9 @@ from sgcad_core.formats.openscenario.motion import BoxShape
 from sgcad_core.formats.openscenario.read import Node
 
 MAX_ENTITIES = 200
+MAX_TRAILERS = 10
+LEAST_M = 0.1
+"""Side of a box that a file gives none."""
 KINDS = ("Vehicle", "Pedestrian", "MiscObject")
 _BY_TYPE = {"vehicle": "Vehicle", "pedestrian": "Pedestrian", "miscellaneous": "MiscObject", "miscObject": "MiscObject"}
 
@@ -44,7 +47,10 @@ def selections_of(root: Node, bodies: dict[str, Body]) -> dict[str, tuple[str, .
 
 
 def _body(node: Node, name: str) -> Body:
-    found = entity_node(node)
+    return _of(entity_node(node), name)
+
+
+def _of(found: Node, name: str) -> Body:
     box = _box(found)
     made = Body(name, box, found.tag, found.text("vehicleCategory", ""))
     if performance := found.find("Performance"):
@@ -69,7 +75,14 @@ def entity_node(node: Node) -> Node:
 def _box(found: Node) -> BoxShape:
     box = found.need("BoundingBox")
     size, center = box.need("Dimensions"), box.need("Center")
-    return BoxShape(size.positive("length"), size.positive("width"), center.number("x"), center.number("y"))
+    return BoxShape(_side(size, "length"), _side(size, "width"), center.number("x"), center.number("y"))
+
+
+def _side(size: Node, name: str) -> float:
+    if size.number(name) == 0 and not size.book.strict:
+        size.note(f"attribute {name!r} is 0", remedy=f"played with {LEAST_M:g} m")
+        return LEAST_M
+    return size.positive(name)
 
 
 def _dx(found: Node, tag: str) -> float | None:
@@ -79,14 +92,26 @@ def _dx(found: Node, tag: str) -> float | None:
 def _hitch_on(objects: list[Node], bodies: dict[str, Body]) -> None:
     """Trailers that vehicles have from the start."""
     for node in objects:
-        trailer = entity_node(node).find("Trailer")
-        if trailer is None:
-            continue
-        holder = trailer.find("TrailerRef", "EntityRef")
-        if holder is None:
-            raise trailer.unsupported("a trailer must be an entity of its own", "name it in a <TrailerRef>")
-        if not (name := holder.text("entityRef")):
-            continue
+        _hitched(entity_node(node), bodies[node.text("name")], bodies)
+
+
+def _hitched(vehicle: Node, body: Body, bodies: dict[str, Body], depth: int = 0) -> None:
+    trailer = vehicle.find("Trailer")
+    if trailer is None:
+        return
+    if inner := trailer.find("Trailer"):
+        if depth > MAX_TRAILERS:
+            raise inner.fault(f"more than {MAX_TRAILERS} trailers in a row")
+        own = inner.either("Vehicle")
+        name = f"{body.name}.{inner.name or own.name}"
+        bodies[name] = made = _of(own, name)
+        made.tow = body
+        _hitched(own, made, bodies, depth + 1)
+        return
+    holder = trailer.find("TrailerRef", "EntityRef")
+    if holder is None:
+        raise trailer.unsupported("what it pulls is not said", "name it in a <TrailerRef>")
+    if name := holder.text("entityRef"):
         if name not in bodies:
             raise holder.fault("unknown entity", name, f"entities: {', '.join(bodies)}")
-        bodies[name].tow = bodies[node.text("name")]
+        bodies[name].tow = body

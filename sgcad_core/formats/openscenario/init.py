@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from sgcad_core.formats.openscenario.actions import Begin, Running, global_action, private_action
-from sgcad_core.formats.openscenario.actions.running import GLOBAL
+from sgcad_core.formats.openscenario.actions.running import GLOBAL, Effect, at_once
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene
 
@@ -20,11 +20,11 @@ class _Move(NamedTuple):
 
     @property
     def teleports(self) -> bool:
-        return self.node.only().tag == "TeleportAction"
+        return self.node.only().tag in ("TeleportAction", "EntityAction")
 
     def ready(self, scene: Scene) -> bool:
         """Whether every entity that its position refers to has a place."""
-        refs = [self.node.at(e).text("entityRef") for e in self.node.element.iterfind(".//*[@entityRef]")]
+        refs = [self.node.at(e).text("entityRef") for e in self.node.element.iterfind(".//Position//*[@entityRef]")]
         return all(scene.bodies[ref].pose is not None for ref in refs if ref in scene.bodies)
 
 
@@ -37,12 +37,13 @@ def initialize(board: Node, scene: Scene) -> list[Running]:
     actions = node.need("Actions")
     for child in actions.children():
         if child.tag == "GlobalAction":
-            global_action(child)(scene)
+            if child.only().tag != "EntityAction":
+                global_action(child)(scene)
         elif child.tag == "UserDefinedAction":
             GLOBAL.compile(child)(scene)
         elif child.tag != "Private":
             raise child.unsupported()
-    moves = list(_moves(actions, scene))
+    moves = [*_moves(actions, scene), *_entities(actions)]
     _teleport([m for m in moves if m.teleports], scene)
     running = [m.begin(scene, m.name) for m in moves if not m.teleports]
     for body in scene.bodies.values():
@@ -59,6 +60,19 @@ def _moves(actions: Node, scene: Scene) -> Iterator[_Move]:
             yield from (_Move(begin, name, action) for name in names)
 
 
+def _entities(actions: Node) -> Iterator[_Move]:
+    """Entities that are added or taken away before the clock starts, in turn with those that are teleported."""
+    for child in actions.children("GlobalAction"):
+        if child.only().tag == "EntityAction":
+            effect = global_action(child)
+
+            def begin(scene: Scene, name: str, effect: Effect = effect) -> Running:
+                effect(scene)
+                return at_once(scene.bodies[name])
+
+            yield _Move(begin, child.only().text("entityRef"), child)
+
+
 def _teleport(waiting: list[_Move], scene: Scene) -> None:
     while waiting:
         move = next((m for m in waiting if m.ready(scene)), waiting[0])  # none is: the first one says what it lacks
@@ -70,10 +84,11 @@ def _check_places(board: Node, blame: Node, scene: Scene) -> None:
     """An entity without a place must get one later; it is absent until then."""
     for name, body in scene.bodies.items():
         if body.pose is None:
-            if not _placed_later(board, name):
-                raise blame.fault("entity has no initial place", name, "add a <TeleportAction> for it to <Init>")
+            if _placed_later(board, name):
+                blame.note("entity is not there from the start", name, "it has no initial place in <Init>")
+            else:
+                blame.doubt("entity has no initial place", name, "add a <TeleportAction> for it to <Init>")
             body.present = False
-            blame.note("entity is not there from the start", name, "it has no initial place in <Init>")
 
 
 def _placed_later(board: Node, name: str) -> bool:

@@ -42,6 +42,15 @@ def position(node: Node) -> Where:
     return told
 
 
+def on_road(node: Node, scene: Scene, road: str, s_m: float) -> float:
+    """s as the road has it: a stranger's file may go beyond the ends, where other players stop at them."""
+    beyond = scene.road_map(node).beyond(road, s_m)
+    if beyond and not node.book.strict:
+        node.note(f"s = {s_m:g} m lies beyond road {road!r}: its end is taken")
+        return s_m - beyond
+    return s_m
+
+
 def has_heading(node: Node) -> bool:
     """Whether a <Position> states the heading (else a trajectory's tangent counts)."""
     child = node.only()
@@ -61,18 +70,18 @@ def _lane(node: Node) -> Where:
     s_m, offset, turn = node.number("s"), node.number("offset", 0.0), orientation(node)
 
     def where(scene: Scene) -> Spot:
-        pose = scene.road_map(node).lane_pose(road, lane, s_m, offset)
-        return Spot(turn(pose), LanePlace(road, lane, s_m, offset))
+        place = LanePlace(road, lane, on_road(node, scene, road, s_m), offset)
+        return Spot(turn(scene.road_map(node).lane_pose(*place)), place)
 
     return where
 
 
 @POSITIONS.plays("RoadPosition")
 def _road(node: Node) -> Where:
-    road, s_m, t_m, turn = node.text("roadId"), node.number("s"), node.number("t"), orientation(node)
+    road, told_m, t_m, turn = node.text("roadId"), node.number("s"), node.number("t"), orientation(node)
 
     def where(scene: Scene) -> Spot:
-        roads = scene.road_map(node)
+        roads, s_m = scene.road_map(node), on_road(node, scene, road, told_m)
         return Spot(turn(roads.road_pose(road, s_m, t_m)), roads.place_at(road, s_m, t_m))
 
     return where

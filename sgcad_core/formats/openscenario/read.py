@@ -40,6 +40,8 @@ class Book:
     file: str = ""
     catalogs: Catalogs | None = None
     notes: list[Finding] = field(default_factory=list)
+    strict: bool = True
+    """Whether what other players let pass with a warning is a fault (as for files that we write) or a note."""
     depth: int = 0
     """How many catalogs were opened on the way to this one."""
 
@@ -51,6 +53,8 @@ class Node:
     element: Element
     scope: Mapping[str, str]
     book: Book = field(default_factory=Book)
+    declared: bool = False
+    """Whether its own parameter declarations are in force already."""
 
     @property
     def tag(self) -> str:
@@ -67,6 +71,12 @@ class Node:
         file = f" of {self.book.file}" if self.book.file else ""
         where = f"<{self.tag}{f' name={name[:60]!r}' if name else ''}> in line {self.element.sourceline}{file}"
         return Finding(source=SOURCE, severity=severity, what=what, where=where, value=value[:200], remedy=remedy)
+
+    def doubt(self, what: str, value: str = "", remedy: str = "") -> None:
+        """A fault in a file of ours, a note in a stranger's: what other players let pass."""
+        if self.book.strict:
+            raise self.fault(what, value, remedy)
+        self.note(what, value, remedy)
 
     def fault(self, what: str, value: str = "", remedy: str = "") -> InvalidOutput:
         """An error to raise, naming this element, its name attribute, its line and its file."""
@@ -85,6 +95,18 @@ class Node:
             self.book.notes.append(finding)
 
     # -------------------------------------------------------------- attributes
+    @property
+    def name(self) -> str:
+        """Its name attribute; empty without one."""
+        return self.label("name")
+
+    def label(self, name: str) -> str:
+        """An attribute that only names something: as it stands where it is no expression that can be evaluated."""
+        try:
+            return self.text(name, "")
+        except InvalidOutput:
+            return str(self.element.get(name))
+
     def has(self, name: str) -> bool:
         """Whether the attribute is there."""
         return self.element.get(name) is not None
@@ -205,7 +227,7 @@ class Node:
     def scoped(self, given: Mapping[str, str] | None = None) -> Node:
         """The same element with its own parameter declarations in force; `given` values replace declared ones."""
         declared = self.find("ParameterDeclarations")
-        if declared is None and not given:
+        if self.declared or (declared is None and not given):
             return self
         scope, given = dict(self.scope), given or {}
         for entry in declared.children("ParameterDeclaration") if declared else ():
@@ -213,7 +235,7 @@ class Node:
             scope[name] = given[name] if name in given else Node(entry.element, scope, self.book).text("value", "")
         if len(scope) > MAX_PARAMETERS:
             raise self.fault(f"more than {MAX_PARAMETERS} parameters", str(len(scope)), "declare fewer")
-        return Node(self.element, scope, self.book)
+        return Node(self.element, scope, self.book, declared=True)
 
     def _resolve(self, raw: str) -> str:
         filled = self._filled(raw)

@@ -88,6 +88,10 @@ class XodrRoads:
         """A lane place's t on its road, metres."""
         return self.road(place.road).lane_t(place.lane, place.s_m) + place.offset_m
 
+    def beyond(self, road: str, s_m: float) -> float:
+        """How far s lies behind a road's end (before its start: negative), metres."""
+        return s_m - min(max(s_m, 0.0), self.road(road).length_m)
+
     def sense(self, place: LanePlace, heading_rad: float) -> int:
         """1 where a heading leads along s there, -1 where against it."""
         return 1 if angle_between(self.road(place.road).pose(place.s_m).heading_rad, heading_rad) <= np.pi / 2 else -1

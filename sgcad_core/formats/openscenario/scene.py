@@ -46,6 +46,9 @@ class Roads(Protocol):
     def t_of(self, place: LanePlace) -> float:
         """A lane place's t on its road, metres."""
 
+    def beyond(self, road: str, s_m: float) -> float:
+        """How far s lies behind a road's end (before its start: negative), metres."""
+
     def sense(self, place: LanePlace, heading_rad: float) -> int:
         """1 where a heading leads along s there, -1 where against it."""
 

@@ -81,9 +81,10 @@ def _clothoid_spline(shape: Node) -> Drawn:
     end_s = shape.number("timeEnd") if shape.has("timeEnd") else None
 
     def drawn(scene: Scene, actor: str) -> Line:
-        here, parts = scene.pose(actor, shape), list[Floats]()
+        here: Pose | None = None
+        parts: list[Floats] = []
         for start, turn, curve in read:
-            begin = start(scene) if start else here
+            begin = start(scene) if start else here or scene.pose(actor, shape)
             parts.append(_curve(Pose(begin.x_m, begin.y_m, begin.heading_rad + turn), *curve))
             here = Pose(*parts[-1][-1])
         rows = np.vstack([part if i == 0 else part[1:] for i, part in enumerate(parts)])

@@ -23,7 +23,7 @@ class Event:
         self.priority = node.choice("priority", _PRIORITIES) if node.has("priority") else "override"
         self._count = self.left = _count(node)
         self.trigger = Trigger(node.find("StartTrigger"), missing=True)
-        self.actions = [_action(a, f"{path}::{a.text('name', '')}", scene) for a in node.children("Action")]
+        self.actions = [_action(a, f"{path}::{a.name}", scene) for a in node.children("Action")]
         if not self.actions:
             raise node.fault("has no action", remedy="give it an <Action>")
         if not actors and not select and any(begin for begin, _, _ in self.actions):
@@ -94,7 +94,7 @@ class Maneuver:
         node = node.scoped()
         self.stage = _stage("maneuver", path, scene)
         events = node.children("Event")
-        self.events = [Event(e, f"{path}::{e.text('name', '')}", actors, select, scene) for e in events]
+        self.events = [Event(e, f"{path}::{e.name}", actors, select, scene) for e in events]
 
     @property
     def complete(self) -> bool:
@@ -150,7 +150,7 @@ class Group:
         actors = [name for ref in refs for name in scene.members(ref.text("entityRef"), holder)]
         self.stage = _stage("maneuverGroup", path, scene)
         found = [m.followed("Maneuver") for m in node.children("CatalogReference", "Maneuver")]
-        self.maneuvers = [Maneuver(m, f"{path}::{m.text('name', '')}", actors, select, scene) for m in found]
+        self.maneuvers = [Maneuver(m, f"{path}::{m.name}", actors, select, scene) for m in found]
 
     def settle(self, scene: Scene) -> None:
         """End what is over; stand by again while there are executions left."""
@@ -175,7 +175,7 @@ class Act:
         self.stage = _stage("act", path, scene)
         self.start_trigger = Trigger(node.find("StartTrigger"), missing=True)
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
-        self.groups = [Group(g, f"{path}::{g.text('name', '')}", scene) for g in node.children("ManeuverGroup")]
+        self.groups = [Group(g, f"{path}::{g.name}", scene) for g in node.children("ManeuverGroup")]
 
     @property
     def complete(self) -> bool:
@@ -223,8 +223,8 @@ class Storyboard:
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
         self.stories: list[tuple[Stage, list[Act]]] = []
         for story in node.children("Story"):
-            scoped, name = story.scoped(), story.text("name", "")
-            acts = [Act(a, f"{name}::{a.text('name', '')}", scene) for a in scoped.children("Act")]
+            scoped, name = story.scoped(), story.name
+            acts = [Act(a, f"{name}::{a.name}", scene) for a in scoped.children("Act")]
             stage = _stage("story", name, scene)
             stage.turn("startTransition", "runningState", 0)
             self.stories.append((stage, acts))
@@ -262,8 +262,11 @@ def _count(node: Node) -> int:
 
 
 def _action(node: Node, path: str, scene: Scene) -> tuple[Begin | None, Effect | None, Stage]:
-    child = node.only()
     stage = _stage("action", path, scene)
+    if not node.children():
+        node.doubt("needs exactly one child element", "0", "nothing happens")
+        return None, None, stage
+    child = node.only()
     if child.tag == "PrivateAction":
         return private_action(child), None, stage
     return None, global_action(child) if child.tag == "GlobalAction" else GLOBAL.compile(child), stage

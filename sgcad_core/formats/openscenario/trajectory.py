@@ -31,17 +31,18 @@ def trajectory(node: Node) -> Made:
     start = node.number("initialDistanceOffset", 0.0)
     if timing is None or timing.tag == "None":
         return lambda scene, actor: _course(shape, drawn(scene, actor), start, closed)
-    if start:
-        raise node.unsupported("the player does not support initialDistanceOffset with timing")
-    return _timed(shape, drawn, timing)
+    return _timed(shape, drawn, timing, start)
 
 
 def _shape(node: Node) -> Drawn:
     return SHAPES.compile(node.need("Shape").only())
 
 
-def _timed(node: Node, drawn: Drawn, timing: Node) -> Made:
-    """Vertex times are scaled, moved by the offset and, in the relative domain, count from the action's start."""
+def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
+    """Vertex times are scaled, moved by the offset and, in the relative domain, count from the action's start.
+
+    Who starts some way along the line is there at once: relative times count from that place.
+    """
     relative = timing.choice("domainAbsoluteRelative", ("absolute", "relative")) == "relative"
     scale, offset = timing.positive("scale"), timing.number("offset")
     _check_times(node)
@@ -51,6 +52,8 @@ def _timed(node: Node, drawn: Drawn, timing: Node) -> Made:
         if line.times_s is None:
             raise node.fault("a vertex has no time", remedy=_UNTIMED)
         begin = scene.t_s if relative else 0.0
+        if start_m and relative:
+            begin -= scale * float(np.interp(start_m, arc_lengths(line.points), line.times_s))
         headings = tangents(line.points) if line.headings is None else line.headings
         return Timed(line.times_s * scale + offset + begin, line.points, headings, (scene.step, scene.dt_s))
 

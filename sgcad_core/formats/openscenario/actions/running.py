@@ -109,9 +109,12 @@ def dynamics(node: Node) -> Dynamics:
     """Read a transition; without a span (value 0) it happens at once, whatever its shape."""
     shape = node.choice("dynamicsShape", STEEPEST)
     value = node.number("value", 0.0 if shape == "step" else None)
+    dimension = node.choice("dynamicsDimension", ("time", "rate", "distance"), "time")
+    if value < 0 and dimension == "rate":
+        node.doubt("a rate has no sign: the target says where it leads", f"{value:g}", "leave the sign out")
+        value = abs(value)
     if value < 0:
         raise node.fault("attribute 'value' must not be below 0", f"{value:g}")
-    dimension = node.choice("dynamicsDimension", ("time", "rate", "distance"), "time")
     return Dynamics(shape if value or dimension == "rate" else "step", dimension, value)
 
 

@@ -1,4 +1,4 @@
-"""Global actions: surroundings, parameters and variables, traffic signals; traffic that is drawn at random is refused."""
+"""Global actions: surroundings, parameters and variables, traffic signals. Traffic drawn at random is refused."""
 
 from __future__ import annotations
 

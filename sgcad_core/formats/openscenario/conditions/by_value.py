@@ -25,7 +25,7 @@ def _time_of_day(node: Node) -> Test:
 
 @BY_VALUE.plays("StoryboardElementStateCondition")
 def _element_state(node: Node) -> Test:
-    kind, ref = node.text("storyboardElementType"), node.text("storyboardElementRef")
+    kind, ref = node.text("storyboardElementType"), node.label("storyboardElementRef")
     state = node.choice("state", (*_STATES, *TRANSITIONS))
 
     def test(scene: Scene) -> bool:
@@ -50,7 +50,8 @@ def _value(node: Node) -> Test:
         if name in values:
             return holds(values[name])
         if of_variable or name not in node.scope:
-            raise node.fault("no such value is declared", name, f"declared: {', '.join(values)[:500] or 'none'}")
+            node.doubt("no such value is declared", name, f"declared: {', '.join(values)[:500] or 'none'}")
+            return False
         return holds(node.scope[name])
 
     return test

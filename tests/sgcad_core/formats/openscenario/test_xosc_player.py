@@ -142,7 +142,7 @@ def test_what_cannot_be_played_is_named_with_its_line(old, new, message):
     (follow([(1, 0, 0, 0), (0, 1, 0, 0)], timing()), "vertex times fall"),
     (follow([(None, 0, 0, 0), (0, 1, 0, 0)], timing()), "a vertex has no time"),
     (follow([(0, 1, 0, 0), (1, 2, 0, 0)], timing(scale=0)), "'scale' must be above 0"),
-    (follow([(0, 1, 0, 0), (1, 2, 0, 0)], timing(), initialDistanceOffset="3"), "initialDistanceOffset"),
+
     (follow([(0, 1, 0, 0), (1, 2, 0, 0)]).replace("Polyline>", "Nurbs>"), "at <Nurbs>"),
     (speed_action(5, "linear", "time", -1), "'value' must not be below 0"),
 ])  # fmt: skip

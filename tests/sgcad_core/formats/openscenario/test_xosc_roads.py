@@ -144,7 +144,7 @@ def test_a_place_that_the_network_does_not_have_is_named(position, message):
 
 @pytest.mark.parametrize(("text", "message"), [
     ("<OpenDRIVE/>", "no road '7'"), ("<net/>", "no OpenDRIVE file"), ("", "no well-formed XML"),
-    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "attribute 'a' is missing at <poly3>"),
+    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "'a' is missing at <poly3>"),
     (xodr(ARC, 1e9), "longer than 20000 m"), (xodr(piece("<line/>", 0, 0, 0, 0, 1e9), 9), "length must lie within"),
 ])  # fmt: skip
 def test_a_bad_network_is_a_clear_error(text, message):
