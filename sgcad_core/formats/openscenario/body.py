@@ -156,3 +156,7 @@ class Body:
         x, y, h = self.pose or Pose(0.0, 0.0, 0.0)
         dx, dy, c, s = self.box.center_x_m, self.box.center_y_m, math.cos(h), math.sin(h)
         return Pose(x + dx * c - dy * s, y + dx * s + dy * c, h)
+
+    def center_speed(self, step: int) -> float:
+        """Speed of the box center on timed vertices, else the entity's own; m/s, never negative."""
+        return self.timed.center_speed(step, self.box) if self.timed else abs(self.speed_mps)

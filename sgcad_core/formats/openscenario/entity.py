@@ -75,7 +75,19 @@ def entity_node(node: Node) -> Node:
 def _box(found: Node) -> BoxShape:
     box = found.need("BoundingBox")
     size, center = box.need("Dimensions"), box.need("Center")
-    return BoxShape(_side(size, "length"), _side(size, "width"), center.number("x"), center.number("y"))
+    ahead = center.number("x") - _rear_axle_m(found)
+    return BoxShape(_side(size, "length"), _side(size, "width"), ahead, center.number("y"))
+
+
+def _rear_axle_m(found: Node) -> float:
+    """Where a vehicle's rear axle stands in its own coordinates: 0, since it is their origin.
+
+    A file that says otherwise contradicts itself; like other players this one believes that poses are the rear
+    axle's, and moves box and front axle along. 0 for entities without axles.
+    """
+    axles = found.find("Axles")
+    rear = axles.find("RearAxle") if axles else None
+    return rear.number("positionX") if rear else 0.0
 
 
 def _side(size: Node, name: str) -> float:

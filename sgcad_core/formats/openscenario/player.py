@@ -103,7 +103,7 @@ def _run(
             poses = {name: body.center() for name, body in scene.bodies.items()}
         if end_s is None or scene.t_s <= end_s + EPSILON:
             for name, body in scene.bodies.items():
-                rows[name].append((*poses[name], abs(body.speed_mps)))
+                rows[name].append((*poses[name], body.center_speed(step)))
                 if body.present and body.pose is not None:
                     seen[name].append(step)
         if end_s is not None:
