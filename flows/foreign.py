@@ -118,7 +118,9 @@ def _view(
     actors: Sequence[ActorInfo],
     xodr: str | None,
 ) -> View:
-    movers = [Mover(a, t, COLORS[k % len(COLORS)]) for k, (a, t) in enumerate(zip(actors, played.trajectories, strict=True))]
+    movers = [
+        Mover(a, t, COLORS[k % len(COLORS)]) for k, (a, t) in enumerate(zip(actors, played.trajectories, strict=True))
+    ]
     seen = execution.contact.model_dump() if execution.contact else None
     result = {
         "status": "played",

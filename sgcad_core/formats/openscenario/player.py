@@ -17,7 +17,7 @@ from sgcad_core.formats.openscenario.actions.running import control
 from sgcad_core.formats.openscenario.body import Body
 from sgcad_core.formats.openscenario.entity import bodies_of, selections_of
 from sgcad_core.formats.openscenario.init import initialize
-from sgcad_core.formats.openscenario.motion import EPSILON, MAX_S, BoxShape
+from sgcad_core.formats.openscenario.motion import EPSILON, MAX_S, BoxShape, Pose
 from sgcad_core.formats.openscenario.read import Node, read_root
 from sgcad_core.formats.openscenario.roads import XodrRoads
 from sgcad_core.formats.openscenario.scene import Scene
@@ -29,6 +29,7 @@ DT_S = 0.05
 MAX_WORK = 10_000_000
 """Conditions and bodies times steps: what is more is refused rather than waited for."""
 Rows = dict[str, list[tuple[float, ...]]]
+_NOWHERE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -97,20 +98,25 @@ def _run(
         scene.step = step
         if step:
             _advance(scene, signals, step)
-        poses = {name: body.center() for name, body in scene.bodies.items()}
+        poses = _poses(scene)
         end_s = story.step(scene)
         if not step:  # what is triggered at t = 0 is there from the start
-            poses = {name: body.center() for name, body in scene.bodies.items()}
+            poses = _poses(scene)
         if end_s is None or scene.t_s <= end_s + EPSILON:
             for name, body in scene.bodies.items():
-                rows[name].append((*poses[name], body.center_speed(step)))
-                if body.present and body.pose is not None:
+                rows[name].append((*poses.get(name, _NOWHERE), body.center_speed(step)))
+                if name in poses:
                     seen[name].append(step)
         if end_s is not None:
             break
     if len(next(iter(rows.values()))) < 2:
         raise blame.fault("ends as soon as it begins", remedy="let the <StopTrigger> wait longer")
     return rows, seen
+
+
+def _poses(scene: Scene) -> dict[str, Pose]:
+    """Box centers of who is there."""
+    return {name: body.center() for name, body in scene.bodies.items() if body.present and body.pose is not None}
 
 
 def _steps(scene: Scene, blame: Node, until_s: float | None) -> Iterator[int]:

@@ -136,7 +136,9 @@ class XodrRoads:
         for road in self._roads.values():
             for i, section in enumerate(road.sections):
                 for number, lane in section.lanes.items():
-                    rows = road.center(i, number)[::4] if section.end_m - section.begin_m > 4 else road.center(i, number)
+                    rows = (
+                        road.center(i, number)[::4] if section.end_m - section.begin_m > 4 else road.center(i, number)
+                    )
                     if (width := 2 * float(rows[:, 4].mean())) > 0.1:
                         yield rows[:, 1:3], width, lane.kind in DRIVABLE
 
