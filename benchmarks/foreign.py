@@ -3,10 +3,10 @@
     python -m benchmarks.foreign FOLDER [--maps FOLDER] [--judge PATH_TO_ESMINI] [--blind]
 
 A distribution file counts as played when its scenario plays with the first, the last and up to three sets between.
-With a judge both players run with one step of 0.01 s and without controllers; files that switch one on are counted apart,
-since they mean more than is compared. `--blind` prints totals only, of the third of the files whose names' hash says so;
-without it the other two thirds are printed, file by file. Public files were read while the player was built: figures of
-the open part are no test of it.
+With a judge both players run with one step of 0.01 s and without controllers; files that switch one on are counted
+apart, since they mean more than is compared. `--blind` prints totals only, of the third of the files whose names' hash
+says so; without it the other two thirds are printed, file by file. Public files were read while the player was built:
+figures of the open part are no test of it.
 """
 
 from __future__ import annotations
