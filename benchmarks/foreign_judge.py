@@ -123,6 +123,8 @@ def _of_one(
     if not both.any():
         return None
     gap = np.hypot(*(centers[both] - ours[steps[both], 1:]).T)
+    if not np.isfinite(gap).all():
+        return None  # the judge lost it
     over = np.flatnonzero(gap > LIMIT_M)
     times = theirs[both, 0]
     return Apart(float(gap.max()), name, float(times[over[0]]) if len(over) else None, float(times[-1]))

@@ -118,9 +118,8 @@ def _view(
     actors: Sequence[ActorInfo],
     xodr: str | None,
 ) -> View:
-    movers = [
-        Mover(a, t, COLORS[k % len(COLORS)]) for k, (a, t) in enumerate(zip(actors, played.trajectories, strict=True))
-    ]
+    pairs = enumerate(zip(actors, played.trajectories, strict=True))
+    movers = [Mover(actor, track, COLORS[k % len(COLORS)]) for k, (actor, track) in pairs]
     seen = execution.contact.model_dump() if execution.contact else None
     result = {
         "status": "played",

@@ -58,8 +58,8 @@ arcs, spirals, poly3, paramPoly3, several lane sections, lane offsets, borders, 
 Motion is plane: elevation, pitch and roll are left out.
 
 A stranger's file gets what other players let pass as a note: a place beyond a road's end (the end is taken), a signed
-rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In files of
-our own the same are faults.
+rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In files
+of our own the same are faults.
 """
 
 
@@ -93,7 +93,7 @@ def _in_schema(holder: str) -> set[str]:
 def written_elements() -> set[str]:
     """Names of all elements in a file of ours."""
     actors = [
-        ActorInfo(id=f"V{i}", type=kind, length_m=4.0, width_m=1.8, maneuver="straight")  # type: ignore[arg-type]
+        ActorInfo(id=f"V{i}", type=kind, length_m=4.0, width_m=1.8, maneuver="straight")
         for i, kind in enumerate(_KINDS, 1)
     ]
     t_s = np.arange(40) * 0.05

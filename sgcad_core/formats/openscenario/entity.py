@@ -115,7 +115,7 @@ def _hitched(vehicle: Node, body: Body, bodies: dict[str, Body], depth: int = 0)
         if depth > MAX_TRAILERS:
             raise inner.fault(f"more than {MAX_TRAILERS} trailers in a row")
         own = inner.either("Vehicle")
-        name = f"{body.name}.{inner.name or own.name}"
+        name = f"{body.name}+"
         bodies[name] = made = _of(own, name)
         made.tow = body
         _hitched(own, made, bodies, depth + 1)

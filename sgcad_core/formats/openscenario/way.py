@@ -85,8 +85,7 @@ class Route:
             way += length - begin
         return None
 
-    def next_road(self, road: str) -> str | None:
-        """The road behind one of its roads."""
+    def behind(self, road: str) -> tuple[Leg, ...]:
+        """The roads behind one of its roads; none behind a road that it does not lead over."""
         roads = [leg.road for leg in self.legs]
-        i = roads.index(road) + 1 if road in roads else len(roads)
-        return roads[i] if i < len(roads) else None
+        return self.legs[roads.index(road) + 1 :] if road in roads else ()

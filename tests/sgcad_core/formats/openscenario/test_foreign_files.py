@@ -71,7 +71,7 @@ ROAD = xodr(piece("<line/>", 0, 0, 0, 0, 100), 100)
 
 def test_a_map_is_found_where_the_file_says_or_in_the_given_folder(tmp_path):
     file = written(tmp_path, scenario({"V1": lane("7", -1, 5)}))
-    with pytest.raises(InvalidOutput, match="the map 'road.xodr' is not there at <LanePosition>"):
+    with pytest.raises(InvalidOutput, match=r"the map 'road.xodr' is not there at <LanePosition>"):
         played(file)
     written(tmp_path, ROAD, "maps/road.xodr")
     assert played(file, maps=[tmp_path / "maps"]).trajectories[0].x_m[0] == pytest.approx(5)
@@ -131,8 +131,11 @@ def test_too_many_sets_are_refused_before_they_are_made(tmp_path):
 
 
 # ------------------------------------------------------------------ strangers
+STEP = 'dynamicsShape="step" dynamicsDimension="time" value="0"'
+
+
 @pytest.mark.parametrize(("old", "new", "told"), [
-    ('dynamicsShape="step" dynamicsDimension="time" value="0"', 'dynamicsShape="linear" dynamicsDimension="rate" value="-4"', "a rate has no sign"),
+    (STEP, 'dynamicsShape="linear" dynamicsDimension="rate" value="-4"', "a rate has no sign"),
     ('length="4.6"', 'length="0"', "'length' is 0"),
     ("<VisibilityAction/>", "", "needs exactly one child element"),
 ])  # fmt: skip
@@ -179,7 +182,8 @@ def test_only_scenario_files_are_read(tmp_path):
 
 def test_an_entity_may_come_and_go(tmp_path):
     def of(name, inner):
-        return f'<Action name="{name}"><GlobalAction><EntityAction entityRef="V2">{inner}</EntityAction></GlobalAction></Action>'
+        action = f'<EntityAction entityRef="V2">{inner}</EntityAction>'
+        return f'<Action name="{name}"><GlobalAction>{action}</GlobalAction></Action>'
 
     add = event("add", "<X/>", at(1)).replace(
         '<Action name="add_action"><PrivateAction><X/></PrivateAction></Action>',
