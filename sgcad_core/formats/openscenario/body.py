@@ -6,7 +6,7 @@ The player advances it; actions set its course, its timing and its pace. Knows n
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from sgcad_core.formats.openscenario.course import Course
@@ -160,3 +160,14 @@ class Body:
     def center_speed(self, step: int) -> float:
         """Speed of the box center on timed vertices, else the entity's own; m/s, never negative."""
         return self.timed.center_speed(step, self.box) if self.timed else abs(self.speed_mps)
+
+
+def draw(bodies: Mapping[str, Body], anew: bool = False) -> None:
+    """Move trailers behind what pulls them, from the front of each train on; `anew`: in line, wherever they were."""
+    waiting = [body for body in bodies.values() if body.tow is not None]
+    while waiting:
+        ready = [body for body in waiting if body.tow not in waiting] or waiting  # a ring has no front
+        for body in ready:
+            body.pose = None if anew and body.tow and body.tow.pose else body.pose
+            body.drawn()
+        waiting = [body for body in waiting if body not in ready]

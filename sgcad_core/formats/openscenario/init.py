@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from sgcad_core.formats.openscenario.actions import Begin, Running, global_action, private_action
 from sgcad_core.formats.openscenario.actions.running import GLOBAL, Effect, at_once
+from sgcad_core.formats.openscenario.body import draw
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene
 
@@ -46,8 +47,7 @@ def initialize(board: Node, scene: Scene) -> list[Running]:
     moves = [*_moves(actions, scene), *_entities(actions)]
     _teleport([m for m in moves if m.teleports], scene)
     running = [m.begin(scene, m.name) for m in moves if not m.teleports]
-    for body in scene.bodies.values():
-        body.drawn()
+    draw(scene.bodies, anew=True)
     _check_places(board, node, scene)
     return [r for r in running if r.domains]
 

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from sgcad_core.formats.openscenario.actions.running import control
-from sgcad_core.formats.openscenario.body import Body
+from sgcad_core.formats.openscenario.body import Body, draw
 from sgcad_core.formats.openscenario.entity import bodies_of, selections_of
 from sgcad_core.formats.openscenario.init import initialize
 from sgcad_core.formats.openscenario.motion import EPSILON, MAX_S, BoxShape, Pose
@@ -141,8 +141,7 @@ def _advance(scene: Scene, signals: SignalPlan, step: int) -> None:
     for body in scene.bodies.values():
         if body.tow is None:
             body.advance(step, scene.dt_s, scene.course_for)
-    for body in scene.bodies.values():
-        body.drawn()
+    draw(scene.bodies)
 
 
 def _filled(rows: Floats, seen: list[int]) -> Floats:

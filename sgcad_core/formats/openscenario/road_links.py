@@ -72,7 +72,7 @@ class RoadLinks:
                 for link in connection.children("laneLink"):
                     contact = connection.text("contactPoint", "start")
                     if link.whole("from") == step.lane:
-                        into = self._entered(connection.text("connectingRoad", ""), contact, link.whole("to"))
+                        into = self._entered(_led_to(connection), contact, link.whole("to"))
                         yield from [into] if into else []
         for leg in self._connecting.get((step.road, END[step.sense]), ()):
             section = self._roads[leg.road].sections[0 if leg.sense > 0 else -1]
@@ -85,14 +85,29 @@ class RoadLinks:
     @cached_property
     def _connecting(self) -> dict[tuple[str, str], list[Leg]]:
         """Connecting roads by the road and end that they link to, each with the sense in which one drives in."""
-        found = defaultdict(list)
+        found: dict[tuple[str, str], list[Leg]] = defaultdict(list)
         for line in self._roads.values():
             for sense in (1, -1):
                 target = _target(line, -sense) if line.junction != "-1" else None
                 if target is not None and target.text("elementType", "road") == "road":
                     contact = target.text("contactPoint", "start")
                     found[target.text("elementId"), contact].append(Leg(line.id, sense))
+        for junction, node in self._junctions.items():
+            for connection in node.children("connection"):
+                self._add_direct(found, junction, connection)
         return dict(found)
+
+    def _add_direct(self, found: dict[tuple[str, str], list[Leg]], junction: str, connection: Node) -> None:
+        """A direct junction has no connecting roads: one road leads onto the other, and back."""
+        linked, line = connection.text("linkedRoad", ""), self._roads.get(connection.text("incomingRoad", ""))
+        if line is None or linked not in self._roads:
+            return
+        contact = connection.text("contactPoint", "start")
+        for sense in (1, -1):
+            target = _target(line, sense)
+            if target is not None and target.text("elementId", "") == junction:
+                found[line.id, END[sense]].append(Leg(linked, 1 if contact == "start" else -1))
+                found[linked, contact].append(Leg(line.id, -sense))
 
     def behind(self, leg: Leg) -> list[Leg]:
         """The roads one may drive onto behind a road."""
@@ -123,6 +138,11 @@ class RoadLinks:
             for leg in self.behind(legs[-1]):
                 heapq.heappush(queue, (over, (*legs, leg)))
         return None
+
+
+def _led_to(connection: Node) -> str:
+    """The connecting road, or the road that a direct junction links."""
+    return connection.text("connectingRoad", connection.text("linkedRoad", ""))
 
 
 def _target(line: RoadLine, sense: int) -> Node | None:

@@ -64,7 +64,7 @@ def _clothoid(shape: Node) -> Drawn:
 
     def drawn(scene: Scene, actor: str) -> Line:
         rows = _curve(start(scene).pose, first, first + rate * length, length)
-        return Line(rows[:, :2], rows[:, 2], None if times is None else np.linspace(*times, len(rows)))
+        return Line(rows[:, :2], None, None if times is None else np.linspace(*times, len(rows)))
 
     _bounded(shape, length)
     return drawn
@@ -89,7 +89,7 @@ def _clothoid_spline(shape: Node) -> Drawn:
             here = Pose(*parts[-1][-1])
         rows = np.vstack([part if i == 0 else part[1:] for i, part in enumerate(parts)])
         times = None if end_s is None else arc_lengths(rows[:, :2]) / arc_lengths(rows[:, :2])[-1] * end_s
-        return Line(rows[:, :2], rows[:, 2], times)
+        return Line(rows[:, :2], None, times)
 
     return drawn
 

@@ -17,7 +17,7 @@ from sgcad_core.formats.openscenario.actions.running import (
 )
 from sgcad_core.formats.openscenario.body import Body
 from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.motion import EPSILON, Transition
+from sgcad_core.formats.openscenario.motion import EPSILON, STEEPEST, Transition
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene
 from sgcad_core.geometry.plane import Floats
@@ -40,10 +40,11 @@ def _speed(node: Node) -> Begin:
         last = _capped(body, target(scene))
         if body.timed:
             body.release("path")
-        span = over.seconds(body.speed_mps, last)
-        pace = _Pace(body, Transition(body.speed_mps, last, over.shape if span else "step", span), scene.t_s)
+        first = body.speed_mps
+        span = _feasible(body, over.shape, last - first, over.seconds(first, last))
+        pace = Transition(first, last, over.shape if span else "step", span, scene.t_s)
         body.pace, body.speed_mps = pace.at, pace.at(scene.t_s)
-        running = Running(body, ("speed",), lambda scene: pace.over, release_when_over=False)
+        running = Running(body, ("speed",), lambda scene: pace.over(scene.t_s), release_when_over=False)
         if follows:
             running = Running(body, ("speed",), lambda scene: False, control=_keep(body, target, pace))
         return running.claim()
@@ -51,35 +52,17 @@ def _speed(node: Node) -> Begin:
     return begin
 
 
-class _Pace:
-    """A transition of speed that waits where it is steeper than the entity's limits of acceleration allow."""
-
-    def __init__(self, body: Body, change: Transition, t_s: float) -> None:
-        self._body, self._change, self._t_s, self._passed = body, change, t_s, 0.0
-
-    @property
-    def over(self) -> bool:
-        """Whether the last speed is reached."""
-        return self._change.over(self._passed)
-
-    def at(self, t_s: float) -> float:
-        """Speed at a time that never falls."""
-        step, self._t_s = t_s - self._t_s, t_s
-        now, wanted = self._body.speed_mps, self._change.at(self._passed + step)
-        most, least = self._body.limits.acceleration * step, -self._body.limits.deceleration * step
-        if self._change.shape == "step" or step <= 0 or least - EPSILON <= wanted - now <= most + EPSILON:
-            self._passed += step
-            return wanted
-        speed = now + min(max(wanted - now, least), most)
-        self._passed += step * (speed - now) / (wanted - now)
-        return speed
+def _feasible(body: Body, shape: str, change: float, span_s: float) -> float:
+    """A span that is long enough for the entity's limits of acceleration; a step of speed is taken as it is."""
+    limit = body.limits.acceleration if change > 0 else body.limits.deceleration
+    return max(span_s, STEEPEST[shape] * abs(change) / max(limit, EPSILON)) if span_s else 0.0
 
 
-def _keep(body: Body, target: Callable[[Scene], float], pace: _Pace) -> Callable[[Scene], None]:
+def _keep(body: Body, target: Callable[[Scene], float], pace: Transition) -> Callable[[Scene], None]:
     """Behind the transition, the other's speed as it changes, within what the entity can do."""
 
     def control(scene: Scene) -> None:
-        if pace.over:
+        if pace.over(scene.t_s):
             change = _capped(body, target(scene)) - body.speed_mps
             most, least = body.limits.acceleration * scene.dt_s, -body.limits.deceleration * scene.dt_s
             body.next_mps = body.speed_mps + min(max(change, least), most)
