@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | study | table | report | plugins | index | check | explain | doctor`.
+"""The command line: `sgcad run | evaluate | play | study | table | report | plugins | index | check | explain | doctor`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
@@ -155,6 +155,22 @@ def check(
         typer.echo(plan.described(spec.load_study(study_file), tuple(overrides or ())))
         return
     describe_config(load(config, tuple(overrides or ())))
+
+
+@app.command()
+def play(
+    file: Annotated[Path, typer.Argument(help="An OpenSCENARIO file (.xosc), or one with a parameter distribution.")],
+    out: Out = Path("played"),
+    given: Annotated[list[str] | None, typer.Option("--set", help="NAME=VALUE for a parameter of the file.")] = None,
+    maps: Annotated[list[Path] | None, typer.Option("--maps", help="A folder with maps that are not there.")] = None,
+    sets: Annotated[int, typer.Option(help="Most parameter sets that are played.", min=1)] = 20,
+    until: Annotated[float, typer.Option(help="Seconds after which it is cut.", min=0.1, max=300)] = 300.0,
+) -> None:
+    """Play any scenario file: trajectories.csv, player.html, contacts.json, metrics.json, played.json."""
+    from flows import foreign
+
+    for folder in foreign.play(file, out, given or (), maps or (), sets, until):
+        typer.echo(str(folder / "player.html"))
 
 
 @plugins_app.command("list")
