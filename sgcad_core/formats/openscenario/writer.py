@@ -17,6 +17,7 @@ from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
+from sgcad_core.formats.openscenario.vertices import vertex_rows
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import ActorInfo, Floats, Trajectory
 from sgcad_core.specs import BehaviorSpec
@@ -46,7 +47,7 @@ def write_xosc(
         "SG-CADVLM",
         xosc.ParameterDeclarations(),
         _entities(actors),
-        _storyboard(moves, behavior),
+        _storyboard(moves, [center_ahead_m(actor) for actor in actors], behavior),
         xosc.RoadNetwork(road_file),
         xosc.Catalog(),
         osc_minor_version=MINOR_VERSION,
@@ -83,12 +84,14 @@ def _entities(actors: Sequence[ActorInfo]) -> xosc.Entities:
     return entities
 
 
-def _storyboard(moves: Sequence[Trajectory], behavior: BehaviorSpec | None) -> xosc.StoryBoard:
+def _storyboard(
+    moves: Sequence[Trajectory], ahead_m: Sequence[float], behavior: BehaviorSpec | None
+) -> xosc.StoryBoard:
     end = _at("end", _number(max(t.t_s[-1] for t in moves)), xosc.Rule.greaterThan, "stop")
     board = xosc.StoryBoard(_init(moves, behavior), end)
     act = xosc.Act("act", _at("start", 0.0, xosc.Rule.greaterOrEqual, "start"))
-    for move in moves:
-        act.add_maneuver_group(_group(move))
+    for move, ahead in zip(moves, ahead_m, strict=True):
+        act.add_maneuver_group(_group(move, vertex_rows(move, ahead)))
     story = xosc.Story("crash", xosc.ParameterDeclarations())
     story.add_act(act)
     board.add_story(story)
@@ -107,9 +110,9 @@ def _init(moves: Sequence[Trajectory], behavior: BehaviorSpec | None) -> xosc.In
     return init
 
 
-def _group(move: Trajectory) -> xosc.ManeuverGroup:
+def _group(move: Trajectory, rows: Sequence[int]) -> xosc.ManeuverGroup:
     path = xosc.Trajectory(f"{move.actor}_path", False)
-    path.add_shape(xosc.Polyline([_number(t) for t in move.t_s], _positions(move)))
+    path.add_shape(xosc.Polyline([_number(move.t_s[k]) for k in rows], _positions(move, rows)))
     follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, xosc.ReferenceContext.absolute, 1.0, 0.0)
     event = xosc.Event(f"{move.actor}_event", xosc.Priority.override)
     event.add_trigger(_at(f"{move.actor}_start", 0.0, xosc.Rule.greaterOrEqual, "start"))
@@ -127,8 +130,8 @@ def _at(name: str, time_s: float, rule: xosc.Rule, point: str) -> xosc.ValueTrig
     return xosc.ValueTrigger(name, 0.0, xosc.ConditionEdge.none, condition, triggeringpoint=point)
 
 
-def _positions(move: Trajectory) -> list[xosc.WorldPosition]:
-    return [_position(*row) for row in zip(move.x_m, move.y_m, wrap_angle(move.heading_rad), strict=True)]
+def _positions(move: Trajectory, rows: Sequence[int]) -> list[xosc.WorldPosition]:
+    return [_position(move.x_m[k], move.y_m[k], wrap_angle(move.heading_rad[k])) for k in rows]
 
 
 def _position(x_m: float, y_m: float, heading_rad: float | Floats) -> xosc.WorldPosition:

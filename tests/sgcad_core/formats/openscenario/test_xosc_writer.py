@@ -102,23 +102,24 @@ def test_a_name_that_xml_cannot_hold_is_made_safe():
     assert xosc_findings(text, None) == []
 
 
-SPEEDS = st.lists(st.floats(-40, 40), min_size=2, max_size=40)
+SPEEDS = st.lists(st.floats(2.5, 40), min_size=2, max_size=40)
+STARTS = st.tuples(st.floats(-900, 900), st.floats(-900, 900), st.floats(-7, 7))
+
+
+def driven(start, along, turn):
+    """A trajectory from a start pose with speeds and a turn rate a step."""
+    heading = start[2] + np.cumsum(np.full(len(along), turn * 0.05))
+    step = np.array(along) * 0.05
+    x = start[0] + np.concatenate(([0.0], np.cumsum(step * np.cos(heading))))
+    y = start[1] + np.concatenate(([0.0], np.cumsum(step * np.sin(heading))))
+    return trajectory("V1", x, y, np.append(heading, heading[-1]))
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    start=st.tuples(st.floats(-900, 900), st.floats(-900, 900), st.floats(-7, 7)),
-    along=SPEEDS,
-    turn=st.floats(-3, 3),
-    still=st.booleans(),
-)
-def test_a_played_file_is_what_was_written(start, along, turn, still):
-    heading = start[2] + np.cumsum(np.full(len(along), turn * 0.05))
-    step = np.array(along) * 0.05 * (not still)
-    x = start[0] + np.concatenate(([0.0], np.cumsum(step * np.cos(heading))))
-    y = start[1] + np.concatenate(([0.0], np.cumsum(step * np.sin(heading))))
-    wanted = trajectory("V1", x, y, np.append(heading, heading[-1]))
-    other = trajectory("V2", -x, y)
+@given(start=STARTS, along=SPEEDS, turn=st.floats(-1, 1), way=st.sampled_from([-1, 0, 1]))
+def test_a_played_file_is_what_was_written(start, along, turn, way):
+    wanted = driven(start, np.array(along) * way, turn * abs(way))
+    other = trajectory("V2", -wanted.x_m, wanted.y_m)
     first, second = play(write_xosc([actor("V1"), actor("V2")], [wanted, other], None))
     for played, given_ in ((first, wanted), (second, other)):
         assert played.actor == given_.actor
@@ -127,6 +128,14 @@ def test_a_played_file_is_what_was_written(start, along, turn, still):
         np.testing.assert_allclose(played.y_m, given_.y_m, atol=1e-5)
         np.testing.assert_allclose(wrap_angle(played.heading_rad - given_.heading_rad), 0, atol=1e-7)
         np.testing.assert_allclose(played.speed_mps, given_.speed_mps, atol=1e-3)
+
+
+@settings(max_examples=60, deadline=None)
+@given(start=STARTS, along=st.lists(st.floats(-6, 6), min_size=2, max_size=60), turn=st.floats(-3, 3))
+def test_what_is_left_out_of_slow_motion_moves_no_box_by_a_hand(start, along, turn):
+    wanted = driven(start, along, turn)
+    (played,) = play(write_xosc([actor("V1")], [wanted], None))
+    assert np.hypot(played.x_m - wanted.x_m, played.y_m - wanted.y_m).max() < 0.25
 
 
 @pytest.mark.parametrize(
