@@ -7,13 +7,14 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 
 from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.sumo.told import CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
@@ -32,6 +33,8 @@ from sgcad_core.specs import Node, NodeControl, Road, RoadSpec
 MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
 """Where the report states no limit."""
+MAX_LANES = 16
+"""Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
 DRIVEWAY_RADIUS_M = 1.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
@@ -63,6 +66,7 @@ def _nodes(spec: RoadSpec) -> str:
             place = etree.SubElement(root, "node", id=node.id, x=_m(node.x_m), y=_m(node.y_m), type=kind)
             if len(roads) > 2 and sum(road.kind != "driveway" for road in roads) < 3:
                 place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
+            _tell(place, {CONTROL: node.control})
     return to_text(root)
 
 
@@ -106,6 +110,13 @@ def _edge(root: Element, way: Roadway, direction: Direction) -> None:
     edge.set("shape", _shape(way.left_border(direction)))
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
+    limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph else USUAL
+    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit})
+
+
+def _tell(element: Element, told: Mapping[str, str]) -> None:
+    for key, value in told.items():
+        etree.SubElement(element, "param", key=key, value=value)
 
 
 def _priority(road: Road) -> int:
@@ -149,7 +160,20 @@ def sumo_findings(kind: str, text: str) -> list[Finding]:
     return [
         Finding(source="sumo_xsd", what=message, where=f"{kind}, line {line}", remedy=remedy)
         for line, message in schema_errors(_schema(kind), root)
-    ]
+    ] or list(_too_wide(kind, root))
+
+
+def _too_wide(kind: str, root: Element) -> Iterator[Finding]:
+    """Edges of more lanes than any road has: SUMO's schema takes a million, and netconvert then all memory."""
+    for edge in root.iter("edge", "type"):
+        if int(edge.get("numLanes") or 1) > MAX_LANES:
+            yield Finding(
+                source="sumo_xsd",
+                what=f"an edge has at most {MAX_LANES} lanes",
+                where=f"{kind}, line {edge.sourceline}",
+                value=edge.get("numLanes"),
+                remedy="give the lanes of one direction, as the report tells them",
+            )
 
 
 @cache
