@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -156,3 +158,55 @@ def test_actors_and_trajectories_must_pair(actors, moves, message):
 def test_a_trajectory_that_no_player_follows_is_not_written(change):
     with pytest.raises(InvalidOutput, match="finite rows with rising times"):
         write_xosc([actor("V1")], [moving("V1").model_copy(update=change)], None)
+
+
+# ------------------------------------------------------------------ versions
+VERSIONS = ("1.0", "1.1", "1.2", "1.3")
+KINDS = {"V1": "car", "V2": "truck", "P1": "pedestrian", "B1": "bicycle", "T1": "trailer", "O1": "object"}
+
+
+@pytest.mark.parametrize("surroundings", ["dark", "rain", "ice", "all", "none"])
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_version_passes_its_schema_and_plays_alike(version, surroundings):
+    behavior = {
+        "dark": CROSSING.model_copy(update={"light": "dark", "weather": None, "surface": None}),
+        "rain": CROSSING.model_copy(update={"light": None, "weather": "rain", "surface": None}),
+        "ice": CROSSING.model_copy(update={"light": None, "weather": None, "surface": "ice"}),
+        "all": CROSSING,
+        "none": None,
+    }[surroundings]
+    actors = [actor(name, kind) for name, kind in KINDS.items()]
+    moves = [moving(name, 0.1 * k) for k, name in enumerate(KINDS)]
+    text = write_xosc(actors, moves, behavior, version=version)
+    assert f'revMinor="{version[-1]}"' in text
+    assert xosc_findings(text, None) == []
+    assert ("EnvironmentAction" in text) == (behavior is not None)
+    for played, other in zip(play(text), play(write_xosc(actors, moves, None)), strict=True):
+        assert played.actor == other.actor
+        for column in ("t_s", "x_m", "y_m", "heading_rad", "speed_mps"):
+            np.testing.assert_array_equal(getattr(played, column), getattr(other, column))
+
+
+def test_the_oldest_version_completes_what_the_behavior_leaves_open():
+    """Its schema has no room for an open light or surface."""
+    only_ice = CROSSING.model_copy(update={"light": None, "weather": None, "surface": "ice"})
+    text = write_xosc([actor("V1")], [moving("V1")], only_ice, version="1.0")
+    assert 'dateTime="2005-06-21T12:00:00"' in text
+    assert 'cloudState="free"' in text
+    assert 'frictionScaleFactor="0.15"' in text
+
+
+def test_versions_written_at_one_time_do_not_mix():
+    def write(version):
+        return write_xosc([actor("V1")], [moving("V1")], CROSSING, version=version)
+
+    with ThreadPoolExecutor(8) as threads:
+        for version, text in zip(VERSIONS * 8, threads.map(write, VERSIONS * 8), strict=True):
+            assert text == write(version)
+
+
+def test_the_end_is_a_parameter_of_the_file():
+    text = write_xosc([actor("V1")], [moving("V1")], None)
+    assert 'name="EndTime" parameterType="double" value="2.95"' in text
+    short = text.replace('value="2.95"', 'value="1.5"')
+    assert play(short)[0].t_s[-1] == pytest.approx(1.5)
