@@ -111,8 +111,9 @@ def esmini():
     return simulator
 
 
-def test_esmini_replays_a_planned_crash_and_sees_the_declared_contact(esmini):
-    network, scenario = crossroads(), compile_scenario(CROSSING, crossroads())
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3"])
+def test_esmini_replays_a_planned_crash_and_sees_the_declared_contact(esmini, version):
+    network, scenario = crossroads(), compile_scenario(CROSSING, crossroads(), version)
     verdict = judge(esmini, Kinematic().execute(scenario, network), scenario, network)
     assert verdict.lines() == []
     assert (verdict.loaded, verdict.same_motion, verdict.as_declared) == (True, True, True)
