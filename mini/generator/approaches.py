@@ -5,8 +5,8 @@ A part of the writer.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_motion as motion
 from mini.generator.clauses_words import NEARING
@@ -35,11 +35,11 @@ class ApproachMixin:
     who: tuple[int, int]
     waited: bool
 
-    say: Any
-    fitting: Any
-    spoken: Any
-    reason: Any
-    scene_junction: Any
+    say: Callable[..., str]
+    fitting: Callable[..., str]
+    spoken: Callable[..., str]
+    reason: Callable[..., str]
+    scene_junction: Callable[..., str]
     junction_named: bool
 
     def _approaches(self) -> list[str]:
@@ -88,8 +88,8 @@ class ApproachMixin:
             return self._from_stem(actor, index, ahead, before)
         leaves = not self.held_out and actor.maneuver.startswith(LEAVES)
         moving = motion.PRESENTED["moving"] if presented else motion.APPROACH
-        options = moving.without(self.held_out, ["goes_on"] * leaves)
-        return self.say(options, index, ahead, appr=lambda: self._approaching(index, bool(before)))
+        clauses = moving.without(self.held_out, ["goes_on"] * leaves)
+        return self.say(clauses, index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
         """One on the leg that ends at the junction, without a word of the compass."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator.grammar import Told, choose, clause_of
@@ -24,7 +24,7 @@ class ImpactsMixin:
     held_out: bool
     told: Told
 
-    say: Any
+    say: Callable[..., str]
 
     def impact(self, number: int, contact: Contact) -> str:
         """The sentence of a contact."""
