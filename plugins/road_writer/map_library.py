@@ -15,6 +15,7 @@ from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 
 
@@ -34,4 +35,5 @@ class MapLibrary(RoadWriter):
         if not facts.crash.vehicles and not facts.roads:
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
+        refuse_unsupported(facts.junction.unsupported)
         return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))

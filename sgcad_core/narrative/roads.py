@@ -21,6 +21,7 @@ from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_l
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.narrative.text import sentences
+from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import roster
 from sgcad_core.specs import Compass
 
@@ -76,7 +77,7 @@ def road_facts(narrative: str, crash: CrashFacts | None = None) -> RoadFacts:
     crash = _oriented(crash, mentions, told)
     headings = {v.id: v.heading for v in crash.vehicles if v.heading}
     gathered = gather(mentions, headings)
-    junction = junction_of(told, crash.vehicles, gathered)
+    junction = replace(junction_of(told, crash.vehicles, gathered), unsupported=unsupported_places(told))
     limits, bends = speed_limits(told, headings), curves(told, headings)
     rural = any(t.role in CRASH_ROLES and _RURAL.search(t.text) for t in told)
     roads = tuple(replace(_road(r, gathered, limits, bends, headings), rural=rural) for r in gathered)
