@@ -11,10 +11,12 @@ from mini.generator.grammar import clause_of
 from mini.generator.labels import plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import WORDS, Crash, Leg
+from sgcad_core.language import values
 
-NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-ORDINALS = ("", "first", "second", "third", "fourth", "fifth", "sixth")
-SHORT_ORDINALS = ("", "1st", "2nd", "3rd", "4th", "5th", "6th")
+NUMBERS = ("zero", *values("number_word"), "eleven", "twelve")
+_ORDINALS = sorted(values("ordinal"), key=values("ordinal").__getitem__)
+ORDINALS = ("", *(word for word in _ORDINALS if word.isalpha()))
+SHORT_ORDINALS = ("", *(word for word in _ORDINALS if not word.isalpha()))
 MORE = 0.4
 """How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
 
