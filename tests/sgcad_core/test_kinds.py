@@ -14,9 +14,7 @@ from sgcad_core.language import rule, values
 
 
 def test_literals_and_records_are_the_same() -> None:
-    assert [record.kind for record in kinds.JUNCTIONS] == sorted(
-        get_args(kinds.JunctionKind), key=[record.kind for record in kinds.JUNCTIONS].index
-    )
+    assert len(kinds.JUNCTIONS) == len(get_args(kinds.JunctionKind))
     assert {record.kind for record in kinds.JUNCTIONS} == set(get_args(kinds.JunctionKind))
     assert get_args(kinds.RoadKind) == kinds.ROADS == tags.ROADS
     assert get_args(kinds.Maneuver) == kinds.MANEUVERS == answers.MANEUVERS
