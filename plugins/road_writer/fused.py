@@ -17,7 +17,8 @@ from plugins.road_writer.template import Template
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.narrative.junction import JunctionFacts, JunctionKind
+from sgcad_core.kinds import JunctionKind
+from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFact, RoadFacts

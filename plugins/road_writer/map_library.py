@@ -14,6 +14,7 @@ from plugins.road_writer._maps import compiled, library, nearest
 from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 
 
@@ -33,4 +34,5 @@ class MapLibrary(RoadWriter):
         if not facts.crash.vehicles and not facts.roads:
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
+        refuse_unsupported(facts.junction.unsupported)
         return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))

@@ -22,6 +22,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
 from sgcad_core.registry import plugin_class
 from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, layout_legs
@@ -62,6 +63,7 @@ class OsmDirect(RoadWriter):
         if not facts.crash.vehicles and not facts.roads:
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
+        refuse_unsupported(facts.junction.unsupported)
         layout = layout_of_facts(facts, Defaults())
         found, data = self._nearest(layout)
         legs = _legs(data)

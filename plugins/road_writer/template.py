@@ -18,6 +18,7 @@ from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.language import rule
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import RoadFacts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
@@ -40,7 +41,8 @@ class Template(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
+        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without
+        a crash and on a place that cannot be drawn."""
         return self.network_of(context.narrative, context.reading.roads)
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
@@ -50,6 +52,7 @@ class Template(RoadWriter):
                 "the narrative names neither a vehicle nor a road",
                 ["the road or junction of the crash", "the vehicles and how they traveled"],
             )
+        refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
         network = compile_network(plain_xml(spec), spec)

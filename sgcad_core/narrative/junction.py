@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from sgcad_core.kinds import JUNCTIONS, Junction, JunctionKind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import between, compass_of, turned
@@ -22,14 +23,13 @@ from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
 
-JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
-
 
 @dataclass(frozen=True)
 class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
     legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
-    the text says by compass where the stem lies."""
+    the text says by compass where the stem lies. `unsupported`: kinds of places at which the crash happened and which
+    cannot be drawn."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
@@ -37,14 +37,14 @@ class JunctionFacts:
     stopped: tuple[Compass, ...] = ()
     stated: bool = False
     stem_stated: bool = False
+    unsupported: tuple[str, ...] = ()
     notes: tuple[str, ...] = field(default=())
     where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
 
 
 _NUMBERED = rule("common.vehicle_begins")
-_T = rule("junction.t")
-_FOUR = rule("junction.four")
+_NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
 _NO_JUNCTION = rule("junction.no_junction")
 
@@ -81,7 +81,7 @@ def _kind(
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
         return "ramp", True
-    if named in ("t", "four_leg"):
+    if named != "none" and named != "some":
         return named, True
     if access and not (named == "some" and controlled(story)):
         return "driveway", True
@@ -99,11 +99,10 @@ def _named(story: Sequence[Told]) -> tuple[JunctionKind | Literal["some"], Cue |
     some: Cue | None = None
     for t in story:
         text = _NO_JUNCTION.sub(" ", t.text)
-        shape, cross = _T.search(text), _FOUR.search(text)
-        if shape and (not cross or shape.start() < cross.start()):
-            return "t", Cue(t.number, shape[0], _T.id)
-        if cross:
-            return "four_leg", Cue(t.number, cross[0], _FOUR.id)
+        found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
+        if found:
+            first, words, record = min(found, key=lambda place: place[0].start())
+            return record.kind, Cue(t.number, first[0], words.id)
         plain = _JUNCTION.search(text)
         some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
     return "some" if some else "none", some

@@ -21,6 +21,7 @@ from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Compass
 
@@ -74,7 +75,7 @@ def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFact
     crash = _oriented(crash, mentions, told)
     headings = {v.id: v.heading for v in crash.vehicles if v.heading}
     gathered = gather(mentions, headings)
-    junction = junction_of(told, crash.vehicles, gathered)
+    junction = replace(junction_of(told, crash.vehicles, gathered), unsupported=unsupported_places(told))
     limits, bends = speed_limits(told, headings), curves(told, headings)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
