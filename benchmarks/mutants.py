@@ -131,9 +131,8 @@ def main(argv: list[str] | None = None) -> int:
         sys.stdout.write(f"{kind}: {kinds[kind] - lost[kind]} of {kinds[kind]} noticed\n")
     share = 1 - len(missed) / len(drawn)
     seconds = time.perf_counter() - began
-    print(
-        f"{len(drawn) - len(missed)} of {len(drawn)} noticed ({share:.1%}) of {len(every)} there are; {seconds:.0f} s"
-    )
+    found = f"{len(drawn) - len(missed)} of {len(drawn)} noticed ({share:.1%}) of {len(every)} there are"
+    sys.stdout.write(f"{found}; {seconds:.0f} s\n")
     for m in missed if args.missed else ():
         sys.stdout.write(f"  {m.kind} of {m.name}: {m.gone}\n")
     return 0 if share >= 0.95 else 1

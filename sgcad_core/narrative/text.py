@@ -16,6 +16,10 @@ from sgcad_core.narrative.unnumbered import number_vehicles
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalize", "sentences"]
 
 NUMBERS: dict[str, int] = values("number_word")
+MOST_READ = 16_000
+"""Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
+_TAIL = 12
+"""Characters at the end of a piece in which an abbreviation can stand."""
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
@@ -116,7 +120,7 @@ _END = rule("text.end")
 def sentences(text: str) -> tuple[Sentence, ...]:
     """The report's sentences in order, normalized, with roles; vehicles without numbers get some."""
     found: list[Sentence] = []
-    for number, block in enumerate(filter(None, number_vehicles(normalize(text)).split("\n\n"))):
+    for number, block in enumerate(filter(None, number_vehicles(normalize(text[:MOST_READ])).split("\n\n"))):
         for piece in _split(block):
             found.append(Sentence(piece, role_of(piece), len(found), number))
     return tuple(found)
@@ -125,7 +129,8 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def _split(block: str) -> list[str]:
     pieces: list[str] = []
     for part in _END.split(block):
-        joins = pieces and _ABBREVIATION.search(pieces[-1]) and not pieces[-1].lower().endswith((" dr.", " st."))
+        last = pieces[-1][-_TAIL:] if pieces else ""
+        joins = _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
         if pieces and joins:
             pieces[-1] += " " + part
         else:

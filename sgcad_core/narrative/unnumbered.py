@@ -13,6 +13,8 @@ from sgcad_core.language import rule
 _DESCRIBED = rule("unnumbered.described")
 _STRANGER = rule("unnumbered.stranger")
 _MOST = 6
+_NEAR = 40
+"""Characters before a description in which a word may say that it is of a stranger."""
 
 
 def number_vehicles(text: str) -> str:
@@ -23,7 +25,7 @@ def number_vehicles(text: str) -> str:
 
     def numbered(match: re.Match[str]) -> str:
         key = (match["make"] or match["body"]).lower()
-        if key in seen or len(seen) == _MOST or _STRANGER.search(text[: match.start()]):
+        if key in seen or len(seen) == _MOST or _STRANGER.search(text[max(0, match.start() - _NEAR) : match.start()]):
             return match.group()
         seen[key] = len(seen) + 1
         return f"{match.group()} (V{seen[key]})"
