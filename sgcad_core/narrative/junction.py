@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import JUNCTIONS, Junction, JunctionKind
+from sgcad_core.kinds import JUNCTIONS, JunctionKind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import between, compass_of, turned

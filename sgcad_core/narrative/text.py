@@ -17,6 +17,10 @@ from sgcad_core.narrative.unnumbered import number_vehicles
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 
 NUMBERS: dict[str, int] = values("number_word")
+MOST_READ = 16_000
+"""Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
+_TAIL = 12
+"""Characters at the end of a piece in which an abbreviation can stand."""
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
@@ -63,17 +67,14 @@ def normalize(text: str) -> str:
 
 
 def normalised(text: Traced) -> Traced:
-    """`normalize` of a text whose characters know their places."""
-    return joined([p for p in map(_paragraph, _blocks(text)) if p.text], "\n\n")
+    """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
+    return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
 
 
 def _blocks(text: Traced) -> list[Traced]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
-    plain = text.sub(_CHARACTER, lambda m: str(_CHARACTERS[ord(m[0])]))
+    plain = text.translate(_CHARACTERS)
     return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
-
-
-_CHARACTER = re.compile(f"[{re.escape(''.join(map(chr, _CHARACTERS)))}]")
 
 
 def _paragraph(block: Traced) -> Traced:
@@ -130,20 +131,17 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text."""
     found: list[Sentence] = []
-    blocks = [block for block in number_vehicles(text).split(_BREAK) if block.text]
+    blocks = [block for block in number_vehicles(text).split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):
             found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))
     return tuple(found)
 
 
-_BREAK = re.compile("\n\n")  # as `normalised` joins paragraphs
-
-
 def _split(block: Traced) -> list[Traced]:
     pieces: list[Traced] = []
     for part in block.split(_END):
-        last = pieces[-1].text if pieces else ""
+        last = pieces[-1].text[-_TAIL:] if pieces else ""
         joins = pieces and _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
         if pieces and joins:
             pieces[-1] = joined([pieces[-1], part], " ")

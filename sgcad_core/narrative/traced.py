@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -74,6 +74,19 @@ class Traced(NamedTuple):
             found.append(self.cut(at, match.start()))
             at = match.end()
         return [*found, self.cut(at, len(self.text))]
+
+    def split_at(self, mark: str) -> list[Traced]:
+        """`text.split(mark)`."""
+        found, at = [], 0
+        for piece in self.text.split(mark):
+            found.append(self.cut(at, at + len(piece)))
+            at += len(piece) + len(mark)
+        return found
+
+    def translate(self, table: Mapping[int, str]) -> Traced:
+        """`text.translate(table)` of a table of characters' numbers."""
+        edits = [(i, i + 1, table[ord(c)]) for i, c in enumerate(self.text) if ord(c) in table]
+        return self._edited(edits) if edits else self
 
     def strip(self, characters: str | None = None) -> Traced:
         """`text.strip(characters)`."""

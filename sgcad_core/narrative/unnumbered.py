@@ -14,6 +14,8 @@ from sgcad_core.narrative.traced import Traced
 _DESCRIBED = rule("unnumbered.described")
 _STRANGER = rule("unnumbered.stranger")
 _MOST = 6
+_NEAR = 40
+"""Characters before a description in which a word may say that it is of a stranger."""
 
 
 def number_vehicles(text: Traced) -> Traced:
@@ -24,7 +26,8 @@ def number_vehicles(text: Traced) -> Traced:
 
     def numbered(match: re.Match[str]) -> str:
         key = (match["make"] or match["body"]).lower()
-        if key in seen or len(seen) == _MOST or _STRANGER.search(match.string[: match.start()]):
+        near = match.string[max(0, match.start() - _NEAR) : match.start()]
+        if key in seen or len(seen) == _MOST or _STRANGER.search(near):
             return match.group()
         seen[key] = len(seen) + 1
         return f"{match.group()} (V{seen[key]})"
