@@ -17,7 +17,7 @@ import numpy as np
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.reference import Piece, length_of, pieces, pose_at
 from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, road_of
-from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, prolonged, resample
 
 Side = Literal["left", "right"]
 SAME_M = 0.005
@@ -25,7 +25,12 @@ SAME_M = 0.005
 WIDEST_M = 40.0
 OVERLAP_M = 0.05
 """Directions farther apart than the one, or overlapping by more than the other, are roads of their own."""
-LEAST_LENGTH_M = 0.2
+LEAST_LENGTH_M = 0.05
+BESIDE_SHARE = 0.3
+"""Two directions that do not lie beside each other over more of the road are roads of their own."""
+FIT_M = 0.003
+NEAR_M = 0.5
+"""Lines are prolonged so far where normals at a neighbor's ends shall meet them."""
 
 
 @dataclass(frozen=True)
@@ -199,10 +204,10 @@ def _clean(line: Floats) -> Floats:
 
 
 def _gaps(line: Floats, other: Floats) -> Floats | None:
-    """How far another line lies to the left at each of 9 stations; None where it does not run beside it."""
-    stations = np.linspace(0, arc_lengths(line)[-1], 9)[1:-1]
-    found = _offsets(line, other, stations)
-    return None if np.isnan(found).any() else found
+    """How far another line lies to the left at its stations; None where it does not run beside it."""
+    found = _offsets(line, other, _stations(line))
+    inner = found[~np.isnan(found)]
+    return None if np.isnan(found[1:-1]).mean() > BESIDE_SHARE or not len(inner) else inner
 
 
 def _middle(one: Floats, two: Floats) -> Floats:
@@ -295,7 +300,7 @@ def _offsets(line: Floats, other: Floats, stations: Floats) -> Floats:
     tangent = ahead - behind
     tangent = tangent / np.hypot(*tangent.T)[:, None]
     normal = np.column_stack((-tangent[:, 1], tangent[:, 0]))
-    ends = _prolonged(other)
+    ends = prolonged(other, NEAR_M)
     u = (ends[None] - points[:, None]) @ tangent[:, :, None]
     v = (ends[None] - points[:, None]) @ normal[:, :, None]
     u, v = u[..., 0], v[..., 0]
@@ -305,12 +310,6 @@ def _offsets(line: Floats, other: Floats, stations: Floats) -> Floats:
     near = np.where(crosses, np.abs(t), np.inf)
     best = near.argmin(axis=1)
     return np.where(crosses.any(axis=1), t[np.arange(len(stations)), best], np.nan)
-
-
-def _prolonged(line: Floats, by_m: float = 0.5) -> Floats:
-    """A line with both ends prolonged, so that normals at a neighbor's ends meet it."""
-    first, last = line[0] - line[1], line[-1] - line[-2]
-    return np.vstack((line[0] + first / np.hypot(*first) * by_m, line, line[-1] + last / np.hypot(*last) * by_m))
 
 
 def _fitted(stations: Floats, values: Floats) -> tuple[Width, ...]:
@@ -325,11 +324,11 @@ def _slope(s: Floats, w: Floats, i: int, j: int) -> Width:
 
 
 def _needed(s: Floats, w: Floats, i: int, j: int) -> Iterator[int]:
-    """Inner stations that a polyline from i to j needs to stay within 1 mm of all values (Douglas-Peucker)."""
+    """Inner stations that a polyline from i to j needs to stay within `FIT_M` of all values (Douglas-Peucker)."""
     if j - i < 2:
         return
     chord = w[i] + (w[j] - w[i]) * (s[i + 1 : j] - s[i]) / max(s[j] - s[i], 1e-9)
     away = np.abs(w[i + 1 : j] - chord)
-    if away.max() > 1e-3:
+    if away.max() > FIT_M:
         k = i + 1 + int(away.argmax())
         yield from (*_needed(s, w, i, k), k, *_needed(s, w, k, j))
