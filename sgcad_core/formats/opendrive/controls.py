@@ -58,13 +58,14 @@ def _signs(root: Element) -> dict[str, str]:
     found: dict[str, str] = {}
     for road in root.iterfind("road"):
         for signal in road.iterfind("signals/signal"):
-            kind = "head" if _is_head(signal) else SIGNS.get(signal.get("type", ""))
+            kind = "head" if is_head(signal) else SIGNS.get(signal.get("type", ""))
             for edge in _edges_at(road, signal) if kind else ():
                 found[edge] = "head" if "head" in (kind, found.get(edge)) else str(kind)
     return found
 
 
-def _is_head(signal: Element) -> bool:
+def is_head(signal: Element) -> bool:
+    """Whether a signal is a traffic light."""
     return signal.get("type", "").startswith("10000") and signal.get("dynamic") == "yes"
 
 
