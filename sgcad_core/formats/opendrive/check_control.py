@@ -1,12 +1,11 @@
 """What is wrong with the traffic control of an OpenDRIVE file: signals without lanes, stop lines without signals, ...
 
-Beyond the schema: every signal reaches lanes that exist and drive its way, one that stands at a junction holds for lanes that
-lead into it, every head has a controller and every stop line a signal.
+Beyond the schema (double ids, controllers without signals): every signal reaches lanes that exist and drive its way,
+one that governs a junction holds for lanes that lead into it, every head has a controller, every stop line a signal.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from sgcad_core.formats.opendrive.controls import SIGNS, is_head
@@ -25,7 +24,7 @@ def control_findings(root: Element) -> list[Finding]:
     objects = {str(o.get("id")): (road, o) for road in root.iterfind("road") for o in road.iterfind("objects/object")}
     into = _lanes_into_junctions(root)
     return [
-        *_doubles(signals),
+        *_names(signals),
         *(fault for road, signal in signals for fault in _signal(road, signal, into)),
         *_references(signals, objects),
         *_stop_lines(signals, objects),
@@ -37,10 +36,8 @@ def _finding(what: str, where: str, value: object, remedy: str) -> Finding:
     return Finding(source="opendrive", what=what, where=where, value=str(value), remedy=remedy)
 
 
-def _doubles(signals: Sequence[tuple[Element, Element]]) -> Iterator[Finding]:
-    for name, count in Counter(str(s.get("id")) for _, s in signals).items():
-        if count > 1:
-            yield _finding(f"{count} signals have one id", "signal", name, "give each an id of its own")
+def _names(signals: Sequence[tuple[Element, Element]]) -> Iterator[Finding]:
+    for name in (str(s.get("id")) for _, s in signals):
         if not name.isdigit():
             yield _finding("a signal's id is no number", "signal", name, "number the signals: readers expect it")
 
@@ -120,13 +117,11 @@ def _stop_lines(
 
 def _controllers(root: Element, signals: Sequence[Element]) -> Iterator[Finding]:
     heads = {str(s.get("id")) for s in signals if is_head(s)}
-    led = Counter(str(c.get("signalId")) for c in root.iterfind("controller/control"))
+    led = {str(c.get("signalId")) for c in root.iterfind("controller/control")}
     used = {str(c.get("id")) for c in root.iterfind("junction/controller")}
     there = {str(c.get("id")) for c in root.iterfind("controller")}
-    for head in sorted(heads - set(led)):
+    for head in sorted(heads - led):
         yield _finding("a signal head has no controller", f"signal {head}", "", "name it in a <controller>")
-    for name in sorted(set(led) - {str(s.get("id")) for s in signals}):
-        yield _finding("a controller names no signal of the file", "controller", name, "name a signal")
     for name in sorted(used - there):
         yield _finding("a junction names a controller that is not there", "junction", name, "add the controller")
     for name in sorted(there - used):
