@@ -17,7 +17,7 @@ CONTROLS = ("none", "signal", "flashing", "stop", "yield")
 
 def random_layout(seed: int) -> RoadSpec:
     """The spec of a random layout: two to five legs, up to two accesses."""
-    r = random.Random(seed)  # noqa: S311 - no secret
+    r = random.Random(seed)
     bearings = r.sample(get_args(Compass), r.choice([2, 3, 3, 4, 4, 4, 5]))
     control = r.choice(CONTROLS)
     legs = tuple(_leg(r, bearing, control) for bearing in bearings)

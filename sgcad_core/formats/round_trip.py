@@ -123,7 +123,12 @@ def _connections(both: _Back) -> Iterator[Difference]:
 
 
 def _key(link: Connection, names: Mapping[str, str]) -> tuple[str, int, str, int]:
-    return names.get(link.from_edge, link.from_edge), link.from_lane, names.get(link.to_edge, link.to_edge), link.to_lane
+    return (
+        names.get(link.from_edge, link.from_edge),
+        link.from_lane,
+        names.get(link.to_edge, link.to_edge),
+        link.to_lane,
+    )
 
 
 # ------------------------------------------------------------------ signals and signs

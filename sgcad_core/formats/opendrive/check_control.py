@@ -94,7 +94,9 @@ def _references(
         for link in signal.iterfind("reference"):
             kind, name = str(link.get("elementType")), str(link.get("elementId"))
             if name not in known.get(kind, set()):
-                yield _finding(f"refers to no {kind} of the file", f"signal {signal.get('id')}", name, f"add the {kind}")
+                yield _finding(
+                    f"refers to no {kind} of the file", f"signal {signal.get('id')}", name, f"add the {kind}"
+                )
 
 
 def _stop_lines(
@@ -106,7 +108,9 @@ def _stop_lines(
             continue
         where = f"stop line {name} on road {road.get('id')}"
         mine = [
-            s for r, s in signals if r is road and s.find(f"reference[@elementType='object'][@elementId='{name}']") is not None
+            s
+            for r, s in signals
+            if r is road and s.find(f"reference[@elementType='object'][@elementId='{name}']") is not None
         ]
         held = set[int]().union(*(lanes_of(s) for s in mine))
         if not mine:

@@ -47,8 +47,10 @@ def _junction(told: Mapping[str, str], approaches: frozenset[str]) -> SignedJunc
     minor = frozenset(told)
     if "stop" in told.values():
         every = all(told.get(edge) == "stop" for edge in approaches)
-        return SignedJunction("allway_stop", "all_way_stop", minor) if every else SignedJunction(
-            "priority_stop", "stop", minor
+        return (
+            SignedJunction("allway_stop", "all_way_stop", minor)
+            if every
+            else SignedJunction("priority_stop", "stop", minor)
         )
     return SignedJunction("priority", "yield", minor)
 

@@ -254,9 +254,7 @@ def _along(line: Floats, point: Floats) -> float:
 
 
 # ------------------------------------------------------------------ lanes
-def _strips(
-    edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool
-) -> tuple[Strip, ...]:
+def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool) -> tuple[Strip, ...]:
     """Lanes of one side from the inside out, a median strip first where the border lies off the line."""
     lanes = list(reversed(edge.lanes))
     stations = _stations(line)

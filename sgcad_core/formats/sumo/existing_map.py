@@ -30,7 +30,7 @@ MOST_EDGES = 110
 OUT_M = 20.0
 """A leg's direction is taken so far from its junction."""
 BESIDE_RAD = math.radians(15)
-_FLAGS = ("--keep-edges.by-vclass", "passenger", "--remove-edges.isolated", "--no-turnarounds", "-X", "never")
+_FLAGS = ("--keep-edges.by-vclass", "passenger", "--no-turnarounds", "-X", "never")
 _EDGE = ("numLanes", "speed", "priority", "shape", "spreadType", "width")
 _LINK = ("fromLane", "toLane")
 
@@ -38,7 +38,7 @@ _LINK = ("fromLane", "toLane")
 def read_map(file: Path) -> PlainXml:
     """Read a map. Raises ConfigError naming the file for one that netconvert cannot read or that is too large."""
     nodes, edges, links = _parts(file)
-    found = list(edges.iterfind("edge"))
+    found = _with_junction(list(edges.iterfind("edge")))
     if not 0 < len(found) <= MOST_EDGES:
         raise ConfigError(f"{file}: {len(found)} directions of roads, 1 to {MOST_EDGES} make a map; cut it smaller")
     return _renamed(nodes, found, links)
@@ -133,10 +133,7 @@ def _road_names(edges: list[Element]) -> Mapping[str, str]:
 
 def _hub(edges: list[Element]) -> str:
     """The node with the most neighbors; of equals the first. A plain road's is the one with two."""
-    near: dict[str, set[str]] = {}
-    for edge in edges:
-        near.setdefault(edge.get("from"), set()).add(edge.get("to"))
-        near.setdefault(edge.get("to"), set()).add(edge.get("from"))
+    near = _neighbors(edges)
     return max(near, key=lambda node: len(near[node]))
 
 
@@ -185,6 +182,29 @@ def _document(name: str, children: Iterable[Element]) -> str:
     root = etree.Element(name)
     root.extend(list(children))
     return to_text(root)
+
+
+def _with_junction(edges: list[Element]) -> list[Element]:
+    """Without roads that are joined to no junction, where the map has one.
+
+    (netconvert's --remove-edges.isolated removes a map that is one plain road as well.)
+    """
+    near = _neighbors(edges)
+    kept: set[str] = set()
+    stack = [node for node, others in near.items() if len(others) > 2]
+    while stack:
+        if (node := stack.pop()) not in kept:
+            kept.add(node)
+            stack += near[node]
+    return [edge for edge in edges if edge.get("from") in kept] if kept else edges
+
+
+def _neighbors(edges: list[Element]) -> dict[str, set[str]]:
+    near: dict[str, set[str]] = {}
+    for edge in edges:
+        near.setdefault(edge.get("from"), set()).add(edge.get("to"))
+        near.setdefault(edge.get("to"), set()).add(edge.get("from"))
+    return near
 
 
 # ------------------------------------------------------------------ the main junction
