@@ -68,7 +68,7 @@ def _signs(root: Element) -> dict[str, str]:
 
 def is_head(signal: Element) -> bool:
     """Whether a signal is a traffic light."""
-    return signal.get("type", "").startswith("10000") and signal.get("dynamic") == "yes"
+    return bool(signal.get("type", "").startswith("10000") and signal.get("dynamic") == "yes")
 
 
 def _edges_at(road: Element, signal: Element) -> Iterator[str]:

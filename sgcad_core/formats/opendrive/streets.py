@@ -7,9 +7,10 @@ edge's. Metres; knows no XML.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -174,9 +175,10 @@ def _street(name: str, forward: Edge, backward: Edge | None, trims: Mapping[tupl
             return None
         if gaps.max() > SAME_M:
             line, varies = _middle(ahead, back), bool(np.ptp(gaps) > SAME_M)
-    line = _trimmed(line, forward, backward, trims)
-    if line is None:
+    cut = _trimmed(line, forward, backward, trims)
+    if cut is None:
         return None
+    line = cut
     reach = (_reach(backward) if backward else 0.0), _reach(forward)
     drawn = pieces(line, reach)
     right = _strips(forward, -1, line, ahead, varies, backward is not None)
@@ -196,9 +198,9 @@ def _left_border(edge: Edge) -> Floats:
 def _clean(line: Floats) -> Floats:
     """Without points nearer than 1 mm to the one before; both ends stay."""
     keep = np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)
-    kept = line[keep]
+    kept: Floats = line[keep]
     if len(kept) < 2:
-        return line[[0, -1]]
+        kept = line[[0, -1]]
     kept[-1] = line[-1]
     return kept
 
@@ -266,7 +268,7 @@ def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, c
         gap = abs(float(np.mean(_offsets_or_end(line, border, stations))))
         widths = [(Width(0.0, gap),), *((Width(0.0, lane.width_m),) for lane in lanes)]
     wide = max(w.a for w in widths[0]) > SAME_M / 2
-    rows = [("median", None, widths[0])] if wide else []
+    rows: list[tuple[str, Lane | None, tuple[Width, ...]]] = [("median", None, widths[0])] if wide else []
     rows += [(_lane_type(lane, edge, center_lane), lane, w) for lane, w in zip(lanes, widths[1:], strict=True)]
     return tuple(Strip(sign * i, kind, w, lane) for i, (kind, lane, w) in enumerate(rows, 1))
 
@@ -313,8 +315,8 @@ def _offsets(line: Floats, other: Floats, stations: Floats) -> Floats:
 def _fitted(stations: Floats, values: Floats) -> tuple[Width, ...]:
     """Straight width pieces through measured values, those that one line tells joined."""
     kept = [0, *_needed(stations, values, 0, len(stations) - 1), len(stations) - 1]
-    ends: Sequence[int] = sorted(set(kept))
-    return tuple(_slope(stations, values, i, j) for i, j in zip(ends, ends[1:], strict=False))
+    ends = sorted(set(kept))
+    return tuple(_slope(stations, values, i, j) for i, j in pairwise(ends))
 
 
 def _slope(s: Floats, w: Floats, i: int, j: int) -> Width:

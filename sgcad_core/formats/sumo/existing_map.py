@@ -98,7 +98,7 @@ def _restore_lanes(edge: Element, drawn: list[Element]) -> None:
         if (width := width_of(source)) is not None:
             lane.set("width", f"{width:.3f}")
         if source.get("type") == "bidirectional":
-            lane.attrib.pop("disallow", None)
+            lane.attrib.pop("disallow", "")
             lane.set("allow", CENTER_LANE_CLASS)
 
 

@@ -34,10 +34,10 @@ def test_lanes_lie_where_sumo_has_them(network):
     graph, roads = parse_net(network().net_xml), XodrRoads(network().xodr)
     index = lane_index(network().xodr)
     for edge in graph.edges.values():
-        for lane in edge.lanes:
-            road, number = index.lane(edge.id, lane.index)
+        for sumo in edge.lanes:
+            road, number = index.lane(edge.id, sumo.index)
             length = index.roads[road].length_m
-            assert distance_to(roads.lane_center(road, number), lane.shape).max() < 0.25
+            assert distance_to(roads.lane_center(road, number), sumo.shape).max() < 0.25
             pose = roads.lane_pose(road, number, length / 2, 0.0)
             found = roads.nearest(pose)
             assert found[:2] == (road, number)
