@@ -20,6 +20,7 @@ NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yie
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadKind = Literal["road", "driveway", "ramp"]
+RoadArea = Literal["", "rural", "town", "motorway"]
 ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
@@ -88,7 +89,7 @@ class ToldRoad(NamedTuple):
 
     posted: bool = True
     """Whether its speed limit is told; else it is a usual one."""
-    area: Literal["", "rural", "town", "motorway"] = ""
+    area: RoadArea = ""
 
 
 # ------------------------------------------------------------------ road, as a small model or a template says it

@@ -10,7 +10,7 @@ from typing import get_args
 
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
-from sgcad_core.specs import Compass, Road, RoadSpec, ToldRoad
+from sgcad_core.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
 
 
 def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
@@ -29,5 +29,7 @@ def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
 
 def _told(road: Road, facts: list[RoadFact]) -> ToldRoad:
     limits = {fact.speed_limit_mph for fact in facts} - {None}
-    area = "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else ""
+    area: RoadArea = (
+        "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else ""
+    )
     return ToldRoad(posted=road.speed_limit_mph in limits, area=area)

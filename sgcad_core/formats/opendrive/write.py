@@ -32,7 +32,7 @@ from sgcad_core.records import Finding
 TOUCHING_M = 0.05
 TRIM_M = 0.1
 """Lanes of a node that touch leave a connecting road no length: its roads are cut back by so much."""
-FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +no_defs"
+FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m"
 """A metric plane, x east and y north. Its place on the globe is nobody's: reports name no coordinates."""
 ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", "driveway": "townPrivate"}
 """By the area that is told, else the kind of road."""
