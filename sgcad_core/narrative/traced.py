@@ -166,8 +166,8 @@ def _trimmed(text: str, begin: int, end: int, new: str) -> tuple[int, int, str]:
 @lru_cache(maxsize=512)
 def _filling(template: str) -> Fill:
     r"""What a template of `re.sub` with \1 to \9 makes of a match; other escapes are not understood."""
-    parts = re.split(r"\\(\d)", template)
-    plain, groups = parts[::2], [int(n) for n in parts[1::2]]
+    first, *further = template.split("\\")
+    plain, groups = [first, *(part[1:] for part in further)], [int(part[0]) for part in further]
 
     def fill(match: re.Match[str]) -> str:
         made = [plain[0]]

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import yaml
 
+from sgcad_core.kinds import JUNCTIONS
 from sgcad_core.language.data import Language
 
 ROOT = Path(__file__).parents[3]
@@ -22,8 +23,8 @@ _CODE = ("sgcad_core", "plugins", "mini", "flows")
 
 @lru_cache(maxsize=1)
 def asked_for() -> frozenset[str]:
-    """Ids that the code names."""
-    return frozenset(_named(r"\brule\(\s*\"([\w.]+)\""))
+    """Ids that the code names, itself or in a record of a kind."""
+    return frozenset(_named(r"\brule\(\s*\"([\w.]+)\"")) | {record.rule for record in JUNCTIONS if record.rule}
 
 
 @lru_cache(maxsize=1)
