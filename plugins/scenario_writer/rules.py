@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
@@ -28,6 +28,8 @@ class Rules(ScenarioWriter):
     version: ClassVar[str] = "2"
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
+    encoding: Encoding = DEFAULT_ENCODING
+    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -41,7 +43,7 @@ class Rules(ScenarioWriter):
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
         facts = context.reading.crash
-        scenario = compile_scenario(behavior_of_facts(facts, spec), network, self.openscenario)
+        scenario = compile_scenario(behavior_of_facts(facts, spec), network, self.openscenario, self.encoding)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 
 

@@ -13,7 +13,7 @@ from pydantic import Field
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
@@ -32,6 +32,8 @@ class SpecScenario(ScenarioWriter):
 
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
+    encoding: Encoding = DEFAULT_ENCODING
+    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -51,7 +53,9 @@ class SpecScenario(ScenarioWriter):
             answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
             attempt=attempt,
         )
-        return compile_scenario(parse_answer(ask(context, query).text, BehaviorSpec), network, self.openscenario)
+        return compile_scenario(
+            parse_answer(ask(context, query).text, BehaviorSpec), network, self.openscenario, self.encoding
+        )
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version, write_xosc
+from sgcad_core.formats.openscenario.events import Handover
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
 
 
-def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork, version: Version = DEFAULT_VERSION) -> Scenario:
+def compile_scenario(
+    behavior: BehaviorSpec,
+    network: RoadNetwork,
+    version: Version = DEFAULT_VERSION,
+    encoding: Encoding = DEFAULT_ENCODING,
+) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
+
+    `encoding`: timed polylines, or maneuver events that people edit by hand.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
     for the validators to say.
@@ -21,8 +29,9 @@ def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork, version: Vers
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
     planned = plan(behavior, parse_net(network.net_xml))
     actors = actor_infos(behavior)
+    handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior, version=version),
+        xosc=write_xosc(actors, planned.trajectories, behavior, version=version, handover=handover),
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
