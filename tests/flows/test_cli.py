@@ -72,19 +72,6 @@ def test_a_judge_whose_program_is_missing_starts_nothing(reports, config_file, t
     assert not out.exists()
 
 
-@pytest.mark.parametrize(
-    ("command", "told"), [("run", "evnts"), ("evaluate", "evnts"), ("run", "timed"), ("evaluate", "events")]
-)
-def test_an_encoding_reaches_the_writer_or_is_refused(reports, tmp_path, command, told):
-    words = [command, reports(a="") if command == "evaluate" else reports(a="") / "a", "--config", "template.yaml"]
-    known = told in ("timed", "events")
-    words += ["--set", "seed=no"] if known else []  # so that nothing starts
-    ended = sgcad(*words, "--encoding", told, "--out", tmp_path / "out")
-    assert ended.returncode == 2
-    assert ("scenario_writer.encoding" in ended.stderr) is not known
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
     (tmp_path / "bad.yaml").write_text("a: [1, 2")
     ended = sgcad("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")
