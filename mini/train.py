@@ -227,8 +227,8 @@ class Trainer:
         """Answer tokens and a tenth of the others, which keeps those down at a tenth of the price."""
         seeded = torch.Generator().manual_seed(self.steps)
         others = torch.randint(len(self.tokenizer), (len(self.tokenizer) // 10,), generator=seeded)
-        found = torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted))
-        return torch.unique(found)
+        found: torch.Tensor = torch.cat([p.to(wanted.device) for p in (self.answer_tokens, others, wanted)]).unique()
+        return found
 
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""

@@ -7,7 +7,6 @@ holds further answers to what meets in ordinary driving.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -18,16 +17,13 @@ from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
+from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 
-_LOST = re.compile(
-    r"\b(?:los[et]|losing|loss of|regain\w*) (?:\w+ ){0,3}(?:control|traction)|(?<!no )\bskid(?! mark)|"
-    r"\bslid(?:e|ing)?\b(?! door)|\bfishtail|\byaw|\bhydroplan|\bout of control|\bovercorrect|\bjackknif|"
-    r"\bspun out", re.I)  # fmt: skip
 """Somebody did not drive in the ordinary way."""
 
 
@@ -48,14 +44,16 @@ class Meeting(Validator):
             return []
         if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
             return []
-        network, text = evidence.network, evidence.report.narrative
-        if artifact.oddity < self.odd_from or _LOST.search(text) or network is None or network.net_xml is None:
+        network, reading = evidence.network, evidence.report.reading
+        if network is None or network.net_xml is None:
+            return []
+        if artifact.oddity < self.odd_from or tells_lost_control(reading.narrative):
             return []
         holds: tuple[Hold, ...] = ()
         if self.try_others and network.spec is not None:
             graph = parse_net(network.net_xml)
             trials = _Trials(artifact.behavior, artifact.declared, network.spec, graph, self.odd_from)
-            holds = trials.holds(crash_facts(text))
+            holds = trials.holds(reading.crash)
         what = "the declared contact comes about only by what the report does not tell"
         remedy = "choose roads, exit roads, maneuvers and sides that meet in ordinary driving"
         seen = "; ".join(artifact.notes) or f"oddity {artifact.oddity:g}"

@@ -1,4 +1,4 @@
-"""Every threshold and weight of the criticality metrics in one frozen record, printed with each result.
+"""Every threshold and weight of the criticality metrics in one frozen record, printed with results; limits of driving.
 
 Values are the paper's where it gives one; where it names a constant without a value, ours stands with
 its reason. Knows no metric.
@@ -6,7 +6,10 @@ its reason. Knows no metric.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sgcad_core.records import Record
+from sgcad_core.specs import Surface
 
 
 class Thresholds(Record):
@@ -35,3 +38,29 @@ class Thresholds(Record):
     level_critical: float = 10.0
     level_high: float = 6.0
     level_moderate: float = 3.0
+
+
+class DrivingLimits(Record):
+    """What a vehicle can do before a contact without losing control; SI units.
+
+    Friction is the peak coefficient of road adhesion of J. Y. Wong, Theory of Ground Vehicles, table 1.3 (asphalt dry
+    0.8 to 0.9, wet 0.5 to 0.7, snow packed 0.2, ice 0.1), sliding the coefficient of locked wheels there.
+    """
+
+    gravity_mps2: float = 9.81
+    peak: Mapping[str, float] = {"dry": 0.85, "wet": 0.6, "snow": 0.2, "ice": 0.1}
+    sliding: Mapping[str, float] = {"dry": 0.75, "wet": 0.5, "snow": 0.15, "ice": 0.07}
+    yaw_radps: float = 1.5
+    slip_deg: float = 10.0
+    """Between a vehicle's heading and the way of its rear axle; beyond it tires are saturated."""
+
+    def friction_mps2(self, surface: Surface | None) -> float:
+        """Highest acceleration that tires transmit on a surface (dry where it is not told)."""
+        return self.gravity_mps2 * self.peak[surface or "dry"]
+
+    def sliding_mps2(self, surface: Surface | None) -> float:
+        """Deceleration of what slides over a surface."""
+        return self.gravity_mps2 * self.sliding[surface or "dry"]
+
+
+DRIVING = DrivingLimits()

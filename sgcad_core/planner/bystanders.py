@@ -94,5 +94,5 @@ def _placed(scene: Scene, role: Role, motion: Motion, partner_s: float, own_s: f
     if not scene.contact < k < scene.count or scene.clear_until(poses, motion.size, 0.0) < k:
         return False
     scene.add(role.actor.id, role.actor.kind, motion, at_contact, brakes=False)
-    scene.impact(partner, role.actor.id, k)
+    scene.settle()
     return True

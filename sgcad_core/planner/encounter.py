@@ -19,16 +19,14 @@ from sgcad_core.specs import Area
 
 Ints = NDArray[np.int_]
 
-_BACK = np.array([0.85, 0.7, 0.55, 0.4, 0.25, 0.12])
-"""Fractions of a step before the first overlap on the grid at which the touch is looked for."""
-_AFTER = np.array([0.12, 0.45, 0.8])
-"""Fractions of a step behind the touch at which the next sample of the common clock may fall.
-
-The touch is told up to 0.15 too late: a larger fraction might let the sample before overlap as well.
-"""
+DEPTH_M = 0.011
+"""How deep the boxes overlap at the first common sample: enough to be seen, less than `wreck.SEEN_M`, so that what
+follows from the touch begins behind that sample."""
+_HALVINGS = 10
+"""Of a step of the grid, until the time of that overlap is told: 50 microseconds."""
 _MOST_SHIFTS = 64
-_LEAST_MARGIN = 0.02
-"""Nearer to a diagonal of the box a side is a matter of millimetres."""
+_LEAST_MARGIN = 0.003
+"""Nearer to a diagonal of the box a side is a matter of tenths of a millimetre."""
 
 
 class Meeting(NamedTuple):
@@ -42,11 +40,10 @@ class Meeting(NamedTuple):
     sides: tuple[Area, Area]
     margin: float
     """How clearly both sides are told, 0 to 1."""
-    since_touch_s: float
 
 
 class _Touches(NamedTuple):
-    """First overlaps, one a shift: grid indices (fractional) of both motions at the touch."""
+    """First overlaps, one a shift: grid indices (fractional) of both motions where they are DEPTH_M deep."""
 
     key: Ints
     first: Floats
@@ -58,23 +55,17 @@ def meet(first: Motion, second: Motion, wanted: tuple[Area, Area] | None) -> Mee
     touches = _touches(first, second)
     if touches is None:
         return None
-    moving = (float(not first.standing), float(not second.standing))
-    i = touches.first[:, None] + moving[0] * _AFTER
-    j = touches.second[:, None] + moving[1] * _AFTER
-    sides, margins, depth = _judge(first, second, i.ravel(), j.ravel())
-    good = np.ones(i.size, dtype=bool)
+    sides, margins, depth = _judge(first, second, touches.first, touches.second)
+    good = (depth > 0.2 * DEPTH_M) & (depth < 1.2 * DEPTH_M) & (margins > _LEAST_MARGIN)
     if wanted is not None:
-        good = (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
-    good &= depth > 0.004
-    good &= margins > _LEAST_MARGIN
+        good &= (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
     if not good.any():
         return None
-    cost = _cost(first, second, i.ravel(), j.ravel(), margins) + _edge_cost(touches.key, good.reshape(i.shape)).ravel()
+    cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
     best = int(np.argmin(np.where(good, cost, np.inf)))
     named = (_side(sides[0][best]), _side(sides[1][best]))
-    after = float(_AFTER[best % len(_AFTER)] * STEP_S)
-    first_s, second_s = (float(_own_s(k.ravel()[best])) for k in (i, j))
-    return Meeting(float(cost[best]), first, second, first_s, second_s, named, float(margins[best]), after)
+    first_s, second_s = (float(_own_s(k[best])) for k in (touches.first, touches.second))
+    return Meeting(float(cost[best]), first, second, first_s, second_s, named, float(margins[best]))
 
 
 def _side(code: int) -> Area:
@@ -125,22 +116,20 @@ def _about(points: Floats, others: Floats, reach_m: float) -> NDArray[np.bool_]:
 
 
 def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> _Touches:
-    """Touches told to about 6 ms, from overlaps told to a grid step."""
-    back_i = i[:, None] - _BACK * (not first.standing)
-    back_j = j[:, None] - _BACK * (not second.standing)
-    gap = box_gaps(_between(first, back_i.ravel()), first.size, _between(second, back_j.ravel()), second.size)
-    apart = gap.reshape(back_i.shape) > 0
-    earliest = np.where(apart.all(axis=1), len(_BACK) - 1, np.argmin(apart, axis=1) - 1)
-    back = np.where(earliest >= 0, _BACK[np.maximum(earliest, 0)], 0.97)
-    return _Touches(key, i - back * (not first.standing), j - back * (not second.standing))
+    """Where the overlap is DEPTH_M deep, from overlaps told to a grid step: by halving."""
+    move_i, move_j = float(not first.standing), float(not second.standing)
 
+    def deep(at: Floats) -> NDArray[np.bool_]:
+        p, q = first.poses(_own_s(i + move_i * at)), second.poses(_own_s(j + move_j * at))
+        return box_gaps(p, first.size, q, second.size) <= -DEPTH_M
 
-def _between(motion: Motion, index: Floats) -> Floats:
-    """Poses at fractional indices of the window's grid."""
-    low = np.clip(index.astype(int), 0, len(motion.window_poses) - 2)
-    part = (index - low)[:, None]
-    poses: Floats = motion.window_poses[low] * (1 - part) + motion.window_poses[low + 1] * part
-    return poses
+    late = np.where(deep(np.zeros(len(i))), 0.0, 1.0)
+    early = late - 1.0
+    for _ in range(_HALVINGS):
+        middle = (early + late) / 2
+        inside = deep(middle)
+        early, late = np.where(inside, early, middle), np.where(inside, middle, late)
+    return _Touches(key, i + move_i * late, j + move_j * late)
 
 
 def _own_s(index: Floats) -> Floats:
@@ -159,16 +148,15 @@ def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[I
 def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
     """Unclear sides and places that fit ill; small ones decide between shifts only."""
     ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
-    unclear: Floats = 3.0 * np.maximum(0.08 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
+    unclear: Floats = 10.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
     return ill + unclear
 
 
 def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:
     """Contacts near the end of their good interval: a little change of timing would spoil them."""
-    rank = np.arange(len(key))[:, None]
-    bad = ~good
-    before = np.maximum.accumulate(np.where(bad, rank, -1), axis=0)
-    after = np.minimum.accumulate(np.where(bad, rank, len(key))[::-1], axis=0)[::-1]
+    rank, bad = np.arange(len(key)), ~good
+    before = np.maximum.accumulate(np.where(bad, rank, -1))
+    after = np.minimum.accumulate(np.where(bad, rank, len(key))[::-1])[::-1]
     room = np.minimum(rank - before, after - rank)
     run = np.maximum(after - before, 1)
     off_middle: Floats = 0.15 * (1 - 2 * room / run) + 0.15 * (room < 2)

@@ -19,7 +19,7 @@ from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there
 from sgcad_core.planner.scene import AFTER_S, Scene
-from sgcad_core.planner.towing import ahead_of, drag, spacing_m, tractors
+from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -64,6 +64,7 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
     for contact in contacts[1:]:
         cast.later(scene, contact)
     cast.rest(scene)
+    scene.settle()
     observed = scene.first_contact()
     realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     order = tuple(a.id for a in behavior.actors)
@@ -185,15 +186,14 @@ class _Cast:
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
         contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
-        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again())
+        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
             scene.add(option.role.actor.id, option.role.actor.kind, motion, own, brakes=False)
         for option, _, own in pair:
             self._couple(scene, option.role.actor.id, own)
-        scene.impact(found.first.role.actor.id, found.second.role.actor.id, contact)
-        self._drag(scene)
+        scene.settle()
         return scene
 
     def _struck_again(self) -> frozenset[str]:
@@ -215,15 +215,11 @@ class _Cast:
                 del self.tractors[trailer]
                 continue
             scene.add(other.id, other.kind, coupled, own_s, brakes=brakes)
+            scene.hitches.append((tractor, trailer, coupling_m(scene.tracks[tractor].size)))
 
     def _in_contact(self, actor: str) -> bool:
         """Whether an actor has part in the first declared contact."""
         return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
-
-    def _drag(self, scene: Scene) -> None:
-        for trailer, tractor in self.tractors.items():
-            if trailer in scene.tracks and tractor in scene.tracks:
-                drag(scene, scene.tracks[trailer], scene.tracks[tractor])
 
     def later(self, scene: Scene, contact: Contact) -> None:
         """A further declared contact, where one of the two is not placed yet; best effort."""

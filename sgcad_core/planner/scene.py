@@ -1,6 +1,6 @@
 """All actors on one world clock: tracks, their contacts, and what happens to them afterwards.
 
-A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and impacts, no maneuvers.
+A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and the wreck, no maneuvers.
 """
 
 from __future__ import annotations
@@ -9,14 +9,24 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area, overlap_centers, sides_at
-from sgcad_core.planner.impact import ROLLING_MPS2, SLIDING_MPS2, Body, collide, contact_normal, mass_kg, slide
+from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area
+from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.impact import body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.path import Path
+from sgcad_core.planner.wreck import Drag, Mover, Touch, Wreck, hitch_of
 from sgcad_core.records import ObservedContact, Trajectory
-from sgcad_core.specs import ActorKind, Area
+from sgcad_core.specs import ActorKind, Area, Surface
 
-AFTER_S = 4.0
+AFTER_S = 5.0
+"""From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
+BRAKED_MPS2 = 4.5
+"""Of a struck vehicle along its wheels: some of them locked or bent, its driver on the brake."""
+ROLLING_MPS2 = 2.2
+"""Of a vehicle that is to reach something else."""
+THROWN_MPS2 = 5.5
+"""Of people, and of two-wheelers on their side, over the ground."""
+_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 _REACTION_S = 0.5
 _BRAKING_MPS2 = 5.0
 CLEAR_M = 0.25
@@ -35,7 +45,12 @@ class Track:
     own_s: float
     """The motion's own time at world time 0 (its place where it is standing)."""
     hit: int | None = None
-    """Index of its last impact."""
+    """Index of its first impact."""
+    driven: Floats = field(init=False)
+    """Its poses where nobody touches it."""
+
+    def __post_init__(self) -> None:
+        self.driven = self.poses
 
 
 @dataclass
@@ -46,7 +61,12 @@ class Scene:
     contact: int
     rolling: frozenset[str] = frozenset()
     """Actors that have a further contact before them."""
+    surface: Surface | None = None
     tracks: dict[str, Track] = field(default_factory=dict)
+    hitches: list[tuple[str, str, float]] = field(default_factory=list)
+    """Tractor, trailer, and how far behind the tractor's center they are coupled."""
+    touches: list[Touch] = field(default_factory=list)
+    """What touched, in order, when the scene was last settled."""
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
         """Place an actor so that its own clock shows the given time at the first contact."""
@@ -73,21 +93,23 @@ class Scene:
                 first = min(first, int(near[0]) if len(near) else self.count)
         return first
 
-    def impact(self, first: str, second: str, k: int) -> None:
-        """Let two tracks collide at sample k; both slide to rest behind it."""
-        a, b = self.tracks[first], self.tracks[second]
-        p, q = a.poses[k : k + 1], b.poses[k : k + 1]
-        point = overlap_centers(p, a.size, q, b.size)[0]
-        if np.isnan(point).any():
-            return
-        sides = [SIDES[int(sides_at(x, t.size, point[None])[0][0])] for x, t in ((p, a), (q, b))]
-        normal = contact_normal(p[0], _area(sides[0]), q[0], _area(sides[1]))
-        after = collide(_body(a, k), _body(b, k), point, normal)
-        for track, body in zip((a, b), after, strict=True):
-            braking = ROLLING_MPS2 if track.actor in self.rolling else SLIDING_MPS2
-            after_it = slide(body, clock(1, self.count - k), braking)
-            track.poses = np.vstack((track.poses[: k + 1], after_it))
-            track.hit = k
+    def settle(self) -> None:
+        """Let everybody drive, and whatever touches push, until all stand."""
+        movers = {name: self._mover(track) for name, track in self.tracks.items()}
+        hitches = [hitch_of(movers[a], movers[b], self.contact, behind) for a, b, behind in self.hitches]
+        poses, self.touches = Wreck(tuple(movers.values()), self.count, hitches).settle()
+        for name, track in self.tracks.items():
+            track.poses, track.hit = poses[name], movers[name].hit
+
+    def _mover(self, track: Track) -> Mover:
+        mass = None if track.motion.fixed else mass_kg(track.kind, track.size)
+        return Mover(track.actor, body((0.0, 0.0, 0.0), track.size, mass), track.driven, self._drag(track))
+
+    def _drag(self, track: Track) -> Drag:
+        grip = DRIVING.sliding_mps2(self.surface)
+        if track.kind in _TUMBLE:
+            return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
+        return Drag(min(ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2, grip), grip)
 
     def first_contact(self) -> ObservedContact | None:
         """The first overlap of any two actors, as any observer of the trajectories sees it."""
@@ -136,13 +158,6 @@ def _trajectory(track: Track) -> Trajectory:
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
     )  # fmt: skip
-
-
-def _body(track: Track, k: int) -> Body:
-    before = track.poses[max(k - 1, 0)]
-    velocity = (track.poses[k, :2] - before[:2]) / STEP_S
-    mass = 1e9 if track.motion.fixed else mass_kg(track.kind, track.size)
-    return Body(track.poses[k], velocity, float(track.poses[k, 2] - before[2]) / STEP_S, track.size, mass)
 
 
 def _area(name: str) -> Area:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats, Size
+from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.motion import Motion
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.specs import Actor, BehaviorSpec
 
 HITCH_M = 1.3
@@ -53,25 +51,6 @@ def _slid(motion: Motion, by_m: float) -> Path:
     return replace(motion.path, points=poses[:, :2], heading_rad=poses[:, 2])
 
 
-def drag(scene: Scene, trailer: Track, tractor: Track) -> None:
-    """Let a trailer follow its tractor's hitch from the tractor's impact on, unless it was hit itself."""
-    start = tractor.hit
-    if start is None or trailer.hit is not None:
-        return
-    hitch = _hitches(tractor)
-    poses = trailer.poses.copy()
-    bar = hitch[start] - poses[start, :2]
-    length, angle = float(np.hypot(*bar)), math.atan2(bar[1], bar[0])
-    askew = poses[start, 2] - angle
-    for k in range(start + 1, scene.count):
-        pull = hitch[k] - poses[k - 1, :2]
-        angle += math.remainder(math.atan2(pull[1], pull[0]) - angle, math.tau)
-        poses[k] = (*(hitch[k] - length * np.array([math.cos(angle), math.sin(angle)])), angle + askew)
-    trailer.poses, trailer.hit = poses, start
-
-
-def _hitches(tractor: Track) -> Floats:
-    back = tractor.size[0] / 2 + HITCH_M / 2
-    heading = tractor.poses[:, 2]
-    points: Floats = tractor.poses[:, :2] - back * np.column_stack((np.cos(heading), np.sin(heading)))
-    return points
+def coupling_m(size: Size) -> float:
+    """How far behind a tractor's center its trailer hangs."""
+    return size[0] / 2 + HITCH_M / 2

@@ -1,0 +1,305 @@
+"""What follows a first touch: bodies that push, turn, drag and stop each other until all stand.
+
+Time-stepped rigid bodies in the plane: impulses at every touch, over all pairs again and again until nobody approaches
+anybody (sequential impulses; E. Catto, Iterative Dynamics with Temporal Coherence, 2005), friction on the ground in
+between, steps short enough that boxes never sink into each other by more than centimetres (conservative advancement;
+B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes on as its script says. SI units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, box_gaps
+from sgcad_core.planner.boxes import Apart, apart, radius, touch_point
+from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, solve
+from sgcad_core.planner.motion import STEP_S
+
+SEEN_M = 0.015
+"""Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
+APART_M = 0.008
+"""Gap that is left between bodies that touched."""
+_SHORTEST_S, _LONGEST_S = 0.0005, 0.01
+_PARTING_MPS = 0.3
+"""How fast bodies that sank into each other are moved apart."""
+_HELD_S = 0.06
+"""A touch stays as it is for more than one sample: who reads samples must see it."""
+_ROUNDS = 6
+"""Of impulses over all touching pairs in one step."""
+_SLIP_LEVER = 0.25
+"""Mean lever of ground friction against turning, as a share of the box's diagonal."""
+_LEAST_LEFT_S = 0.1
+
+
+class Drag(NamedTuple):
+    """Deceleration along and across the box by tires, brakes and ground, m/s2."""
+
+    along: float
+    across: float
+
+
+@dataclass
+class Mover:
+    """One body with the (n, 3) poses that it would follow undisturbed; `free` once it was touched."""
+
+    name: str
+    body: Body
+    script: Floats
+    drag: Drag
+    free: bool = False
+    hit: int | None = None
+    """The last sample before its first touch takes effect."""
+
+    @property
+    def fixed(self) -> bool:
+        """Whether nothing moves it."""
+        return self.body.inverse_mass == 0.0
+
+
+class Hitch(NamedTuple):
+    """A joint of two movers: the same place in the frame of either box."""
+
+    first: str
+    second: str
+    on_first: Point
+    on_second: Point
+
+
+class Touch(NamedTuple):
+    """Two movers touch."""
+
+    t_s: float
+    first: str
+    second: str
+
+
+@dataclass
+class Wreck:
+    """Movers on one clock of `count` samples; all stand `ends` samples after the start of it."""
+
+    movers: Sequence[Mover]
+    count: int
+    hitches: Sequence[Hitch] = ()
+    touches: dict[tuple[str, str], float] = field(default_factory=dict)
+    """Pairs that touched, with the time of it."""
+    now: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.named: Mapping[str, Mover] = {m.name: m for m in self.movers}
+
+    def settle(self) -> tuple[dict[str, Floats], list[Touch]]:
+        """(count, 3) poses by name, and the touches in the order in which they happen."""
+        pairs = self._pairs()
+        start = self._start(pairs)
+        poses = {m.name: m.script.copy() for m in self.movers}
+        for k in range(start, self.count - 1):
+            self._sample(k, pairs)
+            for m in self.movers:
+                if m.free:
+                    poses[m.name][k + 1] = (m.body.x, m.body.y, m.body.heading)
+        seen = sorted((t, pair) for pair, t in self.touches.items())
+        return poses, [Touch(t, *pair) for t, pair in seen]
+
+    def _pairs(self) -> list[tuple[Mover, Mover]]:
+        """All pairs but those that overlap from the start: parts of one thing, or scenery."""
+        found = []
+        for a, b in combinations(self.movers, 2):
+            first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
+            if first > 0 and not (a.fixed and b.fixed):
+                found.append((a, b))
+        return found
+
+    def _start(self, pairs: Sequence[tuple[Mover, Mover]]) -> int:
+        """The sample before the first overlap of any two scripts; the last one where there is none."""
+        first = self.count
+        for a, b in pairs:
+            hits = np.flatnonzero(box_gaps(a.script, a.body.size, b.script, b.body.size) <= 0)
+            first = min(first, int(hits[0])) if len(hits) else first
+        return max(first - 1, 0)
+
+    # -------------------------------------------------------------- one sample of the clock
+    def _sample(self, k: int, pairs: Sequence[tuple[Mover, Mover]]) -> None:
+        for m in self.movers:
+            if not m.free:
+                _follow(m, k)
+        near = [pair for pair in pairs if _may_meet(*pair)]
+        self.now, end = k * STEP_S, (k + 1) * STEP_S
+        while self.now < end - 1e-9:
+            step = min(self._step(near), end - self.now)
+            for m in self.movers:
+                if not m.fixed:
+                    self._advance(m, step)
+            self.now += step
+            self._resolve(near, k)
+
+    def _step(self, near: Sequence[tuple[Mover, Mover]]) -> float:
+        """The longest step after which no pair has sunk deeper than it may."""
+        longest = _LONGEST_S if near or self.hitches else STEP_S
+        for a, b in near:
+            gap, normal = apart(a.body, b.body)
+            closing = (a.body.vx - b.body.vx) * normal[0] + (a.body.vy - b.body.vy) * normal[1]
+            closing += abs(a.body.spin) * radius(a.body) + abs(b.body.spin) * radius(b.body)
+            room = gap + 1.2 * SEEN_M if _key(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
+            if closing > 0:
+                longest = min(longest, max(room / closing, _SHORTEST_S))
+        return longest
+
+    def _advance(self, m: Mover, step: float) -> None:
+        one = m.body
+        one.x += one.vx * step
+        one.y += one.vy * step
+        one.heading += one.spin * step
+        if m.free:
+            left = max((self.count - 4) * STEP_S - self.now, _LEAST_LEFT_S)
+            _slow(one, m.drag, step, left)
+
+    # -------------------------------------------------------------- touches
+    def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
+        touching = [(a, b, seen) for a, b in near if self._touches(a, b, seen := apart(a.body, b.body), sample)]
+        points = [touch_point(a.body, b.body) for a, b, _ in touching]
+        for turn in range(_ROUNDS if touching or self.hitches else 0):
+            moved = False
+            for (a, b, seen), at in zip(touching, points, strict=True):
+                bounce = self._bounce(a, b, seen, at, sample) if turn == 0 else 0.0
+                moved |= collide(a.body, b.body, at, seen.normal, bounce)
+            for hitch in self.hitches:
+                moved |= self._pull(hitch)
+            if not moved:
+                break
+        for a, b, seen in touching:
+            self._part(a, b, seen)
+        for hitch in self.hitches:
+            self._draw_together(hitch)
+
+    def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
+        """Whether a pair is in touch; both are free from the first time on."""
+        key = _key(a, b)
+        if key in self.touches:
+            return seen.gap_m < APART_M
+        if seen.gap_m > 0:
+            return False
+        coming = approach(a.body, b.body, touch_point(a.body, b.body), seen.normal) > 0
+        if coming and seen.gap_m > -SEEN_M:
+            return False
+        self.touches[key] = self.now
+        for m in (a, b):
+            self._release(m, sample)
+        return True
+
+    def _release(self, m: Mover, sample: int) -> None:
+        """Free a mover and what hangs on it."""
+        if m.fixed or m.free:
+            return
+        m.free, m.hit = True, sample
+        for hitch in self.hitches:
+            for one, other in ((hitch.first, hitch.second), (hitch.second, hitch.first)):
+                if one == m.name:
+                    self._release(self.named[other], sample)
+
+    def _bounce(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> float:
+        """Restitution of a new touch: no more than leaves the overlap to be seen at the next sample."""
+        if self.now - self.touches[_key(a, b)] > 1e-9:
+            return 0.0
+        closing = approach(a.body, b.body, at, seen.normal)
+        left = max((sample + 1) * STEP_S - self.now, 1e-3)
+        return min(RESTITUTION, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
+
+    def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
+        """Move two apart that sank into each other: places only, no motion comes of it."""
+        if seen.gap_m >= APART_M or self.now - self.touches[_key(a, b)] < _HELD_S:
+            return
+        by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
+        total = a.body.inverse_mass + b.body.inverse_mass
+        for one, sign in ((a.body, -1), (b.body, 1)):
+            share = sign * by * one.inverse_mass / total
+            one.x += share * seen.normal[0]
+            one.y += share * seen.normal[1]
+
+    # -------------------------------------------------------------- hitches
+    def _pull(self, hitch: Hitch) -> bool:
+        """An impulse after which both ends of a hitch move alike."""
+        a, b = self.named[hitch.first], self.named[hitch.second]
+        if not a.free or not b.free:
+            return False
+        at = _place(a.body, hitch.on_first)
+        (ax, ay), (bx, by) = a.body.velocity_at(*at), b.body.velocity_at(*at)
+        if math.hypot(ax - bx, ay - by) < 1e-4:
+            return False
+        jx, jy = solve(compliance(a.body, b.body, at), (ax - bx, ay - by))
+        a.body.push(-jx, -jy, *at)
+        b.body.push(jx, jy, *at)
+        return True
+
+    def _draw_together(self, hitch: Hitch) -> None:
+        """Take out what a hitch has come apart by, from its trailer's place."""
+        a, b = self.named[hitch.first], self.named[hitch.second]
+        if not a.free or not b.free:
+            return
+        (ax, ay), (bx, by) = _place(a.body, hitch.on_first), _place(b.body, hitch.on_second)
+        b.body.x += 0.2 * (ax - bx)
+        b.body.y += 0.2 * (ay - by)
+
+
+def hitch_of(first: Mover, second: Mover, k: int, behind_m: float) -> Hitch:
+    """The joint `behind_m` behind the first mover's center, as both stand at sample k."""
+    x, y, heading = first.script[k]
+    at = (float(x) - behind_m * math.cos(heading), float(y) - behind_m * math.sin(heading))
+    return Hitch(first.name, second.name, (-behind_m, 0.0), _local(second.script[k], at))
+
+
+def _local(pose: Floats, at: Point) -> Point:
+    c, s, dx, dy = math.cos(pose[2]), math.sin(pose[2]), at[0] - float(pose[0]), at[1] - float(pose[1])
+    return dx * c + dy * s, dy * c - dx * s
+
+
+def _place(one: Body, local: Point) -> Point:
+    c, s = math.cos(one.heading), math.sin(one.heading)
+    return one.x + local[0] * c - local[1] * s, one.y + local[0] * s + local[1] * c
+
+
+def _key(a: Mover, b: Mover) -> tuple[str, str]:
+    return a.name, b.name
+
+
+def _follow(m: Mover, k: int) -> None:
+    """Put a mover where its script has it at sample k, on the way to the next."""
+    here, there = m.script[k], m.script[k + 1]
+    m.body.x, m.body.y, m.body.heading = (float(v) for v in here)
+    m.body.vx, m.body.vy, m.body.spin = (float(v) for v in (there - here) / STEP_S)
+
+
+def _may_meet(a: Mover, b: Mover) -> bool:
+    """Whether two can come into touch within a sample."""
+    if not (a.free or b.free or _moves(a) or _moves(b)):
+        return False
+    reach = radius(a.body) + radius(b.body) + (a.body.speed + b.body.speed) * STEP_S + 0.5
+    return math.hypot(a.body.x - b.body.x, a.body.y - b.body.y) < reach
+
+
+def _moves(m: Mover) -> bool:
+    return bool(m.body.vx or m.body.vy or m.body.spin)
+
+
+def _slow(one: Body, drag: Drag, step: float, left_s: float) -> None:
+    """Ground friction over a step; more of it where the body would not stand in the time that is left."""
+    speed = one.speed
+    if speed > 0.0:
+        c, s = math.cos(one.heading), math.sin(one.heading)
+        along, across = (one.vx * c + one.vy * s) / speed, (one.vy * c - one.vx * s) / speed
+        brake = math.hypot(drag.along * along, drag.across * across)
+        more = max(1.0, speed / (left_s * max(brake, 1e-6)))
+        if brake * more * step >= speed:
+            one.vx = one.vy = 0.0
+        else:
+            ahead, left = drag.along * along * more * step, drag.across * across * more * step
+            one.vx -= ahead * c - left * s
+            one.vy -= ahead * s + left * c
+    turning = one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * radius(one) * drag.across
+    turning = max(turning, abs(one.spin) / left_s) * step
+    one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)
