@@ -33,10 +33,10 @@ from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
-from mini.precision import native_dtype
 from mini.ranks import Ranks
 from mini.rows import Row, collate
 from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
+from plugins.precision import native_dtype
 
 TOKENIZER_BASE = 40_000_000
 HEADS = "tags.safetensors"

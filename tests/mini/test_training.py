@@ -17,10 +17,10 @@ from mini.grow import deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
 from mini.options import CHOICES, parse
-from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
 from mini.train import EYES, HEADS, Trainer, schedule
+from plugins.precision import native_dtype
 from sgcad_core import settings
 from tests.mini.reports import text_report
 
