@@ -53,9 +53,12 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
-    """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have."""
-    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior))
+def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) -> Plan:
+    """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
+
+    `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
+    """
+    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior), may_skid)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -100,6 +103,7 @@ class _Cast:
     behavior: BehaviorSpec
     courses: dict[str, Course]
     tractors: dict[str, str]
+    may_skid: bool = False
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -140,7 +144,10 @@ class _Cast:
             a = self._set_rolling(a, b)
         places = self._places(a, b)
         pair = [
-            Role(actor, self.courses[actor.id], size_m(actor), place, side)
+            Role(
+                actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                may_skid=self.may_skid,
+            )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]
         first, second = pair
@@ -250,4 +257,4 @@ class _Cast:
     def _own_role(self, name: str) -> Role:
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
-        return Role(actor, course, size_m(actor), place)
+        return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
-from sgcad_core.planner.boxes import Apart, apart, radius, touch_point
+from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
 from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, solve
 from sgcad_core.planner.motion import STEP_S
 
@@ -162,15 +162,17 @@ class Wreck:
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
         touching = [(a, b, seen) for a, b in near if self._touches(a, b, seen := apart(a.body, b.body), sample)]
-        points = [touch_point(a.body, b.body) for a, b, _ in touching]
-        for turn in range(_ROUNDS if touching or self.hitches else 0):
-            moved = False
-            for (a, b, seen), at in zip(touching, points, strict=True):
-                bounce = self._bounce(a, b, seen, at, sample) if turn == 0 else 0.0
-                moved |= collide(a.body, b.body, at, seen.normal, bounce)
-            for hitch in self.hitches:
-                moved |= self._pull(hitch)
-            if not moved:
+        corners = [touch_points(a.body, b.body) for a, b, _ in touching]
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            at = mean(points)
+            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample))
+        for _ in range(_ROUNDS if touching or self.hitches else 0):
+            moved = [
+                collide(a.body, b.body, at, seen.normal)
+                for (a, b, seen), points in zip(touching, corners, strict=True)
+                for at in points
+            ]
+            if not any([*moved, *(self._pull(hitch) for hitch in self.hitches)]):
                 break
         for a, b, seen in touching:
             self._part(a, b, seen)
@@ -184,7 +186,7 @@ class Wreck:
             return seen.gap_m < APART_M
         if seen.gap_m > 0:
             return False
-        coming = approach(a.body, b.body, touch_point(a.body, b.body), seen.normal) > 0
+        coming = approach(a.body, b.body, mean(touch_points(a.body, b.body)), seen.normal) > 0
         if coming and seen.gap_m > -SEEN_M:
             return False
         self.touches[key] = self.now
