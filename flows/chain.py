@@ -20,7 +20,7 @@ from flows.sharing import Sharing
 from flows.view import View
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
-from sgcad_core.errors import BadInput, ConfigError, MissingTool, SgcadError
+from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
 from sgcad_core.records import (
@@ -254,12 +254,8 @@ def run_case(
 
 
 def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
-    """The folder of a case whose process died: report.txt as far as it can be read, and the reason."""
+    """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
     run = _Run(config, case, run_at_once, failure=reason)
-    try:
-        run.report = config.report_reader.read(case.source)
-    except BadInput:
-        run.report = None
     return Ending(_leave(run, store.CaseFolder(out, config.name, case.id), digest))
 
 

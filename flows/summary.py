@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from flows.batch import Batch, Job
 from flows.chain import Ending
 from flows.store import CaseFolder
+from flows.terminal import escape
 from flows.tracking import OnEnding
 from sgcad_core.result import STATUSES
 

@@ -77,10 +77,13 @@ def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
 
 
 def name_of(file: Path) -> str:
-    """The config's name in runs/: its path under configs/ without suffix, "/" as "-"."""
+    """The config's name in runs/: its path under configs/ without suffix, "/" as "-"; else ConfigError."""
     file = file.resolve()
     inner = file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
-    return "-".join(inner.with_suffix("").parts)
+    name = "-".join(inner.with_suffix("").parts)
+    if name.startswith(".") or not name.isprintable():
+        raise ConfigError(f"{file}: its name would name the folder of its results: begin it with a letter, as my.yaml")
+    return name
 
 
 def build(raw: dict[str, Any], name: str, where: str) -> Config:

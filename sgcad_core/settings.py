@@ -22,6 +22,8 @@ _QUIET = {
     "PREFECT_SERVER_ANALYTICS_ENABLED": "false",
     "DO_NOT_TRACK": "1",
     "MLFLOW_DISABLE_TELEMETRY": "true",
+    "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",  # its own 7 tell after four minutes that nobody answers
+    "MLFLOW_HTTP_REQUEST_TIMEOUT": "30",
     "TOKENIZERS_PARALLELISM": "false",
 }
 

@@ -6,8 +6,8 @@ A part of the writer.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_motion as motion
 from mini.generator.grammar import Told
@@ -38,11 +38,11 @@ class ApproachMixin:
     who: tuple[int, int]
     waited: bool
 
-    say: Any
-    fitting: Any
-    spoken: Any
-    reason: Any
-    scene_junction: Any
+    say: Callable[..., str]
+    fitting: Callable[..., str]
+    spoken: Callable[..., str]
+    reason: Callable[..., str]
+    scene_junction: Callable[..., str]
     junction_named: bool
 
     def _approaches(self) -> list[str]:

@@ -7,9 +7,9 @@ often told there, or by a driver, more plainly than among the events.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import cache
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_codes as said
 from mini.generator import words
@@ -101,10 +101,10 @@ class BlocksMixin:
     people: dict[int, dict[str, str]]
     lately: set[int]
 
-    say: Any
-    id_of: Any
-    _slot: Any
-    impact: Any
+    say: Callable[..., str]
+    id_of: Callable[..., str]
+    _slot: Callable[..., str]
+    impact: Callable[..., str]
 
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
@@ -167,7 +167,7 @@ class BlocksMixin:
             actor = self.crash.actors[v]
             waited = self.waited and v == self.who[0]  # and drove as fast as its road allows only before that
             if not actor.speed or f"speed.{actor.id}" in self.told or waited:
-                slowly = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
+                slowly: tuple[str, ...] = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
                 return rng.choice((*slowly, "at an unknown speed", "at normal speed"))
             text, actor.speed = words.driver_speed(rng, actor.speed)
             self.told.add(f"speed.{actor.id}")
@@ -185,7 +185,8 @@ class BlocksMixin:
 
     def _coded(self, index: int) -> list[str]:
         """Critical event, movement before it, crash type: as often as reports have them, of vehicles."""
-        rng, out = self.rng, []
+        rng = self.rng
+        out: list[str] = []
         if not self.crash.actors[index].vehicle:
             return out
         share = min(1.0, self.length)

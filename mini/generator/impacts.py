@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import cache
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator.grammar import SLOTS, Told, choose, clause_of, clauses, families
@@ -76,7 +76,7 @@ class ImpactsMixin:
     held_out: bool
     told: Told
 
-    say: Any
+    say: Callable[..., str]
 
     def impact(self, number: int, contact: Contact) -> str:
         """The sentence of a contact."""

@@ -50,7 +50,8 @@ OWNERS = {"sa": "S", "ta": "T"}
 def noted(text: str, names: Iterable[str]) -> str:
     """A phrase with marks behind its words, before what punctuation it ends with; `names` are of `NOTES`."""
     marks = "".join(chr(_FIRST + NOTES[name]) for name in names)
-    end = _TAIL.search(text).start()  # type: ignore[union-attr] - it matches every text
+    tail = _TAIL.search(text)
+    end = tail.start() if tail else len(text)
     return text[:end] + marks + text[end:] if end else text
 
 

@@ -271,4 +271,5 @@ class RoadsMixin:
         axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
         self.told |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
-        return words.limit(self.rng, limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so
+        assert limit is not None  # noqa: S101 - clauses are chosen so
+        return words.limit(self.rng, limit, self.held_out)

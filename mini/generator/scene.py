@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Any
 
 from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
@@ -48,7 +47,7 @@ def unbent(clause: str) -> bool:
 class SceneMixin(JunctionMixin):
     """Slots and sentences about the place; needs the writer's fields."""
 
-    say: Any
+    say: Callable[..., str]
     of_road: bool
 
     def _scene_slot(self, slot: str, v: int) -> str:
@@ -151,6 +150,7 @@ class SceneMixin(JunctionMixin):
         """What they say is made in the order of the text: "the same road" is the one that was named last."""
         rng = self.rng
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
+        makers: list[Callable[[], list[str]]]
         makers = [partial(self._of_road, scene.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
         if self.crash.layout in ("four", "t") and rng.random() < 0.4:
             makers.append(partial(self._of_road, scene.ROAD2, main))

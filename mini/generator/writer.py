@@ -206,8 +206,8 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
             return WORDS[actor.leg]
         if slot in ("outdir", "outxb"):  # of one that turns: with the turn, where it goes tells where it came from
             self.told |= {f"{fact}.{actor.id}" for fact in ("heading", "man", "exit")}
-            way: int = actor.out  # type: ignore[assignment] - who turns takes a leg
-            return WORDS[way] if slot == "outdir" else words.bound(self.rng, way)
+            assert actor.out is not None  # noqa: S101 - who turns takes a leg
+            return WORDS[actor.out] if slot == "outdir" else words.bound(self.rng, actor.out)
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
             xb = words.bound(self.rng, actor.heading)

@@ -6,7 +6,6 @@ netconvert. Reads no diagram and no passages; findings cannot change its answer.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
@@ -16,15 +15,13 @@ from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
+from sgcad_core.language import rule
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import RoadFacts, road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
-_CRASH_WORDS = re.compile(
-    r"\b(?:vehicles?|V\d+|cars?|trucks?|pickups?|sedans?|vans?|minivans?|bus(?:es)?|motorcycl\w+|tractors?|drivers?|roads?|"
-    r"roadways?|streets?|highways?|freeways?|avenues?|lanes?|intersections?|driveways?|crash\w*|collision|collided)\b",
-    re.I)  # fmt: skip
+_CRASH_WORDS = rule("report.crash_words")
 
 
 class Template(RoadWriter):

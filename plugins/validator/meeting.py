@@ -7,7 +7,6 @@ holds further answers to what meets in ordinary driving.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -17,6 +16,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
+from sgcad_core.language import rule
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.ways import Way, ways_of
@@ -24,10 +24,7 @@ from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 
-_LOST = re.compile(
-    r"\b(?:los[et]|losing|loss of|regain\w*) (?:\w+ ){0,3}(?:control|traction)|(?<!no )\bskid(?! mark)|"
-    r"\bslid(?:e|ing)?\b(?! door)|\bfishtail|\byaw|\bhydroplan|\bout of control|\bovercorrect|\bjackknif|"
-    r"\bspun out", re.I)  # fmt: skip
+_LOST = rule("meeting.lost")
 """Somebody did not drive in the ordinary way."""
 
 

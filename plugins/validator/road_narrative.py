@@ -16,19 +16,12 @@ from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
+from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
 from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
-
-AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "northwest-southeast"}
-WORDS = {
-    "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
-    "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
-}  # fmt: skip
-
 
 _ORDER = ("repair", "doubt", "note")
 
@@ -94,9 +87,9 @@ class RoadNarrative(Validator):
         if not missing:
             return
         severity: Severity = "repair" if self._without(stated, drawn) else "doubt"
-        sides = " and ".join(WORDS[leg] for leg in missing)
+        sides = " and ".join(NAMES[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
-        seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
+        seen = ", ".join(NAMES[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
         yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=laid(facts, pictured))
 
@@ -109,7 +102,7 @@ class RoadNarrative(Validator):
         named = junction.stated if junction.kind == "driveway" else junction.stem_stated and not junction.stated
         if missing != [junction.stem] or not named or not any(map(turns_off, facts.crash.vehicles)):
             return
-        where = f"{WORDS[missing[0]]} of"
+        where = f"{NAMES[missing[0]]} of"
         what = f"a vehicle uses a {'driveway' if junction.kind == 'driveway' else 'road'} {where} the crash"
         holds = (Hold(items="legs", at_least=3), *laid(facts, pictured))
         severity: Severity = "doubt" if pictured else "repair"
@@ -127,7 +120,7 @@ class RoadNarrative(Validator):
                 continue
             if any(self._carries(road, v.heading, divided) for road in drawn):
                 continue
-            word = WORDS[v.heading]
+            word = NAMES[v.heading]
             what = f"{v.id} travels {word}, but no road carries traffic that way"
             remedy = f"give a road lanes that head {word}; x is east, y is north"
             yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
@@ -142,7 +135,7 @@ class RoadNarrative(Validator):
         if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
             return  # nobody knows which of the roads is meant
         for road in facts.streets:
-            here, name = self._on_axis(road, drawn), AXIS_WORDS[road.axis or "N"]
+            here, name = self._on_axis(road, drawn), AXIS_NAMES[road.axis or "N"]
             if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
@@ -166,7 +159,7 @@ class RoadNarrative(Validator):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"
-            what = f"the {AXIS_WORDS[road.axis or 'N']} road has {said} lanes in both directions together in the report"
+            what = f"the {AXIS_NAMES[road.axis or 'N']} road has {said} lanes in both directions together in the report"
             seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
             yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
@@ -191,10 +184,10 @@ class RoadNarrative(Validator):
             fits = any(least <= n <= most for n in there)  # on whichever side of the junction
             if there and not fits and least <= read.get(approach, 0) <= most:
                 said = f"{least}" if least == most else f"at least {least}"
-                what = f"the road has {said} lanes that head {WORDS[way]} in the report"
+                what = f"the road has {said} lanes that head {NAMES[way]} in the report"
                 enough = tuple(n for n in SOME_LANES if least <= n <= most)
                 holds = (Hold(items="legs", key="bearing", values=(approach,), either=({"lanes_in": enough},)),)
-                remedy = f"give it {said} lanes towards the crash on the leg {WORDS[approach]} of it"
+                remedy = f"give it {said} lanes towards the crash on the leg {NAMES[approach]} of it"
                 yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds)
 
     # -------------------------------------------------------------- limits
@@ -204,7 +197,7 @@ class RoadNarrative(Validator):
             limit = road.speed_limit_mph
             if limit is None or not here or any(self._at(limit, s) for d in here for s in d.speeds_mph):
                 continue
-            what = f"the {AXIS_WORDS[road.axis or 'N']} road's posted limit is {limit} mph in the report"
+            what = f"the {AXIS_NAMES[road.axis or 'N']} road's posted limit is {limit} mph in the report"
             seen = f"{here[0].speeds_mph[0]:.0f} mph"
             yield _finding(what, _ids(here), seen, f"set speed_limit_mph to {limit}", "note")
 

@@ -6,13 +6,13 @@ that heads north comes from the leg at S. Knows no lane count.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
-from sgcad_core.narrative.compass import DIRECTION, between, compass_of, turned
+from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
@@ -40,22 +40,11 @@ class JunctionFacts:
     notes: tuple[str, ...] = field(default=())
 
 
-_T = re.compile(
-    r"\b[TY]-intersection|\bT[- ]junction|\b[TY](?:\"|')?[- ]?(?:type|shaped?|style)[- ](?:\w+ )?(?:intersection|"
-    r"junction)|\btee[- ](?:intersection|junction)|"
-    r"\b(?:three|3)[- ](?:leg\w*|way)\b(?! (?:stop|crash|car|collision))|\btype (?:of )?\"?T\"? (?:intersection|"
-    r"junction)",
-    re.I,
-)
-_FOUR = re.compile(
-    r"\bfour-leg intersection|\b(?:four|4)[- ](?:leg\w*|way)\b|\bcross(?:ing)? intersection|\bcrossroads?\b", re.I
-)
-_JUNCTION = re.compile(r"\bintersections?\b|\bjunction\b|\bcrossroads?\b|\bcrossover\b|\broundabout\b", re.I)
-_NO_JUNCTION = re.compile(
-    r"\b(?:no|non|not (?:at|in|near)(?: an?)?|without an?|away from (?:the|any|an)|far from (?:the|any|an)|"
-    r"(?:next|previous|nearby|nearest|another|last|distant|upcoming|following)(?: \w+)?)[ -](?:\w+ )?(?:intersection|"
-    r"junction)s?\b|"
-    r"\bnon-?(?:intersection|junction)|\bmid-?block", re.I)  # fmt: skip
+_NUMBERED = rule("common.vehicle_begins")
+_T = rule("junction.t")
+_FOUR = rule("junction.four")
+_JUNCTION = rule("junction.junction")
+_NO_JUNCTION = rule("junction.no_junction")
 
 
 def junction_of(told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> JunctionFacts:
@@ -118,31 +107,13 @@ def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) 
 
 def _merging(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
     text = " ".join(t.text for t in story)
-    return bool(re.search(r"\bmerg\w+|\bentrance ramp|\bon-?ramp|\bacceleration lane|\bexit ramp", text, re.I)) or any(
-        r.kind == "freeway" for r in roads
-    )
+    return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
 
-_SIDE_ROAD = re.compile(
-    rf"\b(?:side|intersecting|secondary|minor|entrance|access|cross(?:ing)?|private|"
-    rf"residential)[ -](?:\w+ )?(?:street|road\w*|lane)\b"
-    rf"[^.;]{{0,30}}?\b(?:on|to|from|off) (?:the|its|his|her|their) (?:\w+ )?(?P<side>left|right|{DIRECTION})\b"
-    rf"(?!bound|-|/| ?lane| turn)|"
-    rf"\broad\w* (?:to|on) the (?P<to>{DIRECTION})(?! side of)\b|"
-    rf"\b(?:intersects?|branches|branching|joins?|meets?|enters)\b[^.;]{{0,40}}?\b(?:from|on|"
-    rf"to) the (?P<from>{DIRECTION})\b(?!bound|-|/)|"
-    rf"\b(?P<sided>{DIRECTION}) side (?:entrance|street|road|business|driveway)", re.I)  # fmt: skip
-_SIDE_STREET = re.compile(
-    r"\b(?:(?:left|right)(?:[ -]hand)?[ -]turn|turn\w* (?:left|right))\b[^.;]{0,20}? (?:on|in)to (?:an?|the) "
-    r"(?:\w+ )?(?:side|intersecting|cross|adjoining|residential|secondary|minor)[ -](?:\w+ )?(?:road\w*|street)",
-    re.I,
-)
+_SIDE_ROAD = rule("junction.side_road")
+_SIDE_STREET = rule("junction.side_street")
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
-_ENDS = re.compile(
-    rf"\b(?P<dir>(?:{DIRECTION})bound)?[^.;]{{0,60}}?\b(?:dead[- ]?end\w*|terminat\w+|ends?|ended)\b (?:at|with|into|"
-    rf"in|here)",
-    re.I,
-)
+_ENDS = rule("junction.ends")
 
 
 def _one_sided(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
@@ -207,11 +178,7 @@ def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], 
     return None
 
 
-_TURN_SIDE = re.compile(
-    r"\bturn(?:ed|ing|s)?(?: to the)? (?P<a>left|right)\b(?! lane)|\b(?P<b>left|"
-    r"right)(?:[ -]hand)?[ -]turn\b(?! lane|-lane| signal|ing lane)",
-    re.I,
-)
+_TURN_SIDE = rule("junction.turn_side")
 
 
 def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Compass | None:
@@ -219,8 +186,8 @@ def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Comp
     for v in sorted(vehicles, key=lambda v: v.target is None):
         for t in story:
             turn = _TURN_SIDE.search(t.text)
-            mine = v.id in re.findall(r"\bV\d+\b", t.text[: turn.start()])[-1:] if turn else False
-            if turn and v.heading and (mine or (t.subject == v.id and not re.search(r"\bV\d", t.text[: turn.start()]))):
+            mine = v.id in rule("common.vehicle").findall(t.text[: turn.start()])[-1:] if turn else False
+            if turn and v.heading and (mine or (t.subject == v.id and not _NUMBERED.search(t.text[: turn.start()]))):
                 return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
     return None
 
@@ -264,10 +231,7 @@ def _stem_told(
     return None
 
 
-_DRIVE_SIDE = re.compile(
-    rf"\b(?:driveway|parking lot|entrance|alley|gas station|access road)\b[^.;]{{0,40}}?\b(?:on|to|off|from) (?:the|"
-    rf"its|his|her|their|V\d's) "
-    rf"(?:\w+ )?(?P<side>left|right|{DIRECTION})\b(?!bound|-|/| ?lane| turn)(?: side)?", re.I)  # fmt: skip
+_DRIVE_SIDE = rule("junction.drive_side")
 
 
 def _bearing(word: str, told: Told, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:

@@ -6,15 +6,15 @@ stays None here; `sgcad_core.narrative.layout_facts` fills it. Knows no road net
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told, tell
-from sgcad_core.narrative.compass import COMPASS, between, compass_of, turned
+from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
 from sgcad_core.narrative.junction import JunctionFacts, junction_of
-from sgcad_core.narrative.lanes import BOUND, LaneFacts
+from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
@@ -93,9 +93,9 @@ def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadF
     return replace(road, lanes=replace(road.lanes, center_turn_lane=False))
 
 
-_MERGE_LANE = re.compile(r"\b(?:merg(?:e|ing)|acceleration|auxiliary)(?: \w+)? lane\b", re.I)
-_RURAL = re.compile(r"\brural\b|\bcountry (?:road|highway|lane)", re.I)
-_PLACE = re.compile(rf"\b(?:in|into|on) (?:the )?(?:\w+ )?({BOUND})(?: \w+)? lanes?\b", re.I)
+_MERGE_LANE = rule("roads.merge_lane")
+_RURAL = rule("roads.rural")
+_PLACE = rule("roads.place")
 
 
 def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Told, ...]) -> CrashFacts:
@@ -160,14 +160,11 @@ def _bends(
     return tuple(found.items()) or tuple((lead, bend.side) for bend in bends[:1] if lead and bend.toward is None)
 
 
-_AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "southeast-northwest"}
-
-
 def _open_ends(roads: tuple[RoadFact, ...], junction: JunctionFacts, crash: CrashFacts) -> tuple[str, ...]:
     """What a layout has to assume because the text does not say it."""
     streets = [r for r in roads if r.kind not in ("driveway", "ramp")]
     notes = [
-        f"the {_AXIS_WORDS[r.axis or 'N']} road's lanes are not stated"
+        f"the {AXIS_NAMES[r.axis or 'N']} road's lanes are not stated"
         for r in streets
         if not (r.lanes.total or r.lanes.each_way or r.lanes.toward or r.lanes.one_way)
     ]

@@ -9,21 +9,16 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.unnumbered import number_vehicles
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalize", "sentences"]
 
-NUMBERS = {
-    "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
-}  # fmt: skip
+NUMBERS: dict[str, int] = values("number_word")
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
-_NUMBER = rf"(?:\d{{1,2}}|{'|'.join(NUMBERS)})"
-NUM = rf"(?:{_NUMBER}|a single|single)"
-"""A count of lanes."""
-_COMPASS = r"(?:north|south)(?:[ -]?(?:east|west))?|east|west"
 
 
 class Sentence(NamedTuple):
@@ -42,77 +37,15 @@ _CHARACTERS = str.maketrans({
     "\x0c": "\n", "\u2028": "\n", "\u2029": "\n", "\x85": "\n",
 })  # fmt: skip
 
-_TYPOS = {
-    "easr": "east", "raod": "road", "raodway": "roadway", "roaday": "roadway", "roadwy": "roadway", "waitng": "waiting",
-    "becuase": "because", "becasue": "because", "hosptial": "hospital", "precrsh": "precrash", "drdiver": "driver",
-    "dirver": "driver", "approxiamtely": "approximately", "approximatley": "approximately", "assosiative": "associated",
-    "associative": "associated", "thru": "through", "loosing": "losing", "waived": "waved",
-    "intesection": "intersection",
-    "intersecton": "intersection", "interesection": "intersection", "vehcile": "vehicle", "vehicel": "vehicle",
-    "vechicle": "vehicle", "vehilce": "vehicle", "veihcle": "vehicle", "vehice": "vehicle",
-    "travelling": "traveling", "traveing": "traveling", "travling": "traveling", "negoatiating": "negotiating",
-    "negotating": "negotiating", "negociating": "negotiating", "manuever": "maneuver", "manuver": "maneuver",
-    "manoeuvre": "maneuver", "centreline": "centerline", "lefthand": "left", "righthand": "right",
-    "struct": "struck", "strcuk": "struck", "sturck": "struck", "collied": "collided",
-    "contacetd": "contacted", "conctacted": "contacted", "imapcted": "impacted", "imapct": "impact",
-    "lighed": "lighted", "daylite": "daylight", "daylght": "daylight", "striaght": "straight", "staight": "straight",
-    "signalled": "signaled", "unsignalled": "unsignaled", "sideswipped": "sideswiped", "teh": "the", "adn": "and",
-    "infront": "in front", "inthe": "in the", "onthe": "on the", "ofthe": "of the",
-    "alot": "a lot", "oppostie": "opposite", "opposit": "opposite",
-    "northound": "northbound", "southound": "southbound", "eastound": "eastbound", "westound": "westbound",
-    "nortbound": "northbound", "soutbound": "southbound", "eastboud": "eastbound", "westboud": "westbound",
-}  # fmt: skip
-_TYPO = re.compile(rf"\b({'|'.join(map(re.escape, _TYPOS))})\b", re.I)
+_TYPO = rule("text.typo")
 
-_COUNTED = (
-    "lanes?|years?|quarters?|points?|doors?|ways?|vehicles?|wheels?|times|occupants?|people|feet|meters?|cars?|legs?"
-)
+
 # ------------------------------------------------------------------ mentions, units, directions
-_SPELLINGS: tuple[tuple[str, str], ...] = (
-    (r"(?-i:\b([a-z]{2,})(V\d{1,2})\b)", r"\1 \2"),
-    # a vehicle's number
-    (rf"\b(?:vehicle|veh)s?\b\.?\s*(?:#|no\.?|number|num\.?|"
-     rf"-)?\s*\.?\s*#?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"V\1"),
-    (rf"\bV\s*(?:#|-)?\s*({_NUMBER})\b", r"V\1"),
-    (rf"\b(?:traffic )?unit\s*(?:#|no\.?|number)?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"V\1"),
-    (r"\bD(\d)\b(?!-)", r"the driver of V\1"),
-    (rf"\bdriver\s*(?:#|no\.?|number)?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"the driver of V\1"),
-    # "V1 (V1 - case vehicle)", "V1 (case vehicle)"
-    (r"\bV(\d+)\s*,?\s*\(\s*V\1\b[^()]{0,40}\)", r"V\1"),
-    (r"\bV(\d+)\s*\(\s*(?:the )?case vehicle\s*\)", r"V\1"),
-    (r"\(\s*V(\d+)\s*\)", r"(V\1)"),
-    (r"\(\s*V(\d+)\s*[-,:;]\s*", r"(V\1, "),
-    (r"\(([^()]{1,60}?)\s*[-,:;]\s*V(\d+)\s*\)", r"(V\2, \1)"),
-    (r"\bV(\d+)\s*,\s*(?=\S)", r"V\1, "),
-    (r"\bV(\d+)(?=(?:19|20)\d\d\b)", r"V\1 "),
-    # units
-    (r"(?<=\d)\s*(?:kmph|kmp|kpmh|kphm|kph|km/h|km/hr|kmh|kilomet(?:er|re)s (?:per|an) hour)\b\.?", " kmph"),
-    (r"(?<=\d)\s*(?:mph|m\.p\.h\.|mi/h|mhp|miles (?:per|an) hour)(?![a-z])", " mph"),
-    # directions
-    (rf"\b({_COMPASS})[ -]+bound(?:ed)?\b", r"\1bound"),
-    (r"\b(north|south)[ -](east|west)(?=\b|bound|erly|ern)", r"\1\2"),
-    (r"\bN\s?/?\s?B\b", "northbound"), (r"\bS\s?/?\s?B\b", "southbound"),
-    (r"\bE\s?/?\s?B\b", "eastbound"), (r"\bW\s?/?\s?B\b", "westbound"),
-    (r"\b(north|south|east|west)ward(?:s|ly)?\b", r"\1"),
-    # roads
-    (r"(?<![\w-])(?:type )?[\"']?T[\"']?[ -]*(?:type |style )?(?:legged )?intersection", "T-intersection"),
-    (r"\b(?:three|3)[ -]?(?:legged|leg|way)[ -]intersection", "T-intersection"),
-    (r"\b(?:four|4)[ -]?(?:legged|leg|way)[ -]intersection", "four-leg intersection"),
-    (r"\bcent(?:er|re)[ -]line\b", "centerline"),
-    (r"\btraffic way", "trafficway"), (r"\bu[ -]turn", "u-turn"),
-    (r"\btractor[ -]trailer", "tractor-trailer"), (r"\bpick[ -]up\b(?=(?: truck)?\b)", "pickup"),
-    (r"\brear[ -]end(ed|ing|s)?\b", r"rear-end\1"), (r"\bside[ -]swip", "sideswip"), (r"\bhead[ -]on\b", "head-on"),
-    (r"\bit's (?=(?:front|rear|back|left|right|side|lane|own|path|top|trailer|driver|final|bumper|brakes|"
-     r"passenger)\b)", "its "),
-    (r"\bpre[ -]crash\b", "precrash"), (r"\bcounter[ -]clockwise\b", "counterclockwise"),
-)  # fmt: skip
-_PATTERNS = tuple((re.compile(pattern, re.I), to) for pattern, to in _SPELLINGS)
-_LETTERED = re.compile(r"\b[Vv]ehicle ([A-D])\b(?!-| ?pillar)")
-_VEHICLE_WORD = re.compile(rf"\bV({'|'.join(NUMBERS)})\b", re.I)
-_VEHICLE_CASE = re.compile(r"\bv0*(\d+)\b", re.I)
-_COUNTED_LANE = re.compile(
-    rf"(?<!#)(?<!# )(?<!number )\b({'|'.join(_WORDS)}|{'|'.join(NUMBERS)})[ -]+lane\b(?!s)", re.I
-)
+
+_LETTERED = rule("text.lettered")
+_VEHICLE_WORD = rule("text.vehicle_word")
+_VEHICLE_CASE = rule("text.vehicle_case")
+_COUNTED_LANE = rule("text.counted_lane")
 
 
 def normalize(text: str) -> str:
@@ -125,8 +58,8 @@ def normalize(text: str) -> str:
 
 def _blocks(text: str) -> list[str]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
-    text = re.sub(r"[ ]+\n", "\n", text.translate(_CHARACTERS))
-    return re.split(r"\n\s*\n|(?<=[.!?\"):])\n(?=\s*[A-Z\"])", text)
+    text = rule("text.space_at_end").sub("\n", text.translate(_CHARACTERS))
+    return rule("text.paragraph").split(text)
 
 
 def _paragraph(block: str) -> str:
@@ -142,9 +75,9 @@ def _paragraph(block: str) -> str:
 def _spell(text: str) -> str:
     text = _spaces(text)
     text = _TYPO.sub(_mend_typo, text)
-    for pattern, to in _PATTERNS:
-        text = pattern.sub(to, text)
-    text = re.sub(r"\bV[iIl]\b", "V1", text)
+    for spelling in of_role("spelling"):
+        text = spelling.sub(spelling.yields["to"], text)
+    text = rule("text.first_vehicle").sub("V1", text)
     text = _LETTERED.sub(lambda m: f"V{ord(m.group(1)) - ord('A') + 1}", text)
     text = _VEHICLE_WORD.sub(lambda m: f"V{NUMBERS[m.group(1).lower()]}", text)
     text = _VEHICLE_CASE.sub(r"V\1", text)
@@ -154,18 +87,18 @@ def _spell(text: str) -> str:
 
 def _spaces(text: str) -> str:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
-    text = re.sub(r"\s*\.(?:\s*\.)+", ".", re.sub(r"\s+", " ", text))
-    text = re.sub(r"\s+([,;.])(?=\s|$)", r"\1", text)
-    text = re.sub(r"(?<=[a-z\d)%\"])\.(?=[A-Z\"])|(?<=mph)\.(?=[A-Z])|(?<=MPH)\.(?=[A-Z])", ". ", text)
-    text = re.sub(r"(?<=[A-Za-z)]),(?=[A-Za-z\d])", ", ", text)
-    text = re.sub(r"(?<=[a-z\d)])\((?=\w)", " (", text)
-    text = re.sub(r"(?<=[\w)])\)(?=[A-Za-z\d])", ") ", text)
-    return re.sub(r" +", " ", text).strip()
+    text = rule("text.full_stops").sub(".", rule("common.space").sub(" ", text))
+    text = rule("text.space_before_mark").sub(r"\1", text)
+    text = rule("text.glued_sentence").sub(". ", text)
+    text = rule("text.glued_comma").sub(", ", text)
+    text = rule("text.glued_bracket").sub(" (", text)
+    text = rule("text.glued_behind_bracket").sub(") ", text)
+    return rule("text.spaces").sub(" ", text).strip()
 
 
 def _mend_typo(match: re.Match[str]) -> str:
     word = match.group(0)
-    to = _TYPOS[word.lower()]
+    to: str = values("typo")[word.lower()]
     return to.capitalize() if word[0].isupper() else to
 
 
@@ -176,11 +109,8 @@ def _mend_lanes(match: re.Match[str]) -> str:
 
 
 # ------------------------------------------------------------------ sentences
-_ABBREVIATION = re.compile(
-    r"\b(?:approx|no|st|ave|rd|rt|rte|hwy|blvd|dr|mr|mrs|ms|jr|vs|etc|e\.g|i\.e|u\.s|a\.m|p\.m|lbs?|ft|min|hrs?|"
-    r"yrs?|inc|co|"
-    r"[A-Z])\.$", re.I)  # fmt: skip
-_END = re.compile(r"(?<=[.!?])[\"')]*\s+(?=[\"'(]*[A-Z\d])")
+_ABBREVIATION = rule("text.abbreviation")
+_END = rule("text.end")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
@@ -207,4 +137,4 @@ def _cut(sentence: str) -> list[str]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
     if len(sentence) <= LONGEST:
         return [sentence]
-    return re.findall(rf"(?s).{{1,{LONGEST}}}(?:\s|$)|.{{1,{LONGEST}}}", sentence)
+    return rule("text.piece").findall(sentence)

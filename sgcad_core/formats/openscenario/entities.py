@@ -1,10 +1,12 @@
 """Actors and surroundings as scenariogeneration says them. Knows no trajectory and no storyboard.
 
-Every entity's origin is the center of its box (BoundingBox Center 0, 0, height / 2), so a played pose is
-the box center whatever a player thinks of headings between vertices.
+Origins are those of the standard: a vehicle's is the center of its rear axle on the ground (RearAxle positionX 0,
+BoundingBox.Center and FrontAxle from there), a pedestrian's and an object's the center of its box on the ground.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 from scenariogeneration import xosc
 
@@ -23,6 +25,33 @@ _CATEGORY = {
     "car": "car", "suv": "car", "pickup": "car", "van": "van", "truck": "truck", "bus": "bus",
     "motorcycle": "motorbike", "bicycle": "bicycle", "trailer": "trailer",
 }  # fmt: skip
+
+
+class Overhang(NamedTuple):
+    """From a bumper to the nearest axle: share of the length, and the most metres that it grows to."""
+
+    share: float
+    most_m: float
+
+    def of(self, length_m: float) -> float:
+        """Metres on a body of this length."""
+        return min(self.share * length_m, self.most_m)
+
+
+OVERHANGS: dict[ActorKind, tuple[Overhang, Overhang]] = {
+    "car": (Overhang(0.20, 1.0), Overhang(0.21, 1.2)), "suv": (Overhang(0.19, 1.0), Overhang(0.21, 1.2)),
+    "pickup": (Overhang(0.17, 1.0), Overhang(0.21, 1.4)), "van": (Overhang(0.18, 1.0), Overhang(0.21, 1.4)),
+    "truck": (Overhang(0.15, 1.4), Overhang(0.22, 2.5)), "bus": (Overhang(0.22, 2.7), Overhang(0.27, 3.4)),
+    "motorcycle": (Overhang(0.15, 0.4), Overhang(0.17, 0.45)), "bicycle": (Overhang(0.19, 0.4), Overhang(0.19, 0.4)),
+    "trailer": (Overhang(0.08, 1.0), Overhang(0.22, 2.8)),
+}  # fmt: skip
+"""In front and behind, per kind with axles, as on common models: a car of 4.7 m stands on 2.8 m of wheelbase, its
+center 1.36 m before the rear axle. A trailer's front "axle" is its kingpin. A long truck is a combination on one
+box: its last axle is the trailer's, whose overhang does not grow with the length."""
+INTERPOLATION = ("plineInterpolation", "segment")
+"""A property that esmini reads: headings along the whole segment. Its own default for followingMode "position"
+turns about the vertices, which puts the heading at every vertex half a step behind."""
+_WHEEL_M: dict[ActorKind, float] = {"truck": 1.0, "bus": 1.0, "trailer": 1.0}
 _TIME: dict[Light, tuple[int, int]] = {
     "day": (12, 0), "dusk": (20, 45), "dawn": (5, 15), "dark": (23, 0), "dark_lit": (23, 0),
 }  # fmt: skip
@@ -39,19 +68,35 @@ _FRICTION: dict[Surface, float] = {"dry": 1.0, "wet": 0.7, "snow": 0.3, "ice": 0
 _WETNESS: dict[Surface, str] = {"dry": "dry", "wet": "wetWithPuddles"}
 
 
+def center_ahead_m(actor: ActorInfo) -> float:
+    """How far the box center lies ahead of the entity's origin, metres; 0 without axles."""
+    if actor.type not in OVERHANGS:
+        return 0.0
+    return actor.length_m / 2 - OVERHANGS[actor.type][1].of(actor.length_m)
+
+
 def entity(actor: ActorInfo) -> xosc.Vehicle | xosc.Pedestrian | xosc.MiscObject:
-    """One actor with its true box, metres."""
+    """One actor with its true box and axles, metres from its origin."""
     height, mass = HEIGHT_M[actor.type], MASS_KG[actor.type]
-    box = xosc.BoundingBox(actor.width_m, actor.length_m, height, 0.0, 0.0, height / 2)
+    ahead = round(center_ahead_m(actor), 6)
+    box = xosc.BoundingBox(actor.width_m, actor.length_m, height, ahead, 0.0, height / 2)
     if actor.type == "pedestrian":
-        return xosc.Pedestrian(actor.type, mass, xosc.PedestrianCategory.pedestrian, box)
-    if actor.type == "object":
-        return xosc.MiscObject(actor.type, mass, xosc.MiscObjectCategory.obstacle, box)
-    reach, wheel = 0.3 * actor.length_m, 0.65
-    front = xosc.Axle(0.6, wheel, 0.8 * actor.width_m, reach, wheel / 2)
-    rear = xosc.Axle(0.0, wheel, 0.8 * actor.width_m, -reach, wheel / 2)
-    category = getattr(xosc.VehicleCategory, _CATEGORY[actor.type])
-    return xosc.Vehicle(actor.type, category, box, front, rear, 70.0, 12.0, 12.0, mass)
+        made = xosc.Pedestrian(actor.type, mass, xosc.PedestrianCategory.pedestrian, box)
+    elif actor.type == "object":
+        made = xosc.MiscObject(actor.type, mass, xosc.MiscObjectCategory.obstacle, box)
+    else:
+        category = getattr(xosc.VehicleCategory, _CATEGORY[actor.type])
+        made = xosc.Vehicle(actor.type, category, box, *_axles(actor), 70.0, 12.0, 12.0, mass)
+    made.add_property(*INTERPOLATION)
+    return made
+
+
+def _axles(actor: ActorInfo) -> tuple[xosc.Axle, xosc.Axle]:
+    """Front and rear; the rear one is the origin."""
+    front, rear = (overhang.of(actor.length_m) for overhang in OVERHANGS[actor.type])
+    wheel, track = _WHEEL_M.get(actor.type, 0.65), 0.8 * actor.width_m
+    wheelbase = round(actor.length_m - front - rear, 6)
+    return xosc.Axle(0.6, wheel, track, wheelbase, wheel / 2), xosc.Axle(0.0, wheel, track, 0.0, wheel / 2)
 
 
 def environment(behavior: BehaviorSpec | None) -> xosc.Environment | None:

@@ -36,6 +36,12 @@ class BoxShape(NamedTuple):
     center_x_m: float = 0.0
     center_y_m: float = 0.0
 
+    def centers(self, points: Floats, headings_rad: Floats) -> Floats:
+        """(n, 2) box centers of poses whose origins are `points`."""
+        c, s = np.cos(headings_rad), np.sin(headings_rad)
+        offset = np.column_stack((self.center_x_m * c - self.center_y_m * s, self.center_x_m * s + self.center_y_m * c))
+        return np.asarray(points + offset, dtype=np.float64)
+
 
 SHAPES: dict[str, Callable[[float], float]] = {
     "step": lambda u: 1.0,
@@ -79,6 +85,8 @@ class Timed:
         heading = np.unwrap(headings_rad)
         self._rows = np.column_stack([np.interp(t, times_s, v) for v in (points[:, 0], points[:, 1], heading)]).tolist()
         self._speeds = _speeds(times_s, points, t).tolist()
+        self._vertices, self._clock_s = (times_s, points, heading), t
+        self._of_centers: tuple[BoxShape, list[float]] | None = None
 
     def pose(self, step: int) -> Pose:
         """Pose at a step of the clock; before and behind the vertices, that of the nearest one."""
@@ -87,6 +95,13 @@ class Timed:
     def speed(self, step: int) -> float:
         """Speed there, m/s, never negative."""
         return float(self._speeds[min(step - self.first_step, len(self._speeds) - 1)])
+
+    def center_speed(self, step: int, box: BoxShape) -> float:
+        """Speed of the box center there, which in a turn is not the origin's."""
+        if self._of_centers is None or self._of_centers[0] != box:
+            times, points, heading = self._vertices
+            self._of_centers = box, _speeds(times, box.centers(points, heading), self._clock_s).tolist()
+        return float(self._of_centers[1][min(step - self.first_step, len(self._speeds) - 1)])
 
 
 def _speeds(times_s: Floats, points: Floats, t_s: Floats) -> Floats:
@@ -202,6 +217,10 @@ class Body:
         x, y, h = self.pose
         dx, dy, c, s = self.box.center_x_m, self.box.center_y_m, math.cos(h), math.sin(h)
         return Pose(x + dx * c - dy * s, y + dx * s + dy * c, h)
+
+    def center_speed(self, step: int) -> float:
+        """Speed of the box center on timed vertices, else the entity's own; m/s, never negative."""
+        return self.timed.center_speed(step, self.box) if self.timed else abs(self.speed_mps)
 
 
 def angle_between(first_rad: float, second_rad: float) -> float:

@@ -68,9 +68,22 @@ def _box(node: Node) -> BoxShape:
     entity = next(iter(node.children(*_KINDS)), None)
     if entity is None:
         raise node.unsupported("needs an inline <Vehicle>, <Pedestrian> or <MiscObject>")
-    box = entity.scoped().need("BoundingBox")
+    entity = entity.scoped()
+    box = entity.need("BoundingBox")
     size, center = box.need("Dimensions"), box.need("Center")
-    return BoxShape(size.positive("length"), size.positive("width"), center.number("x"), center.number("y"))
+    ahead = center.number("x") - _rear_axle_m(entity)
+    return BoxShape(size.positive("length"), size.positive("width"), ahead, center.number("y"))
+
+
+def _rear_axle_m(entity: Node) -> float:
+    """Where a vehicle's rear axle stands in its own coordinates: 0, since it is their origin.
+
+    A file that says otherwise contradicts itself; like other players this one believes that poses are the rear
+    axle's, and moves box and front axle along. 0 for entities without axles.
+    """
+    axles = entity.find("Axles")
+    rear = axles.find("RearAxle") if axles else None
+    return rear.number("positionX") if rear else 0.0
 
 
 def _initialize(node: Node, scene: Scene) -> None:
@@ -105,7 +118,7 @@ def _run(story: Storyboard, scene: Scene, blame: Node) -> dict[str, list[tuple[f
         end_s = story.step(scene)
         if end_s is None or scene.t_s <= end_s + EPSILON:
             for name, body in scene.bodies.items():
-                rows[name].append((*body.center(), abs(body.speed_mps)))
+                rows[name].append((*body.center(), body.center_speed(step)))
         if end_s is not None:
             break
     else:

@@ -16,7 +16,7 @@ from scenariogeneration import xosc
 from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.entities import entity, environment
+from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import ActorInfo, Floats, Trajectory
 from sgcad_core.specs import BehaviorSpec
@@ -36,10 +36,11 @@ def write_xosc(
 ) -> str:
     """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
 
+    What the file holds are the entities' origins, for vehicles the rear axle; trajectories are those of box centers.
     One trajectory an actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise.
     """
     VersionBase().setVersion(minor=MINOR_VERSION)  # scenariogeneration keeps its version in a class
-    moves = _paired(actors, trajectories)
+    moves = [_origin(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     scenario = xosc.Scenario(
         _NOT_XML.sub("?", name),
         "SG-CADVLM",
@@ -66,6 +67,13 @@ def _paired(actors: Sequence[ActorInfo], trajectories: Sequence[Trajectory]) -> 
         if len(rows) < 2 or not np.isfinite(rows).all() or t.t_s[0] < 0 or (np.diff(t.t_s) <= 0).any():
             raise InvalidOutput(f"trajectory of {t.actor}: needs two or more finite rows with rising times from 0")
     return [by_actor[i] for i in ids]
+
+
+def _origin(actor: ActorInfo, center: Trajectory) -> Trajectory:
+    """The motion of the entity's origin, which lies behind the box center."""
+    ahead, heading = center_ahead_m(actor), center.heading_rad
+    x, y = center.x_m - ahead * np.cos(heading), center.y_m - ahead * np.sin(heading)
+    return center.model_copy(update={"x_m": x, "y_m": y})
 
 
 def _entities(actors: Sequence[ActorInfo]) -> xosc.Entities:

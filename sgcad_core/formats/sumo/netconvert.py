@@ -16,10 +16,13 @@ from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.opendrive.mend import mend
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
+from sgcad_core.limited import run_limited
 from sgcad_core.records import PlainXml, RoadNetwork
 from sgcad_core.specs import RoadSpec
 
 TIMEOUT_S = 60.0
+MAP_MEMORY_MB, MAP_FILE_MB = 16_000, 4_000
+"""Of a user's map: a city of a million people takes 6 GB."""
 XSD_RETURNCODE = 1
 """As netconvert's own for input that it refuses."""
 FLAGS = (
@@ -60,9 +63,7 @@ def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:
             command += [flag, f"{name}.xml"]
     environment = settings.subprocess_environment()
     try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on files that we wrote
-            command, cwd=folder, env=environment, capture_output=True, timeout=TIMEOUT_S, check=False
-        )
+        done = run_limited(command, folder, environment, TIMEOUT_S)
     except subprocess.TimeoutExpired:
         return 124, f"netconvert took longer than {TIMEOUT_S:g} s"
     said = (done.stderr + b"\n" + done.stdout).decode("utf-8", "replace")
@@ -83,10 +84,8 @@ def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: floa
     """
     command = [str(settings.netconvert()), *source, "--plain-output-prefix", "map"]
     try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
-            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=timeout_s,
-            check=False,
-        )  # fmt: skip
+        environment = settings.subprocess_environment()
+        done = run_limited(command, folder, environment, timeout_s, memory_mb=MAP_MEMORY_MB, file_mb=MAP_FILE_MB)
     except subprocess.TimeoutExpired as fault:
         raise ConfigError(f"{file}: netconvert took longer than {timeout_s:g} s; cut the map smaller") from fault
     if done.returncode:

@@ -7,7 +7,7 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 
 from lxml import etree
@@ -32,6 +32,8 @@ from sgcad_core.specs import Node, NodeControl, Road, RoadSpec
 MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
 """Where the report states no limit."""
+MAX_LANES = 16
+"""Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
 DRIVEWAY_RADIUS_M = 1.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
@@ -149,7 +151,20 @@ def sumo_findings(kind: str, text: str) -> list[Finding]:
     return [
         Finding(source="sumo_xsd", what=message, where=f"{kind}, line {line}", remedy=remedy)
         for line, message in schema_errors(_schema(kind), root)
-    ]
+    ] or list(_too_wide(kind, root))
+
+
+def _too_wide(kind: str, root: Element) -> Iterator[Finding]:
+    """Edges of more lanes than any road has: SUMO's schema takes a million, and netconvert then all memory."""
+    for edge in root.iter("edge", "type"):
+        if int(edge.get("numLanes") or 1) > MAX_LANES:
+            yield Finding(
+                source="sumo_xsd",
+                what=f"an edge has at most {MAX_LANES} lanes",
+                where=f"{kind}, line {edge.sourceline}",
+                value=edge.get("numLanes"),
+                remedy="give the lanes of one direction, as the report tells them",
+            )
 
 
 @cache

@@ -189,3 +189,19 @@ def test_huge_files_and_counts_are_refused():
 def test_what_is_no_scenario_is_invalid(text):
     with pytest.raises(InvalidOutput):
         play(text)
+
+
+def test_poses_are_the_rear_axles_even_where_a_file_places_it_elsewhere():
+    """Such a file contradicts itself; every player moves the box so that the rear axle is the origin."""
+    own = scenario(V1, entities=entity("V1"))
+    moved = own.replace('positionX="0"', 'positionX="-1.4"')
+    assert entity_boxes(moved)["V1"] == (4.6, 1.8, 1.4, 0.0)
+    assert play(moved)[0].x_m[0] == pytest.approx(play(own)[0].x_m[0] + 1.4)
+
+
+def test_the_speed_of_a_row_is_that_of_the_box_center():
+    """A body that turns about its rear axle stands there, yet its center moves."""
+    turn = [(share, 0, 0, share) for share in np.linspace(0, 1, 21)]
+    text = scenario(V1, event("e", follow(turn, timing()), at(0)), entities=entity("V1", 1.4))
+    motion = v1(text)
+    assert motion.speed_mps[10] == pytest.approx(1.4, abs=1e-3)

@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.openscenario.check import xosc_findings
+from sgcad_core.formats.openscenario.entities import center_ahead_m
 from sgcad_core.formats.openscenario.player import entity_boxes, play
 from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.specs import SIZE_M
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, trajectory
@@ -27,7 +29,39 @@ def moving(name, turn=0.1):
 def test_every_kind_of_actor_has_its_true_box(kind):
     text = write_xosc([actor("V1", kind, (3.21, 1.23))], [moving("V1")], None)
     assert xosc_findings(text, None) == []
-    assert tuple(entity_boxes(text)["V1"]) == (3.21, 1.23, 0.0, 0.0)
+    ahead = center_ahead_m(actor("V1", kind, (3.21, 1.23)))
+    assert tuple(entity_boxes(text)["V1"]) == pytest.approx((3.21, 1.23, ahead, 0.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", SIZE_M)
+def test_a_vehicles_origin_is_its_rear_axle_and_others_stand_on_their_centers(kind):
+    length = SIZE_M[kind][0]
+    root = parse_xml(write_xosc([actor("V1", kind, SIZE_M[kind])], [moving("V1")], None), "xosc")
+    center = float(root.find(".//BoundingBox/Center").get("x"))
+    axles = {axle.tag: float(axle.get("positionX")) for axle in root.iterfind(".//Axles/*")}
+    if kind in ("pedestrian", "object"):
+        assert (center, axles) == (0.0, {})
+        return
+    assert axles["RearAxle"] == 0.0
+    assert 0.45 * length < axles["FrontAxle"] < 0.75 * length
+    assert 0.2 * length < center < 0.35 * length
+    assert center + length / 2 > axles["FrontAxle"]  # the front bumper lies ahead of the front axle
+
+
+def test_a_combination_on_one_box_stands_on_its_last_axle():
+    assert center_ahead_m(actor("V1", "truck", (20.0, 2.5))) == pytest.approx(10.0 - 2.5)
+
+
+def test_the_file_holds_the_poses_of_the_rear_axle():
+    wanted, car = moving("V1", 1.0), actor("V1", "car", (4.7, 1.8))
+    root = parse_xml(write_xosc([car], [wanted], None), "xosc")
+    places = list(root.iterfind(".//Vertex/Position/WorldPosition"))
+    x, y, h = (np.array([float(p.get(name)) for p in places]) for name in "xyh")
+    ahead = center_ahead_m(car)
+    np.testing.assert_allclose(x + ahead * np.cos(h), wanted.x_m, atol=1e-5)
+    np.testing.assert_allclose(y + ahead * np.sin(h), wanted.y_m, atol=1e-5)
+    start = root.find(".//TeleportAction/Position/WorldPosition")
+    assert (float(start.get("x")), float(start.get("y"))) == (x[0], y[0])
 
 
 @pytest.mark.parametrize("light", [None, "day", "dusk", "dawn", "dark", "dark_lit"])
