@@ -21,6 +21,7 @@ from flows.view import View
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
+from sgcad_core.execution.judgement import Judgement, judge
 from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
 from sgcad_core.records import (
@@ -66,6 +67,7 @@ class _Run:
     report: CrashReport | None = None
     outcomes: dict[str, StageOutcome] = field(default_factory=dict)
     execution: Execution | None = None
+    judgement: Judgement | None = None
     metrics: dict[str, Any] | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
@@ -102,6 +104,10 @@ class _Run:
         self.execution = self._once("simulate", lambda: simulator.execute(scenario, network), scenario, network)
         with self._clock("measure"):
             self.metrics = measure(self.execution, scenario)
+        if self.config.judge:
+            with self._clock("judge"):
+                self.judgement = judge(self.config.judge, self.execution, scenario, network)
+            self.metrics["judge"] = self.judgement.summary()
 
     def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
         """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
@@ -175,9 +181,8 @@ class _Run:
     def record(self) -> CaseRecord:
         """Everything known, for result.json and the player."""
         notes = self.report.notes if self.report else ()
-        return CaseRecord(
-            self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        )
+        about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
+        return CaseRecord(*about, self.judgement)
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""

@@ -45,6 +45,7 @@ Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YA
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
 Out = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.")]
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", help="Cases at a time; default: the cores, with a model 8.")]
+Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini: does it play the same?")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Do finished cases again.")]
 
 
@@ -71,11 +72,13 @@ def evaluate(
     out: Out = DEFAULT_OUT,
     jobs: Jobs = None,
     fresh: Fresh = False,
+    judge: Judge = "",
 ) -> None:
     """Run every case of a folder under one or several configs; run again to go on where it stopped."""
     from flows.cases import cases_in
 
-    _batch(cases_in(cases), config, overrides, out, jobs, fresh)
+    judged = [f"judge.name={judge}"] if judge else []
+    _batch(cases_in(cases), config, [*(overrides or ()), *judged], out, jobs, fresh)
 
 
 def _batch(

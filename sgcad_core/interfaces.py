@@ -163,6 +163,10 @@ class Simulator(Plugin):
 
     kind = "simulator"
 
+    def ready(self) -> None:
+        """Called before a batch starts. Raises MissingTool where a program lacks; the default needs none."""
+        return
+
     @abstractmethod
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
         """Execute in a process that may die. Raises SimulationFailed."""

@@ -184,6 +184,8 @@ class Execution(Record):
     contact: ObservedContact | None = None
     """First contact between any two actors that move or are struck; None if nothing touched."""
     log: str = ""
+    complaints: tuple[str, ...] = ()
+    """What the simulator said that it cannot do, though it ran."""
 
 
 # ------------------------------------------------------------------ judgement

@@ -9,17 +9,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from sgcad_core.execution.contact import realised
+from sgcad_core.execution.judgement import Judgement
 from sgcad_core.formats.sumo.lane_graph import network_figures, segments
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import (
     ActorInfo,
     Execution,
-    ObservedContact,
     RoadNetwork,
     Scenario,
     StageOutcome,
 )
-from sgcad_core.specs import Contact
 
 Status = Literal["generated", "refused", "exhausted", "failed"]
 STATUSES: tuple[Status, ...] = ("generated", "refused", "exhausted", "failed")
@@ -41,6 +41,7 @@ class CaseRecord:
     failure: str = ""
     notes: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict)
+    judgement: Judgement | None = None
 
     @property
     def network(self) -> RoadNetwork | None:
@@ -62,6 +63,7 @@ class CaseRecord:
 def result_of(record: CaseRecord) -> dict[str, Any]:
     """The content of result.json, JSON-able."""
     status, reason, missing = _end(record)
+    judged = {"judge": record.judgement.summary()} if record.judgement else {}
     return {
         "case": record.case,
         "config": record.config,
@@ -72,18 +74,11 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "network": _network(record.network),
         "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
+        **judged,
         "grounding": _grounding(record.outcomes),
         "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
         "notes": [*record.notes, *_stage_notes(record)],
     }
-
-
-def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
-    """Whether the first contact is the declared pair with the declared areas, in either order."""
-    if declared is None or observed is None:
-        return False
-    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
-    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
 def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
@@ -147,4 +142,5 @@ def _stage_notes(record: CaseRecord) -> list[str]:
     told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
     notes = [f.line() for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")]
     notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in told for hold in attempt.held]
+    notes += record.judgement.lines() if record.judgement else []
     return notes + list(record.scenario.notes if record.scenario else ())

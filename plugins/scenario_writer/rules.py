@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
@@ -26,6 +27,8 @@ class Rules(ScenarioWriter):
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
+    openscenario: Version = DEFAULT_VERSION
+    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
 
     def write(
         self,
@@ -39,7 +42,7 @@ class Rules(ScenarioWriter):
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
         facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
-        scenario = compile_scenario(behavior_of_facts(facts, spec), network)
+        scenario = compile_scenario(behavior_of_facts(facts, spec), network, self.openscenario)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 
 

@@ -13,6 +13,7 @@ from pydantic import Field
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
@@ -28,6 +29,9 @@ class SpecScenario(ScenarioWriter):
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     roads: Literal["described", "layout"] = "described"
     """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+
+    openscenario: Version = DEFAULT_VERSION
+    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
 
     def write(
         self,
@@ -47,7 +51,7 @@ class SpecScenario(ScenarioWriter):
             answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
             attempt=attempt,
         )
-        return compile_scenario(parse_answer(ask(context, query).text, BehaviorSpec), network)
+        return compile_scenario(parse_answer(ask(context, query).text, BehaviorSpec), network, self.openscenario)
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

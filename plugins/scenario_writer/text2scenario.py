@@ -16,6 +16,7 @@ from pydantic import Field
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
@@ -88,6 +89,8 @@ class Text2Scenario(ScenarioWriter):
     asks_model: ClassVar[bool] = True
     prompt: str = Field("text2scenario_events", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
+    openscenario: Version = DEFAULT_VERSION
+    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
 
     def write(
         self,
@@ -114,7 +117,7 @@ class Text2Scenario(ScenarioWriter):
         beside = [_beside(role, behavior.actors[0]) for role in parsed.roles if role.id not in taken]
         contacts = behavior.contacts or tuple(_contact(c) for c in _strikes(parsed))
         changed = {"actors": (*behavior.actors, *beside), "contacts": contacts}
-        return compile_scenario(behavior.model_copy(update=changed), network)
+        return compile_scenario(behavior.model_copy(update=changed), network, self.openscenario)
 
 
 def _read_back(network: RoadNetwork) -> RoadSpec:

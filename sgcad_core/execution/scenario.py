@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version, write_xosc
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
 
 
-def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork) -> Scenario:
-    """Plan the behavior's motions on the network and write them. Raises InvalidOutput.
+def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork, version: Version = DEFAULT_VERSION) -> Scenario:
+    """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
     for the validators to say.
@@ -22,7 +22,7 @@ def compile_scenario(behavior: BehaviorSpec, network: RoadNetwork) -> Scenario:
     planned = plan(behavior, parse_net(network.net_xml))
     actors = actor_infos(behavior)
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior),
+        xosc=write_xosc(actors, planned.trajectories, behavior, version=version),
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,

@@ -132,6 +132,16 @@ def offset_polyline(points: Floats, left_m: ArrayLike) -> Floats:
     return moved
 
 
+def parallel_polyline(points: Floats, left_m: float) -> Floats:
+    """(n, 2) polyline whose segments run parallel to those of another, `left_m` metres to their left (mitered)."""
+    steps = np.diff(points, axis=0)
+    normals = np.column_stack((-steps[:, 1], steps[:, 0])) / np.hypot(*steps.T)[:, None]
+    before, behind = np.vstack((normals[:1], normals)), np.vstack((normals, normals[-1:]))
+    along = 1 + (before * behind).sum(axis=1)
+    moved: Floats = points + left_m * (before + behind) / np.maximum(along, 0.1)[:, None]
+    return moved
+
+
 # ------------------------------------------------------------------ many boxes at once
 SIDES = ("front", "left", "back", "right")
 """Names of the side codes 0 to 3, counter-clockwise from the front."""

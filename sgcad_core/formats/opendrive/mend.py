@@ -13,8 +13,9 @@ from collections.abc import Mapping
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.check import RoadEntry, RoadIndex, lane_index, xodr_findings
+from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.formats.opendrive.connectors import meet_lanes, split_connectors, true_lengths
+from sgcad_core.formats.opendrive.index import RoadEntry, RoadIndex, lane_index
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.records import Finding
 

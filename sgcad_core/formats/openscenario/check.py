@@ -16,8 +16,8 @@ import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
-from sgcad_core.formats.opendrive.check import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
+from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.read import SOURCE, Node, read_root
 from sgcad_core.formats.xml import parse_xml, schema_errors

@@ -63,6 +63,10 @@ _CLOUD: dict[Weather, str] = {
     "clear": "zeroOktas", "cloudy": "sevenOktas", "rain": "eightOktas", "snow": "eightOktas", "sleet": "eightOktas",
     "fog": "eightOktas",
 }  # fmt: skip
+_STATE: dict[Weather, str] = {
+    "clear": "free", "cloudy": "cloudy", "rain": "rainy", "snow": "overcast", "sleet": "overcast", "fog": "overcast",
+}  # fmt: skip
+"""What clouds were called before 1.2."""
 _FALL: dict[Weather, tuple[str, float]] = {"rain": ("rain", 4.0), "snow": ("snow", 2.0), "sleet": ("snow", 1.0)}
 _FRICTION: dict[Surface, float] = {"dry": 1.0, "wet": 0.7, "snow": 0.3, "ice": 0.15}
 _WETNESS: dict[Surface, str] = {"dry": "dry", "wet": "wetWithPuddles"}
@@ -75,18 +79,19 @@ def center_ahead_m(actor: ActorInfo) -> float:
     return actor.length_m / 2 - OVERHANGS[actor.type][1].of(actor.length_m)
 
 
-def entity(actor: ActorInfo) -> xosc.Vehicle | xosc.Pedestrian | xosc.MiscObject:
-    """One actor with its true box and axles, metres from its origin."""
+def entity(actor: ActorInfo, minor: int) -> xosc.Vehicle | xosc.Pedestrian | xosc.MiscObject:
+    """One actor with its true box and axles, metres from its origin, for version 1.`minor`."""
     height, mass = HEIGHT_M[actor.type], MASS_KG[actor.type]
     ahead = round(center_ahead_m(actor), 6)
     box = xosc.BoundingBox(actor.width_m, actor.length_m, height, ahead, 0.0, height / 2)
     if actor.type == "pedestrian":
-        made = xosc.Pedestrian(actor.type, mass, xosc.PedestrianCategory.pedestrian, box)
+        model = actor.type if minor == 0 else None  # the schema of 1.0 wants one
+        made = xosc.Pedestrian(actor.type, mass, xosc.PedestrianCategory.pedestrian, box, model)
     elif actor.type == "object":
         made = xosc.MiscObject(actor.type, mass, xosc.MiscObjectCategory.obstacle, box)
     else:
         category = getattr(xosc.VehicleCategory, _CATEGORY[actor.type])
-        made = xosc.Vehicle(actor.type, category, box, *_axles(actor), 70.0, 12.0, 12.0, mass)
+        made = xosc.Vehicle(actor.type, category, box, *_axles(actor), 70.0, 12.0, 12.0, mass if minor else None)
     made.add_property(*INTERPOLATION)
     return made
 
@@ -99,38 +104,43 @@ def _axles(actor: ActorInfo) -> tuple[xosc.Axle, xosc.Axle]:
     return xosc.Axle(0.6, wheel, track, wheelbase, wheel / 2), xosc.Axle(0.0, wheel, track, 0.0, wheel / 2)
 
 
-def environment(behavior: BehaviorSpec | None) -> xosc.Environment | None:
-    """Light, weather and surface as far as the behavior states them; None where it states none."""
+def environment(behavior: BehaviorSpec | None, minor: int) -> xosc.Environment | None:
+    """Light, weather and surface as far as the behavior states them; None where it states none.
+
+    Version 1.0 knows whole surroundings only: what is open stands there as noon, clear and dry.
+    """
     if behavior is None or not (behavior.light or behavior.weather or behavior.surface):
         return None
     stated = [part for part in (behavior.light, behavior.weather, behavior.surface) if part]
-    return xosc.Environment(
-        "_".join(stated), _time_of_day(behavior.light), _weather(behavior), _road_condition(behavior.surface)
-    )
+    light, weather, surface = behavior.light, behavior.weather, behavior.surface
+    if minor == 0:
+        light, weather, surface = light or "day", weather or "clear", surface or "dry"
+    parts = _time_of_day(light), _weather(light, weather, minor), _road_condition(surface, minor)
+    return xosc.Environment("_".join(stated), *parts)
 
 
 def _time_of_day(light: Light | None) -> xosc.TimeOfDay | None:
     return None if light is None else xosc.TimeOfDay(False, 2005, 6, 21, *_TIME[light], 0)
 
 
-def _weather(behavior: BehaviorSpec) -> xosc.Weather | None:
-    if not (behavior.weather or behavior.light):
+def _weather(light: Light | None, weather: Weather | None, minor: int) -> xosc.Weather | None:
+    if not (weather or light):
         return None
-    intensity, azimuth, elevation = _SUN.get(behavior.light or "day", _SUN["day"])
-    sun = xosc.Sun(intensity, azimuth, elevation) if behavior.light else None
-    if behavior.weather is None:
+    sun = xosc.Sun(*_SUN[light]) if light else None
+    if weather is None:
         return xosc.Weather(sun=sun)
-    kind, rate = _FALL.get(behavior.weather, ("dry", 0.0))
+    kind, rate = _FALL.get(weather, ("dry", 0.0))
+    cover = (xosc.CloudState, _STATE[weather]) if minor < 2 else (xosc.FractionalCloudCover, _CLOUD[weather])
     return xosc.Weather(
-        getattr(xosc.FractionalCloudCover, _CLOUD[behavior.weather]),
+        getattr(*cover),
         sun=sun,
-        fog=xosc.Fog(100 if behavior.weather == "fog" else 10000),
+        fog=xosc.Fog(100 if weather == "fog" else 10000),
         precipitation=xosc.Precipitation(getattr(xosc.PrecipitationType, kind), rate),
     )
 
 
-def _road_condition(surface: Surface | None) -> xosc.RoadCondition | None:
+def _road_condition(surface: Surface | None, minor: int) -> xosc.RoadCondition | None:
     if surface is None:
         return None
-    wetness = getattr(xosc.Wetness, _WETNESS[surface]) if surface in _WETNESS else None
+    wetness = getattr(xosc.Wetness, _WETNESS[surface]) if surface in _WETNESS and minor >= 2 else None
     return xosc.RoadCondition(_FRICTION[surface], wetness=wetness)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.opendrive.mend import mend
+from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.limited import run_limited
 from sgcad_core.records import PlainXml, RoadNetwork
@@ -45,18 +45,18 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
         return RoadNetwork(plain=plain, spec=spec, log=log, returncode=XSD_RETURNCODE)
     with tempfile.TemporaryDirectory(prefix="sgcad-net-") as folder:
         code, log = _run(plain, Path(folder))
-        net, xodr = _read(Path(folder) / "road.net.xml"), _read(Path(folder) / "road.xodr")
-    if code != 0 or not net or not xodr:
+        net = _read(Path(folder) / "road.net.xml")
+    if code != 0 or not net:
         return RoadNetwork(plain=plain, spec=spec, log=log or "netconvert wrote no network", returncode=code or 1)
     try:
-        mended = mend(xodr)
+        xodr = write_xodr(net)
     except InvalidOutput as fault:
         return RoadNetwork(plain=plain, spec=spec, net_xml=net, log=f"{log}\n{fault}".strip(), returncode=1)
-    return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=mended, log=log, returncode=code)
+    return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=xodr, log=log, returncode=code)
 
 
 def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:
-    command = [str(settings.netconvert()), *FLAGS, "-o", "road.net.xml", "--opendrive-output", "road.xodr"]
+    command = [str(settings.netconvert()), *FLAGS, "-o", "road.net.xml"]
     for flag, name in (("-n", "nodes"), ("-e", "edges"), ("-x", "connections")):
         if text := getattr(plain, name):
             (folder / f"{name}.xml").write_text(text, encoding="utf-8")

@@ -14,6 +14,7 @@ from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.sumo.told import CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
@@ -65,6 +66,7 @@ def _nodes(spec: RoadSpec) -> str:
             place = etree.SubElement(root, "node", id=node.id, x=_m(node.x_m), y=_m(node.y_m), type=kind)
             if len(roads) > 2 and sum(road.kind != "driveway" for road in roads) < 3:
                 place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
+            _tell(place, {CONTROL: node.control})
     return to_text(root)
 
 
@@ -108,6 +110,13 @@ def _edge(root: Element, way: Roadway, direction: Direction) -> None:
     edge.set("shape", _shape(way.left_border(direction)))
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
+    limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph else USUAL
+    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit})
+
+
+def _tell(element: Element, told: Mapping[str, str]) -> None:
+    for key, value in told.items():
+        etree.SubElement(element, "param", key=key, value=value)
 
 
 def _priority(road: Road) -> int:

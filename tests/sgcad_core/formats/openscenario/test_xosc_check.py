@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from sgcad_core.formats.opendrive.check import lane_index
+from sgcad_core.formats.opendrive.index import lane_index
 from sgcad_core.formats.openscenario.check import MAX_FINDINGS, xosc_findings
 from sgcad_core.formats.openscenario.entities import center_ahead_m
 from sgcad_core.formats.openscenario.writer import write_xosc

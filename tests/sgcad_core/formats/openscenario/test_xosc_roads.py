@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.check import lane_index
+from sgcad_core.formats.opendrive.index import lane_index
 from sgcad_core.formats.openscenario.motion import Pose
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.positions import shifted
