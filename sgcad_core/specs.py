@@ -9,7 +9,7 @@ copy rather than compute; everything behind the specs is SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
@@ -20,6 +20,7 @@ NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yie
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadKind = Literal["road", "driveway", "ramp"]
+RoadArea = Literal["", "rural", "town", "motorway"]
 ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
@@ -81,6 +82,14 @@ class RoadSpec(Spec):
 
     nodes: Annotated[tuple[Node, ...], Field(min_length=2, max_length=40)]
     roads: Annotated[tuple[Road, ...], Field(min_length=1, max_length=60)]
+
+
+class ToldRoad(NamedTuple):
+    """What a report tells of a drawn road that no field of a spec holds (specs are answers; this is read by rules)."""
+
+    posted: bool = True
+    """Whether its speed limit is told; else it is a usual one."""
+    area: RoadArea = ""
 
 
 # ------------------------------------------------------------------ road, as a small model or a template says it

@@ -18,6 +18,7 @@ from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.language import rule
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
 from sgcad_core.narrative.roads import RoadFacts, road_facts
+from sgcad_core.narrative.told_roads import told_roads
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
@@ -52,6 +53,9 @@ class Template(RoadWriter):
             )
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
-        network = compile_network(plain_xml(spec), spec)
+        told = told_roads(facts, spec)
+        network = compile_network(plain_xml(spec, told), spec)
         notes = [f"template: {note}; a default stands in" for note in facts.notes]
+        if open_limits := [name for name, road in told.items() if not road.posted]:
+            notes.append(f"template: no posted speed limit is told of {', '.join(open_limits)}; the map leaves it open")
         return network.model_copy(update={"log": "\n".join([*notes, network.log]).strip()})

@@ -10,10 +10,12 @@ from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.roads import XodrRoads
 from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.geometry.distances import distance_to
-from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
 from sgcad_core.records import Finding
 
 TOLERANCE_M = 0.5
+UNEVEN_M = 8.0
+"""SUMO cuts the lanes of a road one by one, OpenDRIVE all at one station: the connecting road covers the rest."""
 MAX_EDGES = 12
 """Edges whose lanes are compared; evenly taken from all."""
 _REMEDY = "write both files in one run of netconvert"
@@ -50,7 +52,7 @@ def _apart(graph: LaneGraph, index: RoadIndex, roads: XodrRoads) -> Iterator[Fin
 
 def _lane_apart(edge: Edge, lane: Lane, center: Floats) -> Iterator[Finding]:
     probes = resample(lane.shape, np.linspace(0.0, arc_lengths(lane.shape)[-1], 5))
-    away = float(distance_to(center, probes).max())
+    away = float(distance_to(prolonged(center, UNEVEN_M), probes).max())
     backwards = bool((lane.shape[-1] - lane.shape[0]) @ (center[-1] - center[0]) < 0)
     if away > TOLERANCE_M or backwards:
         said = "runs the other way" if backwards else f"{away:.2f} m apart"

@@ -16,6 +16,7 @@ from itertools import pairwise
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
+from sgcad_core.formats.opendrive.check_control import control_findings
 from sgcad_core.formats.opendrive.geometry import (
     Pose,
     arc_lengths_of,
@@ -36,13 +37,14 @@ _NETCONVERT = "draw the junction less sharp or the roads longer"
 
 # ------------------------------------------------------------------ what is wrong
 def xodr_findings(xodr: str) -> list[Finding]:
-    """Schema faults first; where the schema holds, references, links, lengths and gaps. Empty is a pass."""
+    """Schema faults first; where it holds, references, links, lengths and gaps, then signals. Empty is a pass."""
     try:
         root = parse_xml(xodr, "opendrive")
     except InvalidOutput as fault:
         return list(fault.findings)
     broken = [_finding(m, f"line {n}", "", "follow OpenDRIVE 1.7") for n, m in schema_errors(_schema(), root)]
-    return broken or [*_doubles(root), *_references(root), *_lengths(root), *_gaps(root)]
+    found = broken or [*_doubles(root), *_references(root), *_lengths(root), *_gaps(root)]
+    return found or control_findings(root)
 
 
 @cache

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.opendrive.geometry import Pose, hermite, wrap
+from sgcad_core.formats.opendrive.geometry import Pose, cubic_lengths, hermite, wrap
 from sgcad_core.formats.opendrive.streets import Street, Strip
 from sgcad_core.formats.sumo.lane_graph import Connection
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
@@ -19,6 +19,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 STRAIGHT_M = 5e-4
 STRAIGHT_RAD = 1e-5
 LEAST_REACH_M = 0.1
+SAME_END_M = 0.05
 _PROBES = 12
 _ROUNDS = 6
 _P = np.linspace(0.0, 1.0, 65)
@@ -64,7 +65,7 @@ def way(start: Pose, end: Pose, via: Floats) -> Way:
         return Way(start, None, distance)
     tangents = _tangents(start, end, via)
     cubic = hermite(start, end) if tangents is None else _local(start, end, tangents)
-    return Way(start, cubic, _length(cubic))
+    return Way(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
 
 
 def _aside(start: Pose, end: Pose) -> float:
@@ -78,7 +79,7 @@ def _tangents(start: Pose, end: Pose, via: Floats) -> tuple[float, float] | None
     Points are assigned to places on the curve, the curve is fitted, and again: each round is linear.
     """
     ends = np.array(start[:2]), np.array(end[:2])
-    line = np.vstack((ends[0], via[1:-1], ends[1]))
+    line = np.vstack((ends[0], _inner(via, *ends), ends[1]))
     total = float(arc_lengths(line)[-1])
     if total < LEAST_REACH_M:
         return None
@@ -98,6 +99,12 @@ def _tangents(start: Pose, end: Pose, via: Floats) -> tuple[float, float] | None
     return float(found[0]), float(found[1])
 
 
+def _inner(via: Floats, first: Floats, last: Floats) -> Floats:
+    """Points between the ends; SUMO's own ends too where its lanes end elsewhere than the roads."""
+    away = [float(np.hypot(*(via[i] - end))) > SAME_END_M for i, end in ((0, first), (-1, last))]
+    return via[0 if away[0] else 1 : len(via) if away[1] else -1]
+
+
 def _local(start: Pose, end: Pose, reach: tuple[float, float]) -> tuple[float, ...]:
     """Coefficients in the frame of the start pose."""
     dx, dy = end.x_m - start.x_m, end.y_m - start.y_m
@@ -106,14 +113,3 @@ def _local(start: Pose, end: Pose, reach: tuple[float, float]) -> tuple[float, .
     turn = end.heading_rad - start.heading_rad
     u1, v1 = reach[1] * math.cos(turn), reach[1] * math.sin(turn)
     return 0.0, reach[0], 3 * u - 2 * reach[0] - u1, u1 + reach[0] - 2 * u, 0.0, 0.0, 3 * v - v1, v1 - 2 * v
-
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-
-
-def _length(cubic: tuple[float, ...]) -> float:
-    """Arc length (16-point Gauss-Legendre in eight panels)."""
-    p = np.concatenate([(_NODES + 1 + 2 * k) / 16 for k in range(8)])
-    du = cubic[1] + 2 * cubic[2] * p + 3 * cubic[3] * p**2
-    dv = cubic[5] + 2 * cubic[6] * p + 3 * cubic[7] * p**2
-    return float(np.hypot(du, dv) @ np.tile(_WEIGHTS, 8) / 16)

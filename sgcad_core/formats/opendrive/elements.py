@@ -11,7 +11,8 @@ from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.marks import LINE_M, NONE, Mark, center_mark, outer_mark
 from sgcad_core.formats.opendrive.reference import Piece
 from sgcad_core.formats.opendrive.signals import posted_mph
-from sgcad_core.formats.opendrive.streets import Street, Strip, Width
+from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.widths import Width
 from sgcad_core.formats.sumo.lane_graph import Edge
 from sgcad_core.formats.sumo.told import LIMIT, MEDIAN, USUAL
 from sgcad_core.formats.xml import Element

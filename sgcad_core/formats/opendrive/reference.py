@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -51,7 +52,7 @@ def pieces(points: Floats, reach_m: tuple[float, float] = (0.0, 0.0)) -> tuple[P
     """
     steps = np.diff(points, axis=0)
     sizes, directions = np.hypot(*steps.T), np.arctan2(steps[:, 1], steps[:, 0])
-    turns = np.array([wrap(float(b - a)) for a, b in zip(directions, directions[1:], strict=False)])
+    turns = np.array([wrap(float(b - a)) for a, b in pairwise(directions)])
     cuts = _cuts(sizes, turns, reach_m)
     found, gone = list[Piece](), 0.0
     for i, (size, direction) in enumerate(zip(sizes, directions, strict=True)):

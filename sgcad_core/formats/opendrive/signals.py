@@ -2,8 +2,8 @@
 
 What stands where follows from the lane graph alone: link states tell who stops (s, w), programs what signals
 show, parameters of edges and nodes what a report tells beyond SUMO's terms (`plain_xml`). Codes: MUTCD 2009
-(R1-1 stop, R1-2 yield, R1-3P all way, R2-1 speed limit) with country "US"; signal heads 1000001 of OpenDRIVE's own list.
-Metres; seconds.
+(R1-1 stop, R1-2 yield, R1-3P all way, R2-1 speed limit) with country "US"; signal heads
+1000001 of OpenDRIVE's own list. Metres; seconds.
 """
 
 from __future__ import annotations

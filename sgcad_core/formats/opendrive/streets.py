@@ -7,7 +7,7 @@ edge's. Metres; knows no XML.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -16,6 +16,7 @@ import numpy as np
 
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.reference import Piece, length_of, pieces, pose_at
+from sgcad_core.formats.opendrive.widths import Width, clean, fitted, offsets_at, offsets_or_end, stations_of
 from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, resample
 
@@ -25,16 +26,9 @@ SAME_M = 0.005
 WIDEST_M = 40.0
 OVERLAP_M = 0.05
 """Directions farther apart than the one, or overlapping by more than the other, are roads of their own."""
-LEAST_LENGTH_M = 0.2
-
-
-@dataclass(frozen=True)
-class Width:
-    """Width from `s_m` on: a + b (s - s_m)."""
-
-    s_m: float
-    a: float
-    b: float = 0.0
+LEAST_LENGTH_M = 0.05
+BESIDE_SHARE = 0.3
+"""Two directions that do not lie beside each other over more of the road are roads of their own."""
 
 
 @dataclass(frozen=True)
@@ -169,9 +163,10 @@ def _street(name: str, forward: Edge, backward: Edge | None, trims: Mapping[tupl
             return None
         if gaps.max() > SAME_M:
             line, varies = _middle(ahead, back), bool(np.ptp(gaps) > SAME_M)
-    line = _trimmed(line, forward, backward, trims)
-    if line is None:
+    cut = _trimmed(line, forward, backward, trims)
+    if cut is None:
         return None
+    line = cut
     reach = (_reach(backward) if backward else 0.0), _reach(forward)
     drawn = pieces(line, reach)
     right = _strips(forward, -1, line, ahead, varies, backward is not None)
@@ -185,31 +180,21 @@ def _reach(edge: Edge) -> float:
 
 def _left_border(edge: Edge) -> Floats:
     inner = edge.lanes[-1]
-    return parallel_polyline(_clean(inner.shape), inner.width_m / 2)
-
-
-def _clean(line: Floats) -> Floats:
-    """Without points nearer than 1 mm to the one before; both ends stay."""
-    keep = np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)
-    kept = line[keep]
-    if len(kept) < 2:
-        return line[[0, -1]]
-    kept[-1] = line[-1]
-    return kept
+    return parallel_polyline(clean(inner.shape), inner.width_m / 2)
 
 
 def _gaps(line: Floats, other: Floats) -> Floats | None:
-    """How far another line lies to the left at each of 9 stations; None where it does not run beside it."""
-    stations = np.linspace(0, arc_lengths(line)[-1], 9)[1:-1]
-    found = _offsets(line, other, stations)
-    return None if np.isnan(found).any() else found
+    """How far another line lies to the left at its stations; None where it does not run beside it."""
+    found = offsets_at(line, other, stations_of(line))
+    inner = found[~np.isnan(found)]
+    return None if np.isnan(found[1:-1]).mean() > BESIDE_SHARE or not len(inner) else inner
 
 
 def _middle(one: Floats, two: Floats) -> Floats:
     """The line between two lines that run side by side, a vertex for each of both."""
     shares = np.union1d(*(np.round(arc_lengths(x) / max(arc_lengths(x)[-1], 1e-9), 9) for x in (one, two)))
     halves = [resample(x, shares * arc_lengths(x)[-1]) for x in (one, two)]
-    return _clean(np.asarray((halves[0] + halves[1]) / 2))
+    return clean(np.asarray((halves[0] + halves[1]) / 2))
 
 
 def _trimmed(
@@ -249,21 +234,19 @@ def _along(line: Floats, point: Floats) -> float:
 
 
 # ------------------------------------------------------------------ lanes
-def _strips(
-    edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool
-) -> tuple[Strip, ...]:
+def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool) -> tuple[Strip, ...]:
     """Lanes of one side from the inside out, a median strip first where the border lies off the line."""
     lanes = list(reversed(edge.lanes))
-    stations = _stations(line)
+    stations = stations_of(line)
     if varies:
-        inner = [border, *(parallel_polyline(_clean(lane.shape), -lane.width_m / 2)[::-sign] for lane in lanes)]
-        offsets = np.abs([_offsets_or_end(line, b, stations) for b in inner])
-        widths = [_fitted(stations, w) for w in (offsets[0], *np.diff(offsets, axis=0))]
+        inner = [border, *(parallel_polyline(clean(lane.shape), -lane.width_m / 2)[::-sign] for lane in lanes)]
+        offsets = np.abs([offsets_or_end(line, b, stations) for b in inner])
+        widths = [fitted(stations, w) for w in (offsets[0], *np.diff(offsets, axis=0))]
     else:
-        gap = abs(float(np.mean(_offsets_or_end(line, border, stations))))
+        gap = abs(float(np.mean(offsets_or_end(line, border, stations))))
         widths = [(Width(0.0, gap),), *((Width(0.0, lane.width_m),) for lane in lanes)]
     wide = max(w.a for w in widths[0]) > SAME_M / 2
-    rows = [("median", None, widths[0])] if wide else []
+    rows: list[tuple[str, Lane | None, tuple[Width, ...]]] = [("median", None, widths[0])] if wide else []
     rows += [(_lane_type(lane, edge, center_lane), lane, w) for lane, w in zip(lanes, widths[1:], strict=True)]
     return tuple(Strip(sign * i, kind, w, lane) for i, (kind, lane, w) in enumerate(rows, 1))
 
@@ -273,63 +256,3 @@ def _lane_type(lane: Lane, edge: Edge, two_way: bool) -> str:
     if two_way and not lane.allows_cars and lane is edge.lanes[-1]:
         return "bidirectional"
     return "driving" if lane.allows_cars else "restricted"
-
-
-def _stations(line: Floats) -> Floats:
-    """Where widths are measured: at the vertices, and in the middle of a straight line."""
-    along = arc_lengths(line)
-    return along if len(along) > 2 else np.array([0.0, along[-1] / 2, along[-1]])
-
-
-def _offsets_or_end(line: Floats, other: Floats, stations: Floats) -> Floats:
-    """As `_offsets`; beyond the other line's ends the value of its nearest point that has one."""
-    found = _offsets(line, other, stations)
-    known = np.flatnonzero(~np.isnan(found))
-    return np.interp(stations, stations[known], found[known]) if len(known) else np.zeros_like(stations)
-
-
-def _offsets(line: Floats, other: Floats, stations: Floats) -> Floats:
-    """(n,) t at which another line crosses the normal of a line at each station; nan where it does not."""
-    points = resample(line, stations)
-    ahead, behind = resample(line, stations + 0.01), resample(line, stations - 0.01)
-    tangent = ahead - behind
-    tangent = tangent / np.hypot(*tangent.T)[:, None]
-    normal = np.column_stack((-tangent[:, 1], tangent[:, 0]))
-    ends = _prolonged(other)
-    u = (ends[None] - points[:, None]) @ tangent[:, :, None]
-    v = (ends[None] - points[:, None]) @ normal[:, :, None]
-    u, v = u[..., 0], v[..., 0]
-    crosses = (u[:, :-1] <= 1e-9) & (u[:, 1:] > 1e-9)
-    step = np.where(crosses, u[:, 1:] - u[:, :-1], 1.0)
-    t = v[:, :-1] - u[:, :-1] / step * (v[:, 1:] - v[:, :-1])
-    near = np.where(crosses, np.abs(t), np.inf)
-    best = near.argmin(axis=1)
-    return np.where(crosses.any(axis=1), t[np.arange(len(stations)), best], np.nan)
-
-
-def _prolonged(line: Floats, by_m: float = 0.5) -> Floats:
-    """A line with both ends prolonged, so that normals at a neighbor's ends meet it."""
-    first, last = line[0] - line[1], line[-1] - line[-2]
-    return np.vstack((line[0] + first / np.hypot(*first) * by_m, line, line[-1] + last / np.hypot(*last) * by_m))
-
-
-def _fitted(stations: Floats, values: Floats) -> tuple[Width, ...]:
-    """Straight width pieces through measured values, those that one line tells joined."""
-    kept = [0, *_needed(stations, values, 0, len(stations) - 1), len(stations) - 1]
-    ends: Sequence[int] = sorted(set(kept))
-    return tuple(_slope(stations, values, i, j) for i, j in zip(ends, ends[1:], strict=False))
-
-
-def _slope(s: Floats, w: Floats, i: int, j: int) -> Width:
-    return Width(float(s[i]), float(w[i]), float((w[j] - w[i]) / max(s[j] - s[i], 1e-9)))
-
-
-def _needed(s: Floats, w: Floats, i: int, j: int) -> Iterator[int]:
-    """Inner stations that a polyline from i to j needs to stay within 1 mm of all values (Douglas-Peucker)."""
-    if j - i < 2:
-        return
-    chord = w[i] + (w[j] - w[i]) * (s[i + 1 : j] - s[i]) / max(s[j] - s[i], 1e-9)
-    away = np.abs(w[i + 1 : j] - chord)
-    if away.max() > 1e-3:
-        k = i + 1 + int(away.argmax())
-        yield from (*_needed(s, w, i, k), k, *_needed(s, w, k, j))

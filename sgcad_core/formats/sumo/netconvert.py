@@ -56,14 +56,18 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
 
 def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:
-    command = [str(settings.netconvert()), *FLAGS, "-o", "road.net.xml"]
+    arguments = [*FLAGS, "-o", "road.net.xml"]
     for flag, name in (("-n", "nodes"), ("-e", "edges"), ("-x", "connections")):
         if text := getattr(plain, name):
             (folder / f"{name}.xml").write_text(text, encoding="utf-8")
-            command += [flag, f"{name}.xml"]
+            arguments += [flag, f"{name}.xml"]
+    return _call(arguments, folder)
+
+
+def _call(arguments: Sequence[str], folder: Path) -> tuple[int, str]:
     environment = settings.subprocess_environment()
     try:
-        done = run_limited(command, folder, environment, TIMEOUT_S)
+        done = run_limited([str(settings.netconvert()), *arguments], folder, environment, TIMEOUT_S)
     except subprocess.TimeoutExpired:
         return 124, f"netconvert took longer than {TIMEOUT_S:g} s"
     said = (done.stderr + b"\n" + done.stdout).decode("utf-8", "replace")
@@ -75,6 +79,16 @@ def _read(file: Path) -> str | None:
     if not file.exists():
         return None
     return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
+
+
+def net_of_xodr(xodr: str) -> tuple[str, str]:
+    """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
+    with tempfile.TemporaryDirectory(prefix="sgcad-back-") as name:
+        folder = Path(name)
+        (folder / "road.xodr").write_text(xodr, encoding="utf-8")
+        code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
+        net = _read(folder / "road.net.xml") if code == 0 else None
+    return net or "", log
 
 
 def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:

@@ -14,7 +14,7 @@ from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.told import CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
@@ -28,7 +28,7 @@ from sgcad_core.roads.road_geometry import (
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
-from sgcad_core.specs import Node, NodeControl, Road, RoadSpec
+from sgcad_core.specs import Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
@@ -45,12 +45,15 @@ _TYPES: Mapping[NodeControl, str] = {
 }  # fmt: skip
 
 
-def plain_xml(spec: RoadSpec) -> PlainXml:
-    """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold."""
+def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> PlainXml:
+    """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold.
+
+    `told`: road id -> what the report tells of it; a road without an entry has the limit that its spec states.
+    """
     if findings := spec_findings(spec):
         raise InvalidOutput("\n".join(f.line() for f in findings), findings)
     drawn = roadways(spec)
-    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn), connections=_connections(links(spec, drawn)))
+    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=_connections(links(spec, drawn)))
 
 
 # ------------------------------------------------------------------ nodes
@@ -84,17 +87,17 @@ def _yields(road: Road) -> bool:
 
 
 # ------------------------------------------------------------------ edges
-def _edges(drawn: Mapping[str, Roadway]) -> str:
+def _edges(drawn: Mapping[str, Roadway], told: Mapping[str, ToldRoad]) -> str:
     root = etree.Element("edges")
     for way in drawn.values():
         directions: tuple[Direction, ...] = ("forward", "backward")
         for direction in directions:
             if lanes(way.road, direction):
-                _edge(root, way, direction)
+                _edge(root, way, direction, told.get(way.road.id, ToldRoad()))
     return to_text(root)
 
 
-def _edge(root: Element, way: Roadway, direction: Direction) -> None:
+def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> None:
     road, forward = way.road, direction == "forward"
     ends = (road.from_node, road.to_node) if forward else (road.to_node, road.from_node)
     center = forward and has_center_lane(road)
@@ -110,8 +113,8 @@ def _edge(root: Element, way: Roadway, direction: Direction) -> None:
     edge.set("shape", _shape(way.left_border(direction)))
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
-    limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph else USUAL
-    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit})
+    limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
+    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
 
 
 def _tell(element: Element, told: Mapping[str, str]) -> None:

@@ -34,13 +34,14 @@ def test_lanes_lie_where_sumo_has_them(network):
     graph, roads = parse_net(network().net_xml), XodrRoads(network().xodr)
     index = lane_index(network().xodr)
     for edge in graph.edges.values():
-        road = index.by_edge(edge.id)
-        for number, expected in ((s.index - len(edge.lanes), s.shape) for s in edge.lanes):
-            assert distance_to(roads.lane_center(road.id, number), expected).max() < 0.25
-            pose = roads.lane_pose(road.id, number, road.length_m / 2, 0.0)
+        for sumo in edge.lanes:
+            road, number = index.lane(edge.id, sumo.index)
+            length = index.roads[road].length_m
+            assert distance_to(roads.lane_center(road, number), sumo.shape).max() < 0.25
+            pose = roads.lane_pose(road, number, length / 2, 0.0)
             found = roads.nearest(pose)
-            assert found[:2] == (road.id, number)
-            assert found.s_m == pytest.approx(road.length_m / 2, abs=0.3)
+            assert found[:2] == (road, number)
+            assert found.s_m == pytest.approx(length / 2, abs=0.3)
 
 
 def test_the_straightest_way_leads_over_a_junction():
