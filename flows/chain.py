@@ -130,13 +130,13 @@ class _Run:
         return value
 
     def _road(self, report: CrashReport, passages: tuple[Passage, ...]) -> Refinement:
-        writer, context = self.config.road_writer, context_of(report)
+        writer, context = self.config.road_writer, Context.of(report)
         return self._refinement(
             "road", writer, lambda findings, ask, n: writer.write(context, passages, findings, ask, n), report, None
         )
 
     def _scenario(self, report: CrashReport, passages: tuple[Passage, ...], network: RoadNetwork) -> Refinement:
-        writer, context = self.config.scenario_writer, context_of(report)
+        writer, context = self.config.scenario_writer, Context.of(report)
         return self._refinement(
             "scenario",
             writer,
@@ -181,8 +181,9 @@ class _Run:
     def record(self) -> CaseRecord:
         """Everything known, for result.json and the player."""
         notes = self.report.notes if self.report else ()
+        reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        return CaseRecord(*about, self.judgement)
+        return CaseRecord(*about, reading, self.judgement)
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""
@@ -222,11 +223,6 @@ class _Run:
         """Make this a failed case whose reason is a fault that nobody foresaw."""
         self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
         self.trace = "".join(traceback.format_exception(fault))
-
-
-def context_of(report: CrashReport) -> Context:
-    """CAD's c: the crash evidence."""
-    return Context(narrative=report.narrative, diagrams=report.diagrams)
 
 
 def ask_of(config: Config) -> Ask:

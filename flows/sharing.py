@@ -29,7 +29,7 @@ from pydantic import BaseModel
 
 from flows import cases, packing
 from flows.packing import Unpackable, pack, unpack
-from sgcad_core import records, specs
+from sgcad_core import evidence, records, specs
 from sgcad_core.asking import narrowing, refine
 from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
@@ -86,7 +86,7 @@ def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
 @cache
 def _records_digest() -> str:
     """Other records are another cache."""
-    files = (Path(str(module.__file__)) for module in (records, specs, refine, narrowing, packing))
+    files = (Path(str(module.__file__)) for module in (evidence, records, specs, refine, narrowing, packing))
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
@@ -103,7 +103,7 @@ def content_of(value: Any) -> str:
 
 def _feed(found: Any, value: Any) -> None:
     if isinstance(value, BaseModel):
-        value = dict(value)
+        value = {name: getattr(value, name) for name in type(value).model_fields}  # no reading, which follows from them
     if isinstance(value, dict):
         value = sorted(value.items())
     if isinstance(value, list | tuple):

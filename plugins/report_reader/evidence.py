@@ -19,7 +19,8 @@ from PIL import Image, ImageOps
 from plugins.report_reader.degrade import Level, degrade
 from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import ReportReader
-from sgcad_core.narrative.privacy import redact
+from sgcad_core.narrative.privacy import redacted
+from sgcad_core.narrative.traced import Traced, joined, runs
 from sgcad_core.records import CrashReport, Diagram
 
 MAX_NARRATIVE = 100_000
@@ -87,22 +88,29 @@ class EvidenceReader(ReportReader, ABC):
         notes: tuple[str, ...] = (),
     ) -> CrashReport:
         """Assemble a report as the switches ask. Raises BadInput if nothing is left to read."""
-        text = checked_narrative(narrative, source) if self.use_narrative else ""
-        text = redact(text) if self.redact_persons else text
+        text = checked_narrative(Traced.of(narrative), source) if self.use_narrative else Traced.of("")
+        text = redacted(text) if self.redact_persons else text
         if self.use_coded_fields and coded:
-            text = f"{text}\n\nCoded fields:\n{coded_lines(coded)}".strip()
+            text = _behind(text, f"\n\nCoded fields:\n{coded_lines(coded)}", len(narrative)).strip()
         shown = diagrams if self.use_diagrams else ()
-        if not text and not shown:
+        if not text.text and not shown:
             raise BadInput(f"{source}: no diagram, and the narrative is switched off: set use_narrative to true")
         name = source.name if source.is_dir() else source.stem
         report = CrashReport(
             case=safe_case(name),
-            narrative=text,
+            narrative=text.text,
             diagrams=shown,
             coded=coded if self.use_coded_fields else None,
             notes=notes,
+            places=runs(text),
         )
         return degrade(report, self.robustness_level)
+
+
+def _behind(text: Traced, more: str, end: int) -> Traced:
+    """The text with more that nobody wrote, placed at the narrative's end."""
+    nowhere = [end] * len(more)
+    return joined([text, Traced(more, nowhere, nowhere)])
 
 
 def safe_case(name: str) -> str:
@@ -128,13 +136,13 @@ def decode(raw: bytes, source: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def checked_narrative(text: str, source: Path) -> str:
+def checked_narrative(text: Traced, source: Path) -> Traced:
     """The narrative, stripped. Raises BadInput if it is empty or does not read like English."""
     text = text.strip()
-    if len(text) > MAX_NARRATIVE:
-        raise BadInput(f"{source}: a narrative of {len(text):,} characters, at most {MAX_NARRATIVE:,} are read: "
+    if len(text.text) > MAX_NARRATIVE:
+        raise BadInput(f"{source}: a narrative of {len(text.text):,} characters, at most {MAX_NARRATIVE:,} are read: "
                        "give one report, without its appendices")  # fmt: skip
-    words = re.findall(r"[^\W\d_]+", text.lower())
+    words = re.findall(r"[^\W\d_]+", text.text.lower())
     if len(words) < MIN_WORDS:
         raise BadInput(f"{source}: the narrative has {len(words)} words, at least {MIN_WORDS} are needed: is it empty?")
     common = sum(w in _FUNCTION_WORDS for w in words) / len(words)

@@ -17,8 +17,9 @@ from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.language import rule
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.narrative.told_roads import told_roads
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
@@ -41,8 +42,9 @@ class Template(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
-        return self.network_of(context.narrative, road_facts(context.narrative))
+        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without
+        a crash and on a place that cannot be drawn."""
+        return self.network_of(context.narrative, context.reading.roads)
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
@@ -51,6 +53,7 @@ class Template(RoadWriter):
                 "the narrative names neither a vehicle nor a road",
                 ["the road or junction of the crash", "the vehicles and how they traveled"],
             )
+        refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
         told = told_roads(facts, spec)

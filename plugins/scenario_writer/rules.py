@@ -17,7 +17,6 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import RoadSpec
 
@@ -41,7 +40,7 @@ class Rules(ScenarioWriter):
     ) -> Scenario:
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
-        facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
+        facts = context.reading.crash
         scenario = compile_scenario(behavior_of_facts(facts, spec), network, self.openscenario)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 

@@ -16,21 +16,26 @@ from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
+from sgcad_core.kinds import junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
-from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.narrative.unsupported import not_drawn
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
 
-_ORDER = ("repair", "doubt", "note")
+_ORDER = ("refuse", "repair", "doubt", "note")
 
 
 class RoadNarrative(Validator):
-    """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes."""
+    """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes.
+
+    A crash at a place that cannot be drawn is refused, or noted where the road of it can be.
+    """
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "6"
+    version: ClassVar[str] = "7"
     tolerance_deg: float = 35.0
     """Between a road as drawn and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
@@ -43,10 +48,11 @@ class RoadNarrative(Validator):
             graph = parse_net(artifact.net_xml)
         except InvalidOutput:
             return []
-        facts = road_facts(evidence.report.narrative)
+        facts = evidence.report.reading.roads
         drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
-            *self._legs(facts, len(legs[0]) if legs else 0, pictured), *self._paths(facts, legs, pictured),
+            *_not_drawn(facts), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *self._paths(facts, legs, pictured),
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
             *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
         ]  # fmt: skip
@@ -55,15 +61,15 @@ class RoadNarrative(Validator):
     # -------------------------------------------------------------- junction
     def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
         junction = facts.junction
-        want = {"t": 3, "four_leg": 4}.get(junction.kind)
+        record = junction_kind(junction.kind)
+        want = record.legs if record.rule else None  # what a text names in so many words
         if want and junction.stated and widest < want:
-            said = "a T-intersection" if want == 3 else "a four-leg intersection"
-            what = f"the report says {said}, but no junction of the network has {want} legs"
+            what = f"the report says {record.called}, but no junction of the network has {want} legs"
             remedy = f"let {want} roads meet at one node"
             holds = (Hold(items="legs", at_least=want), *laid(facts, pictured))
             yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
-            what = "the report says a T-intersection, but the junction has a leg too many"
+            what = f"the report says {record.called}, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
             alone = not pictured and _alone(facts)
             holds = (Hold(items="legs", at_most=want),) if alone else ()
@@ -260,6 +266,13 @@ def _vague(road: RoadFact, pictured: bool) -> bool:
 
 def _ids(roads: list[DrawnRoad]) -> str:
     return "roads " + ", ".join(d.id for d in roads[:6])
+
+
+def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
+    """A finding on every place of the crash that cannot be drawn."""
+    for kind in facts.junction.unsupported:
+        record = unsupported_kind(kind)
+        yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
 
 
 def _finding(

@@ -51,7 +51,9 @@ def driven(motion: Trajectory, length_m: float, until: int | None = None, *, bac
 
     `backing`: the box is meant to travel against its heading, slip is told from that.
     """
-    x, y, heading = (np.asarray(c, dtype=float)[: until and until + 1] for c in (motion.x_m, motion.y_m, motion.heading_rad))
+    x, y, heading = (
+        np.asarray(c, dtype=float)[: until and until + 1] for c in (motion.x_m, motion.y_m, motion.heading_rad)
+    )
     if len(x) < 3:
         return Driven(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
     heading = np.unwrap(heading)

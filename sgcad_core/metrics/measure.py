@@ -36,7 +36,7 @@ def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | N
 
 def _ego(tracks: dict[str, Track]) -> str | None:
     """V1, else the first vehicle, else the first actor."""
-    vehicles = sorted((a for a in tracks if a.startswith("V")), key=lambda a: int(a[1:]))
+    vehicles = sorted((a for a in tracks if a[0:1] == "V" and a[1:].isdecimal()), key=lambda a: int(a[1:]))
     return next(iter([*vehicles, *sorted(tracks)]), None)
 
 

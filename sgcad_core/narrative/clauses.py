@@ -58,7 +58,7 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        current = _main_subject(text, current, role)
+        current = _main_subject(text, current, role, who)
         told.append(Told(text, role, s.number, current, several))
         several = _of_several(text, several)
     return tuple(told)
@@ -75,7 +75,7 @@ def _of_several(text: str, before: bool) -> bool:
 
 def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
     """ "the other vehicle" as a number, where two vehicles leave no doubt."""
-    subject = next(iter(MENTION.findall(text)), None) or current
+    subject = next((v for v in MENTION.findall(text) if v in who.ids), None) or current
     other = who.other(subject) if subject else None
     if other:
         text = rule("clauses.other_vehicle").sub(other, text)
@@ -84,11 +84,11 @@ def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
     return text
 
 
-def _main_subject(text: str, current: str | None, role: Role) -> str | None:
-    """The vehicle that a pronoun in the next sentence means."""
+def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> str | None:
+    """The vehicle that a pronoun in the next sentence means; a number that is no vehicle's is nobody's."""
     if _PRONOUN.match(text) and current:
         return current
-    first = MENTION.search(text)
+    first = next((m for m in MENTION.finditer(text) if m[0] in who.ids), None)
     if not first:
         return current
     opening = text[: first.start()]

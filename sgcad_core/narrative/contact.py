@@ -14,6 +14,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Told, subject_starts
 from sgcad_core.narrative.contact_nouns import Touch, paired_areas, struck_pair, together, touches
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
 from sgcad_core.narrative.zones import Zone, area_of, plain
@@ -33,6 +34,13 @@ class Blow:
     words: str = ""
     mutual: bool = False
     """They collided: the text names no striker."""
+    noun: bool = False
+    """Told by nouns ("the impact was between ..."), not by a verb of hitting."""
+
+    @property
+    def cue(self) -> Cue:
+        """Where it was read."""
+        return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
 
 
 def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
@@ -72,8 +80,8 @@ def _sentence(told: Told, who: Roster) -> list[Blow]:
 
 def _touch(t: Touch, told: Told) -> Blow:
     if t.by:
-        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words)
-    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words)
+        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
+    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
 
 
 def _maybe(words: str | None) -> Zone | None:

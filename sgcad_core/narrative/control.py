@@ -11,11 +11,12 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from sgcad_core.language import rule
+from sgcad_core.language import Rule, rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_in, axis_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
@@ -33,29 +34,35 @@ _NOT_CONTROL = rule("control.not_control")
 _CONSTRUCTION = rule("control.construction")
 
 
-def control_of(told: Sequence[Told]) -> Control:
-    """Signal, stop, yield or flashing: the crash's sentences first, then what drivers said."""
+_CONTROLS: tuple[tuple[Control, Rule], ...] = (
+    ("all_way_stop", _ALL_STOP), ("flashing", _FLASHING), ("signal", _SIGNAL), ("stop", _STOP), ("yield", _YIELD),
+)  # fmt: skip
+"""The first that any sentence tells stands."""
+_ANYWHERE = ("all_way_stop", "yield")
+"""Told of no works zone and no police car."""
+
+
+def control_of(told: Sequence[Told]) -> tuple[Control, Cue | None]:
+    """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
     said = [t for t in told if t.role not in ("codes", "factors")]
     for story in (True, False):
-        texts = [t.text for t in said if (t.role in CRASH_ROLES or t.role == "other") == story]
-        bare = [_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", text)) for text in texts]
-        found = _first_control(texts, bare)
-        if found != "none":
+        found = _first_control([t for t in said if (t.role in CRASH_ROLES or t.role == "other") == story])
+        if found:
             return found
-    return "none"
+    return "none", None
 
 
-def _first_control(texts: Sequence[str], bare: Sequence[str]) -> Control:
-    out = any(_SIGNAL_OUT.search(text) for text in texts)
-    if any(_ALL_STOP.search(text) for text in bare):
-        return "all_way_stop"
-    if any(_FLASHING.search(text) and not _CONSTRUCTION.search(text) for text in texts):
-        return "flashing"
-    if not out and any(_SIGNAL.search(text) and not _CONSTRUCTION.search(text) for text in bare):
-        return "signal"
-    if any(_STOP.search(text) and not _CONSTRUCTION.search(text) for text in bare):
-        return "stop"
-    return "yield" if any(_YIELD.search(text) for text in bare) else "none"
+def _first_control(said: Sequence[Told]) -> tuple[Control, Cue] | None:
+    out = any(_SIGNAL_OUT.search(t.text) for t in said)
+    bare = [t._replace(text=_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))) for t in said]
+    for control, by in _CONTROLS:
+        if control == "signal" and out:
+            continue
+        for t in said if control == "flashing" else bare:
+            match = by.search(t.text)
+            if match and (control in _ANYWHERE or not _CONSTRUCTION.search(t.text)):
+                return control, Cue(t.number, match[0], by.id)
+    return None
 
 
 def controlled(story: Sequence[Told]) -> bool:

@@ -22,21 +22,19 @@ def read_code(found: dict[str, Motion], told: Told, who: Roster) -> None:
         _other_code(found, owner, text, told.number, who)
     else:
         for event in of_role("own_event"):
-            if event.search(text):
-                found[owner].deeds.append(Deed(f"code:{event.yields['deed']}", 2, told.number))
+            if code := event.search(text):
+                found[owner].deeds.append(Deed(f"code:{event.yields['deed']}", 2, told.number, code.group(), event.id))
 
 
 def _other_code(found: dict[str, Motion], owner: str, text: str, number: int, who: Roster) -> None:
     other = who.other(owner)
     for event in of_role("others_event"):
-        if not event.search(text):
+        if not (code := event.search(text)):
             continue
         what = event.yields
         if "kin" in what:
             for me, you in ((owner, other), (other, owner)) if other else ((owner, other),):
                 if me:
                     found[me].kin.append((1, what["kin"], you, "code"))
-        elif what["whom"] == "self":
-            found[owner].deeds.append(Deed(f"code:{what['deed']}", 2, number))
-        elif other:
-            found[other].deeds.append(Deed(f"code:{what['deed']}", 2, number))
+        elif who_did := (owner if what["whom"] == "self" else other):
+            found[who_did].deeds.append(Deed(f"code:{what['deed']}", 2, number, code.group(), event.id))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from sgcad_core.language import of_role, rule
+from sgcad_core.language import Rule, of_role, rule
 from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.motion import Deed, Motion
 
@@ -27,20 +27,21 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int) -> None:
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
             continue
         later = _LATER.search(before) and not _TRY.search(before[-14:])
-        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number))
+        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id))
     for deed in of_role("deed"):
         for m in deed.finditer(text):
             if not _NOT.search(text[max(0, m.start() - 30) : m.start()]):
-                _note_deed(motion, deed.yields["deed"], m, weight, number)
+                _note_deed(motion, deed, m, weight, number)
 
 
-def _note_deed(motion: Motion, kind: str, m: re.Match[str], weight: int, number: int) -> None:
+def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], weight: int, number: int) -> None:
+    kind, rule_id = deed.yields["deed"], deed.id
     if kind == "from_side":
         motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
     elif kind == "into_lane":
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None
         if entered and own and turned(entered, 180) == own:
-            motion.deeds.append(Deed("crossing_centerline", weight, number))
+            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id))
     else:
-        motion.deeds.append(Deed(kind, weight, number))
+        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id))

@@ -18,21 +18,24 @@ _TURN_BEFORE = rule("headings.turn_before")
 
 
 def read_heading(motion: Motion, text: str, weight: int) -> None:
-    for m in sorted([*_HEADING.finditer(text), *_HEADING_BARE.finditer(text)], key=lambda m: m.start()):
+    told = [(m, by) for by in (_HEADING, _HEADING_BARE) for m in by.finditer(text)]
+    for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
         gap = words.get("gap") or words.get("gap2") or ""
         if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
-            _note_heading(motion, words.get("dir") or words.get("dir2") or "", weight)
-    for m in (*_FROM_BOUND.finditer(text), *_BOUND_ASIDE.finditer(text), *_FOLLOWING.finditer(text)):
-        _note_heading(motion, m.group("dir"), weight)
+            _note_heading(motion, words.get("dir") or words.get("dir2") or "", weight, by.id)
+    for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
+        for m in by.finditer(text):
+            _note_heading(motion, m.group("dir"), weight, by.id)
     for m in _FROM.finditer(text):
         came = compass_of(m.group("dir"))
         if came and rule("headings.came").search(text[: m.start()]):
-            motion.headings.append((max(1, weight - 1), turned(came, 180)))
+            motion.heard(motion.headings, max(1, weight - 1), turned(came, 180), m.group("dir"), _FROM.id)
     for m in _EXIT.finditer(text):
         heading = compass_of(m.group("dir"))
         if heading:
             motion.exits.append(heading)
+            motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
 
 
 _BOUND_VEHICLE = rule("headings.bound_vehicle")
@@ -43,10 +46,10 @@ def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
     for m in _BOUND_VEHICLE.finditer(text):
         vehicle = m["v"] or m["v2"]
         if vehicle in found:
-            _note_heading(found[vehicle], m["dir"] or m["dir2"], weight)
+            _note_heading(found[vehicle], m["dir"] or m["dir2"], weight, _BOUND_VEHICLE.id)
 
 
-def _note_heading(motion: Motion, word: str, weight: int) -> None:
+def _note_heading(motion: Motion, word: str, weight: int, by: str) -> None:
     heading = compass_of(word)
     if heading:
-        motion.headings.append((weight, heading))
+        motion.heard(motion.headings, weight, heading, word, by)

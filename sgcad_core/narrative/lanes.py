@@ -7,13 +7,14 @@ lanes only; which road the piece describes is the caller's business.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.language import rule, values
 from sgcad_core.narrative.compass import WORDS
 from sgcad_core.narrative.median import divided_and_median
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.narrative.turn_lanes import spelled_out
 from sgcad_core.specs import Compass, Median
@@ -54,6 +55,8 @@ class LaneFacts:
     """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
+    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    """Where each of them was read, by the names of `sgcad_core.narrative.lane_sources.stated`."""
 
     @property
     def empty(self) -> bool:

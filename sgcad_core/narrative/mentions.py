@@ -14,6 +14,7 @@ from typing import Literal
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import COMPASS, compass_of
+from sgcad_core.narrative.lane_sources import heard
 from sgcad_core.narrative.lanes import LaneFacts, lane_facts
 from sgcad_core.narrative.road_phrases import noun_phrases
 from sgcad_core.specs import Compass
@@ -78,7 +79,7 @@ def _sentence(told: Told, ids: tuple[str, ...]) -> Iterator[RoadMention]:
     text = told.text
     spans = list(noun_phrases(text))
     if not spans:
-        facts = lane_facts(text)
+        facts = heard(lane_facts(text), told.number, text)
         if not facts.empty:
             yield from _by_axis(_bare(told, facts))
         return
@@ -97,7 +98,7 @@ def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
     for axis in sorted(ways):
         toward = {way: n for way, n in mention.lanes.toward.items() if axis_of(_compass(way)) == axis}
         turns = {way: t for way, t in mention.lanes.turns.items() if way in _NO_WAY or axis_of(_compass(way)) == axis}
-        lanes = LaneFacts(toward=toward, turns=turns)
+        lanes = LaneFacts(toward=toward, turns=turns, where=mention.lanes.where)
         yield RoadMention(mention.text, "road", axis, None, None, True, (), None, lanes, mention.sentence)
 
 
@@ -124,7 +125,7 @@ def _mention(told: Told, parts: tuple[str, str, str], head: str, place: tuple[bo
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind
-    facts = lane_facts(said)
+    facts = heard(lane_facts(said), told.number, said)
     vehicles, how = _drivers(lead, behind, ids)
     toward = _toward(phrase)
     axis = axis_in(phrase) or (axis_of(toward) if toward else None) or _running(behind) or _lane_direction(lead)

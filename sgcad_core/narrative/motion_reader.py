@@ -37,10 +37,13 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
             continue
         for vehicle in segment.subjects:
             motion = found[vehicle]
+            motion.at = segment.number
             after = segment.number > impact
             late = after and bool(motion.headings or motion.deeds)
             _read(motion, segment, vehicle, who, 2 if late else 4, after)
     for t in told:
+        for motion in found.values():
+            motion.at = t.number
         if t.role not in _UNREAD:
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))
         if t.role in ("codes", "factors"):

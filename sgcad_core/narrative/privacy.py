@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.traced import Traced, joined
 
 _AGE = rule("privacy.age")
 _SEX = rule("privacy.sex")
@@ -27,45 +28,49 @@ _SENTENCE_END = rule("privacy.sentence_end")
 
 def redact(text: str) -> str:
     """The narrative without persons: sentences about people alone dropped, ages, sexes and names replaced."""
-    out = "".join(_parts_without_persons(_SENTENCE_END.split(text)))
-    out = _AGE.sub(lambda m: f"{m.group('the') or 'a '}person ", out)
-    out = _NAME.sub("a person", out)
-    out = _SEX.sub(lambda m: _person(m.group(0), m.group(1)), out)
-    out = rule("privacy.person_before_role").sub(r"\1", out)
+    return redacted(Traced.of(text)).text
+
+
+def redacted(text: Traced) -> Traced:
+    """`redact` of a text whose characters know their places."""
+    out = joined(list(_parts_without_persons(text.split(_SENTENCE_END))))
+    out = out.sub(_AGE, lambda m: f"{m.group('the') or 'a '}person ").sub(_NAME, "a person")
+    out = out.sub(_SEX, lambda m: _person(m.group(0), m.group(1))).sub(rule("privacy.person_before_role"), r"\1")
     for pronoun in of_role("personal_pronoun"):
-        out = pronoun.sub(pronoun.yields["to"], out)
-    out = _AGREEMENT.sub(lambda m: m.group(1) + _PLURAL[m.group(2)], out)
-    out = rule("privacy.sentence_begins").sub(r"\1A person", out)
-    return rule("privacy.space_before_mark").sub(r"\1", rule("privacy.spaces").sub(" ", out)).strip()
+        out = out.sub(pronoun, pronoun.yields["to"])
+    out = out.sub(_AGREEMENT, lambda m: m.group(1) + _PLURAL[m.group(2)])
+    out = out.sub(rule("privacy.sentence_begins"), r"\1A person").sub(rule("privacy.spaces"), " ")
+    return out.sub(rule("privacy.space_before_mark"), r"\1").strip()
 
 
-def _parts_without_persons(sentences: Iterable[str]) -> Iterator[str]:
+def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
     """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it."""
     named: str | None = None
     for sentence in sentences:
         kept = _without_persons(sentence)
-        mention = _MENTION.search(sentence)
-        if not kept.strip(" .!?"):
+        mention = _MENTION.search(sentence.text)
+        if not kept.text.strip(" .!?"):
             named = mention.group(0) if mention else named
-        elif _PERSON.match(kept) and named:
-            kept, named = _PERSON.sub(rf"\1The driver of {named}", kept, count=1), None
-        elif _MENTION.search(kept):
+        elif _PERSON.match(kept.text) and named:
+            kept, named = kept.sub(_PERSON, rf"\1The driver of {named}", 1), None
+        elif _MENTION.search(kept.text):
             named = None
         yield kept
 
 
-def _without_persons(sentence: str) -> str:
+def _without_persons(sentence: Traced) -> Traced:
     """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
-    if not _PERSON_ONLY.search(sentence):
+    if not _PERSON_ONLY.search(sentence.text):
         return sentence
-    body, end = rule("privacy.body_and_end").fullmatch(sentence).groups()  # type: ignore[union-attr]
-    clauses = _CLAUSE.split(_UNHURT.sub("", body))
-    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause)]
-    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(kept))):
+    ends = rule("privacy.body_and_end").fullmatch(sentence.text).start(2)  # type: ignore[union-attr]
+    body, end = sentence.cut(0, ends), sentence.cut(ends, len(sentence.text))
+    clauses = body.sub(_UNHURT, "").split(_CLAUSE)
+    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause.text)]
+    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(k.text for k in kept))):
         kept = []  # what is left has lost its subject and tells of no motion
-    text = _CONNECTOR.sub("", "".join(kept).strip(" ,;"))
-    space = rule("privacy.leading_space").match(body).group(0)  # type: ignore[union-attr]
-    return space + text + end if text else end.strip(".!? ")
+    text = joined(kept).strip(" ,;").sub(_CONNECTOR, "")
+    space = body.cut(0, rule("privacy.leading_space").match(body.text).end())  # type: ignore[union-attr]
+    return joined([space, text, end]) if text.text else end.strip(".!? ")
 
 
 def _tells_of_persons_alone(clause: str) -> bool:

@@ -12,6 +12,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
 
@@ -24,6 +25,7 @@ class SpeedLimit(NamedTuple):
     mph: int
     axis: Compass | None
     cross: bool
+    cue: Cue
 
 
 class Curve(NamedTuple):
@@ -31,6 +33,7 @@ class Curve(NamedTuple):
 
     side: Literal["left", "right"]
     toward: Compass | None
+    cue: Cue
 
 
 _LIMIT = rule("road_details.limit")
@@ -43,10 +46,11 @@ _WAY = rule("road_details.way")
 def speed_limits(told: Iterable[Told], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
     """Every posted limit in order, mph (a limit in km/h only is converted to the nearest 5 mph)."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
-    return tuple(limit for t in story for limit in _limits(t.text, headings))
+    return tuple(limit for t in story for limit in _limits(t, headings))
 
 
-def _limits(text: str, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
+def _limits(told: Told, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
+    text = told.text
     start = _LIMIT.search(text)
     if not start:
         return
@@ -58,7 +62,7 @@ def _limits(text: str, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
         behind = text[m.end() : stated[index + 1].start() if index + 1 < len(stated) else len(text)]
         if 5 <= mph <= 85:
             axis, cross = _whose(before, behind, headings)
-            yield SpeedLimit(mph, axis, cross)
+            yield SpeedLimit(mph, axis, cross, Cue(told.number, m[0], _LIMIT.id))
 
 
 def _whose(before: str, behind: str, headings: Mapping[str, Compass]) -> tuple[Compass | None, bool]:
@@ -89,9 +93,8 @@ def curves(told: Sequence[Told], headings: Mapping[str, Compass]) -> tuple[Curve
     """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     found = tuple(c for t in story for c in _curves(t, headings))
-    if not found and any(_BARE_CURVE.search(t.text) for t in story):
-        return (Curve("left", None),)
-    return found
+    bare = [Cue(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
+    return found or tuple(Curve("left", None, cue) for cue in bare[:1])
 
 
 def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
@@ -99,7 +102,8 @@ def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
         side = next(filter(None, m.groups())).lower()
         if _NEARBY.search(told.text[: m.start()]):
             continue
-        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings))
+        cue = Cue(told.number, m[0], _CURVE.id)
+        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
 
 
 def _driven(told: Told, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:

@@ -44,6 +44,7 @@ def read_lane(motion: Motion, text: str) -> None:
             motion.lane = values("ordinal")[m.group("ord").lower()]
         else:
             motion.lane_word = _lane_word(m)
+        motion.read("lane", m.group(), _LANE.id)
         return
 
 
@@ -69,7 +70,8 @@ def read_speed(motion: Motion, text: str, weight: int) -> None:
         m = pattern.search(text)
         if m:
             low, high = float(m.group("a")), float(m.group("b") or m.group("a"))
-            motion.speeds_mph.append((weight, round(min(120.0, (low + high) / 2 * factor))))
+            speed_mph = round(min(120.0, (low + high) / 2 * factor))
+            motion.heard(motion.speeds_mph, weight, speed_mph, m.group(), pattern.id)
             return
 
 
@@ -83,17 +85,25 @@ _SHOULDER = rule("surroundings.shoulder")
 
 def read_access(motion: Motion, text: str) -> None:
     origin = _ORIGIN.search(text)
-    if origin and motion.origin is None:
-        motion.origin = _place(origin.group("place"))
-    elif motion.origin is None and _ON_DRIVE.search(text) and not _NEAR_DRIVE.search(text):
-        motion.origin = "driveway"
-    elif motion.origin is None and _RAMP.search(text):
-        motion.origin = "ramp"
-    elif motion.origin is None and _SHOULDER.search(text):
-        motion.origin = "shoulder"
+    if motion.origin is None and (found := _came_from(text, origin)):
+        motion.origin, words, by = found
+        motion.read("origin", words, by)
     target = next((m for m in _TARGET.finditer(text) if rule("surroundings.turning_in").search(text[: m.end()])), None)
     if target and motion.target is None and not (origin and origin.start() < target.start() <= origin.end()):
         motion.target = _place(target.group("place"))
+        motion.read("target", target.group("place"), _TARGET.id)
+
+
+def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, str] | None:
+    """Where a vehicle came from, the words that tell it, and by which rule."""
+    if origin:
+        return _place(origin.group("place")), origin.group("place"), _ORIGIN.id
+    drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
+    if drive and not _NEAR_DRIVE.search(text):
+        return "driveway", drive.group(), _ON_DRIVE.id
+    if ramp:
+        return "ramp", ramp.group(), _RAMP.id
+    return ("shoulder", shoulder.group(), _SHOULDER.id) if shoulder else None
 
 
 def _place(word: str) -> Access:

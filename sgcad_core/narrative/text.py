@@ -1,7 +1,7 @@
 """The text of a crash report made uniform: one spelling per mention, unit and direction; sentences.
 
-`normalize` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
-"V 1" all become "V1". Knows no facts.
+`normalised` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
+"V 1" all become "V1". Every character keeps its place in the text that was given. Knows no facts.
 """
 
 from __future__ import annotations
@@ -11,23 +11,33 @@ from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
+from sgcad_core.narrative.traced import Traced, joined
 from sgcad_core.narrative.unnumbered import number_vehicles
 
-__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalize", "sentences"]
+__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 
 NUMBERS: dict[str, int] = values("number_word")
+MOST_READ = 16_000
+"""Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
+_TAIL = 12
+"""Characters at the end of a piece in which an abbreviation can stand."""
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
 
 
 class Sentence(NamedTuple):
-    """One normalized sentence, what it is for, and where it stands (both counted from 0)."""
+    """One normalized sentence, what it is for, and where it stands (all counted from 0).
+
+    [start, end): its characters in the text as it was given, white space around left out.
+    """
 
     text: str
     role: Role
     number: int
     paragraph: int
+    start: int = 0
+    end: int = 0
 
 
 # ------------------------------------------------------------------ characters
@@ -53,47 +63,47 @@ def normalize(text: str) -> str:
 
     Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
     """
-    return "\n\n".join(filter(None, (_paragraph(block) for block in _blocks(text))))
+    return normalised(Traced.of(text)).text
 
 
-def _blocks(text: str) -> list[str]:
+def normalised(text: Traced) -> Traced:
+    """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
+    return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
+
+
+def _blocks(text: Traced) -> list[Traced]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
-    text = rule("text.space_at_end").sub("\n", text.translate(_CHARACTERS))
-    return rule("text.paragraph").split(text)
+    plain = text.translate(_CHARACTERS)
+    return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
 
 
-def _paragraph(block: str) -> str:
+def _paragraph(block: Traced) -> Traced:
     once = _spell(block)
     for _ in range(4):
         again = _spell(once)
-        if again == once:
+        if again.text == once.text:
             break
         once = again
     return once
 
 
-def _spell(text: str) -> str:
-    text = _spaces(text)
-    text = _TYPO.sub(_mend_typo, text)
+def _spell(text: Traced) -> Traced:
+    text = _spaces(text).sub(_TYPO, _mend_typo)
     for spelling in of_role("spelling"):
-        text = spelling.sub(spelling.yields["to"], text)
-    text = rule("text.first_vehicle").sub("V1", text)
-    text = _LETTERED.sub(lambda m: f"V{ord(m.group(1)) - ord('A') + 1}", text)
-    text = _VEHICLE_WORD.sub(lambda m: f"V{NUMBERS[m.group(1).lower()]}", text)
-    text = _VEHICLE_CASE.sub(r"V\1", text)
-    text = _COUNTED_LANE.sub(_mend_lanes, text)
+        text = text.sub(spelling, spelling.yields["to"])
+    text = text.sub(rule("text.first_vehicle"), "V1")
+    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
     return _spaces(text)
 
 
-def _spaces(text: str) -> str:
+def _spaces(text: Traced) -> Traced:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
-    text = rule("text.full_stops").sub(".", rule("common.space").sub(" ", text))
-    text = rule("text.space_before_mark").sub(r"\1", text)
-    text = rule("text.glued_sentence").sub(". ", text)
-    text = rule("text.glued_comma").sub(", ", text)
-    text = rule("text.glued_bracket").sub(" (", text)
-    text = rule("text.glued_behind_bracket").sub(") ", text)
-    return rule("text.spaces").sub(" ", text).strip()
+    text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
+    text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
+    text = text.sub(rule("text.glued_comma"), ", ").sub(rule("text.glued_bracket"), " (")
+    return text.sub(rule("text.glued_behind_bracket"), ") ").sub(rule("text.spaces"), " ").strip()
 
 
 def _mend_typo(match: re.Match[str]) -> str:
@@ -114,27 +124,34 @@ _END = rule("text.end")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
-    """The report's sentences in order, normalized, with roles; vehicles without numbers get some."""
+    """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
+    return split_sentences(normalised(Traced.of(text)))
+
+
+def split_sentences(text: Traced) -> tuple[Sentence, ...]:
+    """The sentences of a normalized text."""
     found: list[Sentence] = []
-    for number, block in enumerate(filter(None, number_vehicles(normalize(text)).split("\n\n"))):
+    blocks = [block for block in number_vehicles(text).split_at("\n\n") if block.text]
+    for number, block in enumerate(blocks):
         for piece in _split(block):
-            found.append(Sentence(piece, role_of(piece), len(found), number))
+            found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))
     return tuple(found)
 
 
-def _split(block: str) -> list[str]:
-    pieces: list[str] = []
-    for part in _END.split(block):
-        joins = pieces and _ABBREVIATION.search(pieces[-1]) and not pieces[-1].lower().endswith((" dr.", " st."))
+def _split(block: Traced) -> list[Traced]:
+    pieces: list[Traced] = []
+    for part in block.split(_END):
+        last = pieces[-1].text[-_TAIL:] if pieces else ""
+        joins = pieces and _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
         if pieces and joins:
-            pieces[-1] += " " + part
+            pieces[-1] = joined([pieces[-1], part], " ")
         else:
             pieces.append(part)
-    return [cut.strip() for piece in pieces for cut in _cut(piece) if cut.strip()]
+    return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
 
 
-def _cut(sentence: str) -> list[str]:
+def _cut(sentence: Traced) -> list[Traced]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
-    if len(sentence) <= LONGEST:
+    if len(sentence.text) <= LONGEST:
         return [sentence]
-    return rule("text.piece").findall(sentence)
+    return [sentence.cut(m.start(), m.end()) for m in rule("text.piece").finditer(sentence.text)]

@@ -13,6 +13,7 @@ from functools import cached_property
 
 from sgcad_core.language import rule
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
 
 MENTION = rule("vehicles.mention")
@@ -35,6 +36,8 @@ class Identity:
     kind: ActorKind = "car"
     kind_stated: bool = False
     trailer: bool = False
+    described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
+    """Every description of it, in order."""
 
 
 @dataclass(frozen=True)
@@ -89,17 +92,26 @@ def roster(sentences: Iterable[str]) -> Roster:
     return Roster(found, _aliases(found))
 
 
+_NO_NUMBER = rule("vehicles.no_number")
+
+
 def _numbers(told: list[str]) -> list[str]:
-    """The ids in order; a number far beyond the others is a model (Volvo V70), not a vehicle."""
+    """The ids in order, the first one whatever it is; one far beyond the others is a model (Volvo V70), no vehicle."""
+    named = (m for text in told for m in _NO_MODEL.finditer(text) if not _NO_NUMBER.match(text, m.start()))
     kept: list[int] = []
-    for n in sorted({int(m[1:]) for text in told for m in _NO_MODEL.findall(text) if int(m[1:]) < 100}):
-        if 1 <= n <= (kept[-1] if kept else 1) + 2:
+    for n in sorted({int(m[0][1:]) for m in named if len(m[0]) <= _LONGEST_ID}):
+        if n and (not kept or n <= kept[-1] + 2):
             kept.append(n)
     return [f"V{n}" for n in kept]
 
 
+_LONGEST_ID = 3
+"""Characters: V1 to V99, as specs have them."""
+
+
 def _identity(vehicle: str, told: list[str]) -> Identity:
-    words = " ".join(d for text in told for d in descriptions(text, vehicle))
+    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in descriptions(text, vehicle))
+    words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
@@ -108,7 +120,7 @@ def _identity(vehicle: str, told: list[str]) -> Identity:
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer,
+        color.group().lower() if color else None, kind, stated, trailer, described,
     )  # fmt: skip
 
 

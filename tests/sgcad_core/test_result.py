@@ -26,7 +26,7 @@ from sgcad_core.specs import Contact
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",
-    "seconds", "notes",
+    "seconds", "notes", "facts", "sentences",
 }  # fmt: skip
 AREAS = st.sampled_from(["front", "back", "left", "right"])
 DECLARED = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")

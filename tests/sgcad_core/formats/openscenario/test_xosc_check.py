@@ -74,11 +74,10 @@ FAULTS = [
         "center of its rear axle.*must be 0.*found -1.4.*BoundingBox",
     ),
     ("<Story ", "<Storey ", "no well-formed XML"),
-    ('closed="false"', 'closed="true"', "does not support closed trajectories .*timed world polylines"),
     ('revMajor="1"', 'revMajor="2"', "unknown OpenSCENARIO version .*found 2.2"),
     ('vehicleCategory="car"', 'vehicleCategory="spaceship"', "spaceship.*follow the OpenSCENARIO schema"),
     ('conditionEdge="none"', 'conditionEdge="sharp"', "conditionEdge.*in|at line"),
-    ('maximumExecutionCount="1"', 'maximumExecutionCount="2"', "runs a maneuver group once"),
+    ('maximumExecutionCount="1"', 'maximumExecutionCount="1.5"', "maximumExecutionCount"),
 ]
 
 

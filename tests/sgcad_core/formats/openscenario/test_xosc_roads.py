@@ -57,8 +57,16 @@ def test_the_straightest_way_leads_over_a_junction():
 def test_a_pose_off_the_road_or_across_has_no_lane():
     roads = XodrRoads(crossroads().xodr)
     assert roads.nearest(Pose(60, 60, 0)) is None
-    against = roads.nearest(Pose(-60, -5.4, math.pi))
-    assert against is None or abs(roads.lane_pose(*against[:3], 0.0).y_m + 5.4) > 3
+    assert roads.nearest(Pose(-60, -5.4, math.pi / 2)) is None
+
+
+def test_who_faces_against_the_traffic_is_in_its_lane_and_drives_on_that_way():
+    roads = XodrRoads(crossroads().xodr)
+    place = roads.nearest(Pose(-60, -5.4, math.pi))
+    assert roads.lane_pose(*place)[:2] == pytest.approx((-60, -5.4), abs=0.01)
+    sense = roads.sense(place, math.pi)
+    assert sense == -roads.road(place.road).sense(place.lane)
+    assert roads.drive(place, sense).points[-1] == pytest.approx((-120, -5.4), abs=0.1)
 
 
 @pytest.mark.parametrize(("lane_id", "by", "expected"), [(-1, 1, 1), (-1, -1, -2), (-2, 1, -1), (1, -1, -1), (1, 1, 2)])
@@ -137,7 +145,7 @@ def test_a_place_that_the_network_does_not_have_is_named(position, message):
 
 @pytest.mark.parametrize(("text", "message"), [
     ("<OpenDRIVE/>", "no road '7'"), ("<net/>", "no OpenDRIVE file"), ("", "no well-formed XML"),
-    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "does not know <poly3>"),
+    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "'a' is missing at <poly3>"),
     (xodr(ARC, 1e9), "longer than 20000 m"), (xodr(piece("<line/>", 0, 0, 0, 0, 1e9), 9), "length must lie within"),
 ])  # fmt: skip
 def test_a_bad_network_is_a_clear_error(text, message):
