@@ -1,7 +1,8 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
 The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
-lane, with a swerve or a skid; what was changed stands in the plan's notes.
+lane, with a swerve or a skid; what was changed stands in the plan's notes. Boxes that slide against their way without
+a told loss of control are the last resort: noted, and doubted by the validator `drivable`.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import STEP_S
-from sgcad_core.planner.options import Option, aimed, forced, options, spun
+from sgcad_core.planner.options import Option, aimed, forced, options, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there
@@ -30,6 +31,8 @@ _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 45)
 """Combinations of options tried in each stage of the search."""
+_LAST_TRIES = 90
+"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
 _LANELESS = ("pedestrian", "object")
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
@@ -127,16 +130,20 @@ class _Cast:
     def encounter(self, contact: Contact) -> Scene | None:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
         a, b = self._roles(contact)
-        found = search(self._stages(a, b), (contact.striker_area, contact.struck_area))
+        wanted = (contact.striker_area, contact.struck_area)
+        found = search(self._stages(a, b), wanted) or search([self._stage(a, b, slid, _LAST_TRIES)], wanted)
         if found is None:
             self.notes.append(f"{contact.striker} and {contact.struck} cannot touch as declared")
-            found = search([((self._options(a, b, forced), self._options(b, a, forced)), _TRIES[0])], None)
+            found = search([self._stage(a, b, forced, _TRIES[0])], None)
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
         """Ordinary driving, then with the wanted sides turned to each other, then by force."""
         for ways, tries in zip((options, aimed, forced, spun), _TRIES, strict=True):
-            yield (self._options(a, b, ways), self._options(b, a, ways)), tries
+            yield self._stage(a, b, ways, tries)
+
+    def _stage(self, a: Role, b: Role, ways: Callable[[Role], list[Option]], tries: int) -> tuple[Ways, int]:
+        return (self._options(a, b, ways), self._options(b, a, ways)), tries
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]
@@ -145,7 +152,12 @@ class _Cast:
         places = self._places(a, b)
         pair = [
             Role(
-                actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                actor,
+                self.courses[actor.id],
+                size_m(actor),
+                place,
+                side,
+                surface=self.behavior.surface,
                 may_skid=self.may_skid,
             )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
