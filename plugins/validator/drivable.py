@@ -1,4 +1,4 @@
-"""Whether the planned motions can be driven up to the contact: sideways acceleration, yaw rate and slip at the rear axle.
+"""Whether planned motions can be driven up to the contact: sideways acceleration, yaw rate, slip at the rear axle.
 
 A declared contact whose sides no steering brings about is planned all the same, with boxes that slide or with more
 sideways acceleration than the surface gives; a report that tells no loss of control seldom means that. Knows limits
@@ -25,7 +25,7 @@ class Drivable(Validator):
     odd: Literal["doubt", "note"] = "doubt"
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """One a vehicle, in the order of the behavior; nothing where a loss of control is told or nothing was planned."""
+        """One a vehicle, in the behavior's order; nothing where a loss of control is told or nothing was planned."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or not artifact.planned:
             return []
         if tells_lost_control(evidence.report.reading.narrative):

@@ -56,8 +56,11 @@ def radius(a: Body) -> float:
 
 
 def _corners(a: Body) -> list[Point]:
-    c, s, l, w = math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
-    return [(a.x + i * l * c - j * w * s, a.y + i * l * s + j * w * c) for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    c, s, half, w = math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
+    return [
+        (a.x + i * half * c - j * w * s, a.y + i * half * s + j * w * c)
+        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    ]
 
 
 def _holds(a: Body, p: Point) -> bool:

@@ -32,7 +32,7 @@ from sgcad_core.planner.choices import (
     stand_offs,
     steps_aside,
 )
-from sgcad_core.planner.motion import HARD_MPS2, YAW_RADPS, Motion, Pace, drive, stand
+from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
 from sgcad_core.planner.place import STOP_LINE_M, TURNING
 from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
@@ -44,6 +44,8 @@ _SWING_ASIDE_M = 5.0
 """Who steers aside does so within this much of its line, if need be slowly."""
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
+_VERGE_M = 3.0
+"""Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
 _DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
@@ -145,6 +147,7 @@ def driving(option: Option) -> Motion:
     line = _steered(_line_of(role.course.path, drift, place), option, pace)
     line, path, drivable = _boxed(role, line)
     time, station = drive(line, pace, place, (path, role.course.path))
+    drivable = drivable and not _starts_beside(role, line, float(np.interp(-LEAD_S[0], time, station)))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
     penalty = _misfit(role, path, drift, begins)
@@ -162,6 +165,12 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     path = rolled(line, length, backing=backing)
     drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
     return replace(line, s_m=path.s_m), path, drivable
+
+
+def _starts_beside(role: Role, line: Path, station_m: float) -> bool:
+    """Whether a line has left the road already where the approach begins at the latest."""
+    left = offset(role.course.path, line, station_m)[1]
+    return left > role.course.left_edge_m + _VERGE_M or -left > role.course.right_edge_m + _VERGE_M
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.motion import LEAD_S, STEP_S
 from sgcad_core.planner.options import Option, aimed, forced, options, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
@@ -25,8 +25,6 @@ from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_c
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
-LEAD_S = (4.2, 8.0)
-"""Shortest and longest approach before the first contact."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 45)
@@ -204,7 +202,8 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
+        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
+        contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes

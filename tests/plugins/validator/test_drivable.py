@@ -52,7 +52,7 @@ def circling(
     kind: ActorKind = "car",
     surface: Surface | None = None,
 ) -> Scenario:
-    """A lone actor on a circle whose rear axle is the center's (length 0.2 m), turned against its way by `faces_rad`."""
+    """A lone actor on a circle whose rear axle is the center's (0.2 m long), turned against its way by `faces_rad`."""
     t = np.arange(0, 3, 0.05)
     angle = speed_mps * t / radius_m
     motion = Trajectory(
