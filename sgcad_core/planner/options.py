@@ -46,6 +46,8 @@ _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
 _VERGE_M = 3.0
 """Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
+_STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
+"""Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
 _DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
@@ -147,7 +149,7 @@ def driving(option: Option) -> Motion:
     line = _steered(_line_of(role.course.path, drift, place), option, pace)
     line, path, drivable = _boxed(role, line)
     time, station = drive(line, pace, place, (path, role.course.path))
-    drivable = drivable and not _starts_beside(role, line, float(np.interp(-LEAD_S[0], time, station)))
+    drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
     penalty = _misfit(role, path, drift, begins)
@@ -167,10 +169,10 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     return replace(line, s_m=path.s_m), path, drivable
 
 
-def _starts_beside(role: Role, line: Path, station_m: float) -> bool:
-    """Whether a line has left the road already where the approach begins at the latest."""
-    left = offset(role.course.path, line, station_m)[1]
-    return left > role.course.left_edge_m + _VERGE_M or -left > role.course.right_edge_m + _VERGE_M
+def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
+    """Whether a line is far off the road at places from which the shortest approach may begin."""
+    left = [offset(role.course.path, line, station)[1] for station in stations_m]
+    return max(left) > role.course.left_edge_m + _VERGE_M or -min(left) > role.course.right_edge_m + _VERGE_M
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:

@@ -169,7 +169,8 @@ def _steps_to(marked: NDArray[np.bool_]) -> Floats:
     right = np.searchsorted(at, index)
     after = np.abs(at[np.minimum(right, len(at) - 1)] - index)
     before = np.abs(index - at[np.maximum(right - 1, 0)])
-    return np.minimum(after, before).astype(np.float64)
+    nearest: Floats = np.minimum(after, before).astype(np.float64)
+    return nearest
 
 
 def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch: float = 0.42) -> Floats:
