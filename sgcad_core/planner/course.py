@@ -59,8 +59,8 @@ class Course:
 
     @property
     def first_m(self) -> float:
-        """Where the first road of the route begins; before it lies only a straight run that no road supports."""
-        return min(a for _, a, _ in self.roads)
+        """Where the first road of the route begins; before it lies a straight run that no road supports (all of a walker's)."""
+        return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
 
     def on_road(self, road: str) -> tuple[float, float] | None:
         """Stations between which a road is driven."""
