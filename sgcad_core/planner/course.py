@@ -59,7 +59,7 @@ class Course:
 
     @property
     def first_m(self) -> float:
-        """Where the first road of the route begins; before it lies a straight run that no road supports (all of a walker's)."""
+        """Where the first road of the route begins; before it no road supports it (a walker's has none)."""
         return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
 
     def on_road(self, road: str) -> tuple[float, float] | None:
