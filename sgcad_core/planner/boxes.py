@@ -39,11 +39,14 @@ def apart(a: Body, b: Body) -> Apart:
     return Apart(abs(way) - reach, (sign * x, sign * y))
 
 
-def touch_point(a: Body, b: Body) -> Point:
-    """The mean of the corners of either box in (or within centimetres of) the other; midway where there are none."""
+def touch_points(a: Body, b: Body) -> list[Point]:
+    """The corners of either box in (or within centimetres of) the other; the point midway where there are none."""
     points = [p for one, other in ((a, b), (b, a)) for p in _corners(one) if _holds(other, p)]
-    if not points:
-        return (a.x + b.x) / 2, (a.y + b.y) / 2
+    return points or [((a.x + b.x) / 2, (a.y + b.y) / 2)]
+
+
+def mean(points: list[Point]) -> Point:
+    """The center of some points."""
     return sum(p[0] for p in points) / len(points), sum(p[1] for p in points) / len(points)
 
 
