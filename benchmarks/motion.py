@@ -25,8 +25,9 @@ from flows.store import read_trajectories
 from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.narrative.facts import CrashFacts, crash_facts
+from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.losses import tells_lost_control
+from sgcad_core.narrative.reading import crash_facts
 from sgcad_core.records import Trajectory
 
 MPH = 0.44704

@@ -16,18 +16,20 @@ def compile_scenario(
     network: RoadNetwork,
     version: Version = DEFAULT_VERSION,
     encoding: Encoding = DEFAULT_ENCODING,
+    *,
+    may_skid: bool = False,
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
     `encoding`: timed polylines, or maneuver events that people edit by hand.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say.
+    for the validators to say. `may_skid`: the report tells that somebody lost control.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    planned = plan(behavior, parse_net(network.net_xml))
+    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
     actors = actor_infos(behavior)
     handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
     return Scenario(

@@ -39,11 +39,14 @@ def apart(a: Body, b: Body) -> Apart:
     return Apart(abs(way) - reach, (sign * x, sign * y))
 
 
-def touch_point(a: Body, b: Body) -> Point:
-    """The mean of the corners of either box in (or within centimetres of) the other; midway where there are none."""
+def touch_points(a: Body, b: Body) -> list[Point]:
+    """The corners of either box in (or within centimetres of) the other; the point midway where there are none."""
     points = [p for one, other in ((a, b), (b, a)) for p in _corners(one) if _holds(other, p)]
-    if not points:
-        return (a.x + b.x) / 2, (a.y + b.y) / 2
+    return points or [((a.x + b.x) / 2, (a.y + b.y) / 2)]
+
+
+def mean(points: list[Point]) -> Point:
+    """The center of some points."""
     return sum(p[0] for p in points) / len(points), sum(p[1] for p in points) / len(points)
 
 
@@ -53,8 +56,11 @@ def radius(a: Body) -> float:
 
 
 def _corners(a: Body) -> list[Point]:
-    c, s, l, w = math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
-    return [(a.x + i * l * c - j * w * s, a.y + i * l * s + j * w * c) for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    c, s, half, w = math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
+    return [
+        (a.x + i * half * c - j * w * s, a.y + i * half * s + j * w * c)
+        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    ]
 
 
 def _holds(a: Body, p: Point) -> bool:

@@ -23,12 +23,19 @@ from sgcad_core.planner.role import (
     mismatch,
     usual_speed,
 )
+from sgcad_core.planner.rolling import tightest
 
-HARD_MPS2 = 6.0
-"""Lateral acceleration of an evasive swerve on a dry road."""
+SWERVE_MPS2 = 6.0
+"""Lateral acceleration of which the length of a swerve is told; the speed follows from friction all the same."""
+_CORNER_RUN_M = 10.0
+"""Before and behind a junction in which one who cuts its corner is beside the lane."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
+_ASKEW, _STEERS = "stands askew", "steers aside before contact"
+SLIDES = "slides into the contact at an angle that no steering explains"
+_SLIDING = 2.0
+"""Cost of a slide: more than any steering."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
@@ -101,7 +108,7 @@ def _maneuver_shift(role: Role) -> float | None:
 
 def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
     """A drift as long as its lateral acceleration allows: ease 1 is a hard swerve, more is gentler."""
-    length = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / HARD_MPS2), 3.3 * abs(left_m), 4.0)
+    length = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
     return Drift(cost, left_m, length, role.place.station_m, note=note)
 
 
@@ -114,7 +121,7 @@ def _corner_lines(role: Role) -> list[Drift]:
     turn = role.course.turn
     if turn is None:
         return []
-    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + 4.0
+    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + _CORNER_RUN_M
     cut = [Drift(0.15, left, half, middle, True) for left in (1.2, -1.2, -2.2)]
     return [*cut, *_from_the_right(role, turn)] if role.actor.maneuver in ("turn_left", "u_turn") else cut
 
@@ -194,8 +201,23 @@ def aiming(role: Role) -> list[Twist]:
     if abs(off) < math.radians(30):
         return []
     angles = [off - math.copysign(math.radians(k), off) for k in (45, 25, 0)]
-    word = "stands askew" if is_standing(role) else "skids before contact"
-    return [Twist(0.5 + abs(a) / 1.6 + _unlike(role, a), a, word) for a in angles]
+    return [twist for a in angles for twist in _turned(role, a, 0.5 + abs(a) / 1.6 + _unlike(role, a))]
+
+
+def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
+    """The ways to come to an angle: standing so, steering there, and in a skid where the report tells one."""
+    if is_standing(role):
+        return [Twist(cost, angle_rad, _ASKEW)]
+    found = [Twist(cost, angle_rad, _STEERS)]
+    if abs(role.place.aside_m) < 16:
+        found.append(Twist(cost + 0.05, angle_rad, _STEERS, through=True))
+        reach = 1 - math.cos(angle_rad)
+        if abs(role.place.aside_m) > 1.0 and role.place.aside_m * angle_rad > 0 and reach > 0.02:
+            radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
+            found.append(Twist(cost + 0.02, angle_rad, _STEERS, radius_m=radius))
+    if role.may_skid:
+        found.append(Twist(cost + 0.1, angle_rad, "skids before contact", skids=True))
+    return found
 
 
 def _unlike(role: Role, angle_rad: float) -> float:
@@ -204,16 +226,23 @@ def _unlike(role: Role, angle_rad: float) -> float:
 
 
 def skids(role: Role) -> list[Twist]:
-    """No skid, a small one, and those that bring the wanted side about."""
-    small = [Twist(abs(a) / 60, math.radians(a), "yaws before contact") for a in (12, -12, 26, -26)]
+    """Straight on, steering aside a little, and what brings the wanted side about."""
+    small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
     return [Twist(0.0), *small, *aiming(role)]
 
 
 def spins(role: Role) -> list[Twist]:
     """Any angle, in steps of 45 degrees, and small ones."""
-    angles = [math.radians(a) for a in (0, 24, -24, 45, -45, 90, -90, 135, -135, 180)]
-    word = "stands askew" if is_standing(role) else "spins before contact"
-    return [Twist(abs(a) + _unlike(role, a), a, word if a else "") for a in angles]
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
+
+
+def slides(role: Role) -> list[Twist]:
+    """The box at any angle to its way, though the report tells no loss of control: dearer than all driving."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    off = mismatch(role)
+    facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []
+    return [Twist(0.0), *facing_it, *(Twist(_SLIDING + abs(a), a, SLIDES, skids=True) for a in angles)]
 
 
 def homing(role: Role) -> list[Drift]:
@@ -237,7 +266,7 @@ def stand_offs(role: Role) -> list[Drift]:
 
 def askew(role: Role) -> list[Twist]:
     """Straight in its lane, a little turned, or turned to the other one."""
-    small = [Twist(0.2 + abs(a) / 60, math.radians(a), "stands askew") for a in (15, -15, 35, -35)]
+    small = [Twist(0.2 + abs(a) / 60, math.radians(a), _ASKEW) for a in (15, -15, 35, -35)]
     return [Twist(0.0), *small, *aiming(role)]
 
 

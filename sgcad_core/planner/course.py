@@ -20,6 +20,8 @@ from sgcad_core.specs import Actor
 
 _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
+_MPH = 0.44704
+_SMOOTH_MPS = 26.0
 
 
 class Passage(NamedTuple):
@@ -55,6 +57,11 @@ class Course:
     astray: bool = False
     """Whether the way that was asked for does not exist: another was taken, or one off the road."""
 
+    @property
+    def first_m(self) -> float:
+        """Where the first road of the route begins; before it no road supports it (a walker's has none)."""
+        return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
+
     def on_road(self, road: str) -> tuple[float, float] | None:
         """Stations between which a road is driven."""
         return next(((a, b) for name, a, b in self.roads if name == road), None)
@@ -84,7 +91,9 @@ def find_course(graph: LaneGraph, actor: Actor) -> Course:
     if route.made_up_turn_rad:
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
-    return _measured(graph, route, lanes[route.start], pieces, tuple(notes))
+    lane = lanes[route.start]
+    usual = actor.speed_mph * _MPH if actor.speed_mph else lane.speed_mps
+    return _measured(graph, route, lane, pieces, (tuple(notes), min(usual, _SMOOTH_MPS)))
 
 
 # ------------------------------------------------------------------ lanes
@@ -168,9 +177,13 @@ def _made_up(before: Floats, turn_rad: float) -> Floats:
     return np.vstack((arc, arc[-1] + _MADE_UP_RUN_M * np.array([math.cos(away), math.sin(away)])))
 
 
-def _measured(graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], notes: tuple[str, ...]) -> Course:
+def _measured(
+    graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], more: tuple[tuple[str, ...], float]
+) -> Course:
+    """`more`: notes, and the speed for which the line is smooth."""
+    notes, speed_mps = more
     stations = np.concatenate(([0.0], np.cumsum([arc_lengths(p.points)[-1] for p in pieces])))
-    path = draw(_joined([p.points for p in pieces]))
+    path = draw(_joined([p.points for p in pieces]), speed_mps=speed_mps)
     passages, turn, roads = [], None, []
     for piece, a, b in zip(pieces, stations, stations[1:], strict=False):
         way = route.ways[min(piece.way, len(route.ways) - 1)]

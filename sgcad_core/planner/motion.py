@@ -14,18 +14,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sgcad_core.geometry.plane import Floats, Size
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.path import Path
 
 STEP_S = 0.05
+LEAD_S = (4.2, 8.0)
+"""Shortest and longest approach before the first contact."""
 WINDOW_S = (-6.0, 4.5)
 """Own time in which an encounter is looked for."""
-LATERAL_MPS2 = 3.5
+LATERAL_MPS2 = 3.0
+"""Sideways in ordinary driving, on a road that allows it."""
+HARD_MPS2 = 5.0
+"""Sideways where a driver swerves, or drives a bend at a speed that the report tells."""
 ACCELERATION_MPS2 = 2.2
 BRAKING_MPS2 = 3.0
+YAW_RADPS = 1.1
+"""Planned yaw rate at most: under the 1.5 rad/s that count."""
 _STANDING_MPS = 5.0
-_TURN_HALF_M = 20.0
-_TURN_RAD = math.radians(25)
-"""Over twice that length: less is no turn but a shift from lane to lane across a junction."""
+_CRAWL_MPS = 1.0
+_CURVE_PER_M = 0.02
+"""A road that bends more is a turn, which one takes as slowly as one usually takes turns."""
+_SHARE = {"lateral": 0.5, "hard": 0.6, "speeding": 0.25, "braking": 0.45}
+"""Of the friction that a driver uses; the rest is the reserve for bends that begin and end."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +48,19 @@ class Pace:
     """Stands here before its clock runs on."""
     slow_at_m: float | None = None
     slow_mps: float = 0.0
-    braking_mps2: float = BRAKING_MPS2
+    grip_mps2: float = DRIVING.friction_mps2(None)
+    """What tires transmit on the surface."""
+    hard: bool = False
+    """Bends are driven as fast as a driver dares, not as one usually does."""
+
+    @property
+    def lateral_mps2(self) -> float:
+        """Sideways acceleration that is planned with."""
+        return self.within(HARD_MPS2, "hard") if self.hard else self.within(LATERAL_MPS2, "lateral")
+
+    def within(self, usual_mps2: float, use: str) -> float:
+        """A usual acceleration, or as much of it as the surface allows."""
+        return min(usual_mps2, _SHARE[use] * self.grip_mps2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +80,10 @@ class Motion:
     standing: bool = False
     fixed: bool = False
     """Cannot be pushed away (trees, poles, walls)."""
+    axle: Path | None = None
+    """The line of the rear axle, with the stations of the box; None of what does not roll."""
+    drivable: bool = True
+    """Whether the box can follow this line at all."""
 
     def stations(self, time_s: ArrayLike) -> Floats:
         """Stations at own times."""
@@ -92,23 +118,25 @@ def clock(start: int, stop: int) -> Floats:
     return np.arange(start, stop, dtype=np.float64) * STEP_S
 
 
-def drive(path: Path, pace: Pace, place_m: float, road: Path) -> tuple[Floats, Floats]:
-    """Times and stations of a drive at a pace; time 0 at `place_m`. `road`: the line whose curves slow it down.
+def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None = None) -> tuple[Floats, Floats]:
+    """Times and stations of a drive at a pace; time 0 at `place_m`.
 
-    The highest speed that keeps every limit and never needs more than the usual accelerations: over v^2 an
-    acceleration is a slope, so each pass is a running minimum.
+    `more`: the path of the box and the line of the road (where it is capped in curves), if they are other ones.
+
+    The highest speed that keeps every limit on the driven line and never needs more than the usual accelerations: over
+    v^2 an acceleration is a slope, so each pass is a running minimum.
     """
     station = _refined(path.s_m, pace.starts_at_m)
     along = np.interp(station, path.s_m, path.lengths())
-    limit = np.interp(station, path.s_m, _limits(road, pace)) ** 2
+    limit = np.interp(station, path.s_m, _limits(path, more or (path, path), pace)) ** 2
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
-    limit = _rising(along[::-1] * -1, limit[::-1], pace.braking_mps2)[::-1]
+    limit = _rising(along[::-1] * -1, limit[::-1], pace.within(BRAKING_MPS2, "braking"))[::-1]
     if pace.starts_at_m is not None:
         ahead = station >= pace.starts_at_m
         station, along, limit = station[ahead], along[ahead], limit[ahead]
         limit[0] = 0.0
-    speed = np.sqrt(_rising(along, limit, ACCELERATION_MPS2))
+    speed = np.sqrt(_rising(along, limit, pace.within(ACCELERATION_MPS2, "speeding")))
     mean = np.maximum((speed[1:] + speed[:-1]) / 2, 0.02)
     time = np.concatenate(([0.0], np.cumsum(np.diff(along) / mean)))
     return time - np.interp(place_m, station, time), station
@@ -126,22 +154,14 @@ def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
     return np.maximum(lowest, 0.0)
 
 
-def _limits(road: Path, pace: Pace) -> Floats:
-    bend = np.abs(road.curvature())
-    bend = np.convolve(np.pad(bend, 2, mode="edge"), np.ones(5) / 5, mode="valid")
-    swing = np.abs(_swing(road))
-    bend = np.where(swing < _TURN_RAD, np.minimum(bend, swing / (2 * _TURN_HALF_M)), bend)
-    curve = np.sqrt(LATERAL_MPS2 / np.maximum(bend, 1e-5))
-    curve = np.where(bend > 0.02, np.minimum(curve, pace.curve_mps), curve)
-    return np.clip(curve, 2.0, pace.cruise_mps)
-
-
-def _swing(road: Path) -> Floats:
-    """(n,) how far the line turns from _TURN_HALF_M before each point to as far behind it, radians."""
-    angle, at = road.tangents(), road.lengths()
-    ahead, behind = np.interp(at + _TURN_HALF_M, at, angle), np.interp(at - _TURN_HALF_M, at, angle)
-    swing: Floats = ahead - behind
-    return swing
+def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:
+    """(n,) speeds that friction, yaw and habit allow on a line, m/s."""
+    box, road = more
+    bend = np.maximum(np.maximum(np.abs(path.curvature()), np.abs(box.curvature())), 1e-5)
+    curve = np.minimum(np.sqrt(pace.lateral_mps2 / bend), YAW_RADPS / bend)
+    turning = np.interp(path.s_m, road.s_m, np.abs(road.curvature())) > _CURVE_PER_M
+    curve = np.where(turning, np.minimum(curve, pace.curve_mps), curve)
+    return np.clip(curve, _CRAWL_MPS, pace.cruise_mps)
 
 
 def _refined(station: Floats, start_m: float | None) -> Floats:

@@ -27,17 +27,27 @@ from sgcad_core.planner.choices import (
     homing,
     pacings,
     skids,
+    slides,
     spins,
     stand_offs,
     steps_aside,
 )
-from sgcad_core.planner.motion import Motion, Pace, drive, stand
-from sgcad_core.planner.path import Path, ramp
+from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
+from sgcad_core.planner.path import Path, ramp, tamed
 from sgcad_core.planner.place import STOP_LINE_M, TURNING
 from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
+from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
 from sgcad_core.specs import Area
 
 _ZONE_M = 12.0
+_SWING_ASIDE_M = 5.0
+"""Who steers aside does so within this much of its line, if need be slowly."""
+_LEAST_SWING = 1.2
+"""Radius of who steers aside, over the tightest that the vehicle can do."""
+_VERGE_M = 3.0
+"""Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
+_STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
+"""Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
 _DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
@@ -120,6 +130,13 @@ def spun(role: Role) -> list[Option]:
     return _sorted(role, product(lines, (Pacing(0.0),), spins(role)))
 
 
+def slid(role: Role) -> list[Option]:
+    """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
+    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+        return spun(role)
+    return _sorted(role, product(homing(role)[::2], (Pacing(0.0),), slides(role)))
+
+
 def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:
     return sorted((Option(role, *part) for part in parts), key=lambda option: option.cost)
 
@@ -128,19 +145,53 @@ def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Op
 def driving(option: Option) -> Motion:
     """A motion along the road with the option's changes."""
     role, place = option.role, option.role.place.station_m
-    drift = option.drift
-    base = role.course.path
-    path = _line_of(base, drift, place)
-    pace = _pace(role, option.pacing)
-    time, station = drive(path, pace, place, base)
-    path = _skidding(path, option.twist, place)
-    if role.actor.maneuver == "backing":
-        path = path.turned(math.pi)
+    drift, pace = option.drift, _pace(role, option)
+    line = _steered(_line_of(role.course.path, drift, place), option, pace)
+    line, path, drivable = _boxed(role, line)
+    time, station = drive(line, pace, place, (path, role.course.path))
+    drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
+    path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
     penalty = _misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
-    return Motion(path, time, station, role.size, penalty, begins)
+    return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
+
+
+def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
+    """The line of the axle and the path of the center, with the center's stations, and whether it can be driven."""
+    if role.actor.kind == "pedestrian":
+        return line, line, True
+    length, backing = role.size[0], role.actor.maneuver == "backing"
+    line = tamed(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
+    path = rolled(line, length, backing=backing)
+    drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
+    return replace(line, s_m=path.s_m), path, drivable
+
+
+def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
+    """Whether a line is far off the road at places from which the shortest approach may begin."""
+    left = [offset(role.course.path, line, station)[1] for station in stations_m]
+    return max(left) > role.course.left_edge_m + _VERGE_M or -min(left) > role.course.right_edge_m + _VERGE_M
+
+
+def _steered(line: Path, option: Option, pace: Pace) -> Path:
+    """The line turned before the meeting place, as far as the box is not meant to skid."""
+    twist, role, place = option.twist, option.role, option.role.place
+    if not twist.angle_rad or twist.skids:
+        return line
+    least = _LEAST_SWING / tightest(role.size[0])
+    near = _SWING_ASIDE_M / max(1 - math.cos(twist.angle_rad), 1e-6)
+    radius = twist.radius_m or max(min(pace.cruise_mps**2 / pace.lateral_mps2, near), least)
+    turned = swung(line, twist.angle_rad, place.station_m, radius)
+    if not twist.through:
+        return turned
+    ahead, left = offset(line, turned, place.station_m)
+    off = place.aside_m - left
+    length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
+    end = place.station_m - ahead
+    begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
+    return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
 
 
 def standing(option: Option) -> Motion:
@@ -190,11 +241,11 @@ def _profile(s_m: Floats, drift: Drift) -> Floats:
     return profile
 
 
-def _skidding(path: Path, twist: Twist, place_m: float) -> Path:
-    """The box turns over about 20 m and keeps its angle from just before the meeting place."""
-    if not twist.angle_rad:
+def _skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:
+    """The box turns as slowly as its yaw rate allows and keeps its angle from just before the meeting place."""
+    if not twist.angle_rad or not twist.skids:
         return path
-    length = 12.0 + 8.0 * abs(twist.angle_rad)
+    length = max(12.0 + 8.0 * abs(twist.angle_rad), 1.875 * abs(twist.angle_rad) * speed_mps / YAW_RADPS)
     return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))
 
 
@@ -206,17 +257,21 @@ def _begins(role: Role, drift: Drift) -> float:
     return min(shown, default=role.place.station_m - (3.0 if role.actor.kind == "pedestrian" else 10.0))
 
 
-def _pace(role: Role, pacing: Pacing) -> Pace:
+def _pace(role: Role, option: Option) -> Pace:
+    pacing, told = option.pacing, role.actor.speed_mph is not None
     speed = usual_speed(role) * pacing.factor
-    curve = (6.5 if role.actor.maneuver != "u_turn" else 4.5) * pacing.factor
+    usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
+    curve = max(usual * pacing.factor, speed if told else 3.0)
     starts = None
     if pacing.from_stop and role.course.turn is not None:
         starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
     elif pacing.from_stop:
         starts = min(line_m(role), role.place.station_m - 6.0)
+    hard = told or bool(option.drift.note or option.twist.note)
+    pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
     if role.actor.maneuver == "slowing":
-        return Pace(speed, curve, starts, role.place.station_m - 3.0, max(0.35 * speed, 1.5))
-    return Pace(speed, max(curve, 3.0), starts)
+        return replace(pace, slow_at_m=role.place.station_m - 3.0, slow_mps=max(0.35 * speed, 1.5))
+    return pace
 
 
 # ------------------------------------------------------------------ how ill a place fits

@@ -60,7 +60,10 @@ def _best(
     for a, b in _pairs(first, second, most):
         if best is not None and a.cost + b.cost >= best.cost:
             continue
-        found = meet(a.motion_with(b), b.motion_with(a), wanted)
+        one, two = a.motion_with(b), b.motion_with(a)
+        if not one.drivable or not two.drivable:
+            continue
+        found = meet(one, two, wanted)
         if found is not None and (best is None or a.cost + b.cost + found.cost < best.cost):
             best = Encounter(a, b, found)
             if found.cost < _CONTENT:

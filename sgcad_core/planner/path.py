@@ -9,16 +9,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 
 STEP_M = 0.5
+TURN_BACK_M = 5.6
+"""Of the rear axle in a turn back: a car's turning circle of 11 m (SAE J695, cars of 1990-2007: 10.5 to 12 m)."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
 _EXTENSION_STEP_M = 4.0
+_DENSE_M = 100.0
+"""So much of the runs at both ends is as dense as the line itself: who shifts there must do so smoothly."""
+_TURN_HALF_M = 20.0
+_TURN_RAD = math.radians(25)
+"""Over twice that length: less is no turn but a shift from lane to lane across a junction."""
+_WINDOWS_M = (2.0, 3.0, 4.5, 6.0, 9.0, 13.0, 18.0, 25.0)
+_TAPER = 0.35
+"""Metres by which a smoothing window narrows per metre of distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +41,23 @@ class Path:
     heading_rad: Floats
 
     def poses(self, s_m: ArrayLike) -> Floats:
-        """(m, 3) x, y, heading at stations, clamped to the ends."""
-        columns = (self.points[:, 0], self.points[:, 1], self.heading_rad)
-        return np.column_stack([np.interp(np.asarray(s_m, dtype=float), self.s_m, c) for c in columns])
+        """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between the points."""
+        at = np.clip(np.asarray(s_m, dtype=float), self.s_m[0], self.s_m[-1])
+        i = np.clip(np.searchsorted(self.s_m, at) - 1, 0, len(self.s_m) - 2)
+        step = self.s_m[i + 1] - self.s_m[i]
+        t = (at - self.s_m[i]) / step
+        t2, t3 = t * t, t * t * t
+        p, m = self.points, self._slopes
+        ends = (2 * t3 - 3 * t2 + 1)[:, None] * p[i] + (3 * t2 - 2 * t3)[:, None] * p[i + 1]
+        slopes = (t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1]
+        heading = self.heading_rad[i] + t * (self.heading_rad[i + 1] - self.heading_rad[i])
+        return np.column_stack((ends + step[:, None] * slopes, heading))
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """(n, 2) change of place per metre of station."""
+        slopes: Floats = np.gradient(self.points, self.s_m, axis=0)
+        return slopes
 
     def lengths(self) -> Floats:
         """(n,) true distance along the line at each point, metres from its first."""
@@ -81,25 +106,79 @@ def ramp(s_m: Floats, start_m: float, length_m: float) -> Floats:
     return rise
 
 
-def draw(points: Floats, smooth_m: float = 2.0) -> Path:
+def draw(points: Floats, smooth_m: float = 3.0, speed_mps: float = 0.0) -> Path:
     """A path along a polyline (n, 2): corners rounded over about `smooth_m`, straight runs added at both ends.
 
-    Station 0 is the first given point; the runs have negative and further stations.
+    Shifts that are no turns are spread over the length that a speed asks for. Station 0 is the first given point; the
+    runs have negative and further stations.
     """
     length = float(arc_lengths(points)[-1])
     count = max(8, math.ceil(length / STEP_M))
-    dense = _rounded(resample(points, np.linspace(0, length, count + 1)), max(1, round(smooth_m / STEP_M)))
-    reach = np.arange(EXTENSION_M, 0, -_EXTENSION_STEP_M)
+    dense = resample(points, np.linspace(0, length, count + 1))
     first, last = _unit(dense[1] - dense[0]), _unit(dense[-1] - dense[-2])
-    full = np.vstack((dense[0] - reach[:, None] * first, dense, dense[-1] + reach[::-1, None] * last))
+    near = np.arange(_DENSE_M, 0, -STEP_M)
+    dense = np.vstack((dense[0] - near[:, None] * first, dense, dense[-1] + near[::-1, None] * last))
+    dense = _rounded(dense, np.full(len(dense), smooth_m / STEP_M))
+    if speed_mps:
+        dense = _rounded(dense, _spread(dense, speed_mps, smooth_m))
+    far = np.arange(EXTENSION_M - _DENSE_M, 0, -_EXTENSION_STEP_M)
+    full = np.vstack((dense[0] - far[:, None] * first, dense, dense[-1] + far[::-1, None] * last))
     return Path(full, arc_lengths(full) - EXTENSION_M, _tangents(full))
 
 
+def _spread(points: Floats, speed_mps: float, least_m: float) -> Floats:
+    """(n,) half windows, in points, that turn a shift of a lane into a gentle one: narrow at turns, wide elsewhere.
+
+    A moving mean over 2 h, taken twice, bends a step of width d by d / (4 h^2): 3.6 m at 3 m/s2 need
+    h = 0.55 s * speed.
+    """
+    turning = np.abs(swing(_tangents(points), arc_lengths(points))) >= _TURN_RAD
+    free_m = _steps_to(turning) * STEP_M
+    half: Floats = np.minimum(least_m + _TAPER * free_m, max(0.55 * speed_mps, least_m)) / STEP_M
+    return half
+
+
+def swing(angle: Floats, at: Floats) -> Floats:
+    """(n,) how far a line turns from _TURN_HALF_M before each point to as far behind it, radians."""
+    ahead, behind = np.interp(at + _TURN_HALF_M, at, angle), np.interp(at - _TURN_HALF_M, at, angle)
+    turned: Floats = ahead - behind
+    return turned
+
+
+def tamed(line: Path, most_per_m: float) -> Path:
+    """The line with tighter bends than `most_per_m` (1/m) widened: a little of the corner is cut.
+
+    As tight as before where the widest window is not enough.
+    """
+    points = line.points
+    for window_m in _WINDOWS_M:
+        over = np.abs(np.gradient(_tangents(points), arc_lengths(points))) > most_per_m
+        if not over.any():
+            break
+        half = np.clip(window_m - _TAPER * np.maximum(_steps_to(over) * STEP_M - window_m, 0.0), 0.0, None)
+        points = _rounded(points, half / STEP_M)
+    return line if points is line.points else line.displaced(points - line.points)
+
+
+def _steps_to(marked: NDArray[np.bool_]) -> Floats:
+    """(n,) number of points to the nearest marked one; very many where none is."""
+    at = np.flatnonzero(marked)
+    if not len(at):
+        return np.full(len(marked), 1e6)
+    index = np.arange(len(marked))
+    right = np.searchsorted(at, index)
+    after = np.abs(at[np.minimum(right, len(at) - 1)] - index)
+    before = np.abs(index - at[np.maximum(right - 1, 0)])
+    nearest: Floats = np.minimum(after, before).astype(np.float64)
+    return nearest
+
+
 def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch: float = 0.42) -> Floats:
-    """(m, 2) cubic arc between two points with given headings; tight U-turns swing out to stay drivable."""
+    """(m, 2) cubic arc between two points with given headings; a turn back swings out to stay drivable."""
     gap = float(np.hypot(*(end - start)))
-    swing = abs(math.remainder(end_rad - start_rad, 2 * math.pi))
-    reach = max(stretch * gap, 6.0 if swing > 2.4 else 0.0)
+    if abs(math.remainder(end_rad - start_rad, 2 * math.pi)) > 2.4:
+        return turned_back(start, start_rad, end)
+    reach = stretch * gap
     controls = [
         start,
         start + reach * np.array([math.cos(start_rad), math.sin(start_rad)]),
@@ -112,6 +191,27 @@ def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch
     return arc
 
 
+def turned_back(start: Floats, start_rad: float, end: Floats, radius_m: float = TURN_BACK_M) -> Floats:
+    """(m, 2) a turn by 180 degrees to the left onto a parallel line: out to the right, around, and back in.
+
+    Three arcs of one radius: out by b, around by pi + 2 b, in by b, where 2 cos b - 1 = gap / (2 radius) (the symmetric
+    case of L. E. Dubins, 1957); one half circle where the lines lie far enough apart.
+    """
+    c, s = math.cos(start_rad), math.sin(start_rad)
+    gap = max(float((end - start) @ np.array([-s, c])), 0.0)
+    wide = max(radius_m, gap / 2)
+    out = math.acos(min(max((gap / (2 * wide) + 1) / 2, 0.0), 1.0))
+    turns = np.array([-out, math.pi + 2 * out, -out])
+    bends = [np.full(max(2, math.ceil(abs(a) * wide / STEP_M)), a) for a in turns if abs(a) > 1e-6]
+    steps = np.concatenate([a / len(a) for a in bends])
+    lengths = np.abs(steps) * wide
+    heading = start_rad + np.cumsum(steps) - steps / 2
+    way = np.cumsum(np.column_stack((np.cos(heading), np.sin(heading))) * lengths[:, None], axis=0)
+    arcs = start + np.vstack((np.zeros(2), way))
+    run: Floats = np.vstack((arcs, end)) if (end - arcs[-1]) @ np.array([c, s]) < -1.0 else arcs
+    return run
+
+
 def end_heading(points: Floats, *, at_end: bool, over_m: float = 8.0) -> float:
     """Heading of the first or last few metres of a polyline."""
     length = float(arc_lengths(points)[-1])
@@ -120,13 +220,21 @@ def end_heading(points: Floats, *, at_end: bool, over_m: float = 8.0) -> float:
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
-def _rounded(points: Floats, half: int) -> Floats:
-    """Moving mean over 2 half + 1 points, twice; the ends stay (the window narrows towards them)."""
+def _rounded(points: Floats, half: Floats) -> Floats:
+    """Moving mean over `half` points to either side, twice; the ends stay (the window narrows towards them).
+
+    Windows may be broken numbers, so that one that varies along the line leaves no steps in it.
+    """
     n = len(points)
-    reach = np.minimum(half, np.minimum(np.arange(n), np.arange(n)[::-1]))
+    index = np.arange(n)
+    reach = np.minimum(half, np.minimum(index, index[::-1]).astype(np.float64))
+    whole = reach.astype(int)
+    part = (reach - whole)[:, None]
+    low, high = np.maximum(index - whole - 1, 0), np.minimum(index + whole + 1, n - 1)
     for _ in range(2):
         total = np.vstack((np.zeros(2), np.cumsum(points, axis=0)))
-        points = (total[np.arange(n) + reach + 1] - total[np.arange(n) - reach]) / (2 * reach + 1)[:, None]
+        inner = total[index + whole + 1] - total[index - whole]
+        points = (inner + part * (points[low] + points[high])) / (2 * reach + 1)[:, None]
     return points
 
 

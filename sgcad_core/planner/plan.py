@@ -1,7 +1,8 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
 The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
-lane, with a swerve or a skid; what was changed stands in the plan's notes.
+lane, with a swerve or a skid; what was changed stands in the plan's notes. Boxes that slide against their way without
+a told loss of control are the last resort: noted, and doubted by the validator `drivable`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from dataclasses import dataclass, field, replace
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import STEP_S
-from sgcad_core.planner.options import Option, aimed, forced, options, spun
+from sgcad_core.planner.motion import LEAD_S, STEP_S
+from sgcad_core.planner.options import Option, aimed, forced, options, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there
@@ -24,12 +25,12 @@ from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_c
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
-LEAD_S = (4.2, 8.0)
-"""Shortest and longest approach before the first contact."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 45)
 """Combinations of options tried in each stage of the search."""
+_LAST_TRIES = 90
+"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
 _LANELESS = ("pedestrian", "object")
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
@@ -53,9 +54,12 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph) -> Plan:
-    """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have."""
-    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior))
+def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) -> Plan:
+    """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
+
+    `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
+    """
+    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior), may_skid)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -100,6 +104,7 @@ class _Cast:
     behavior: BehaviorSpec
     courses: dict[str, Course]
     tractors: dict[str, str]
+    may_skid: bool = False
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -123,16 +128,20 @@ class _Cast:
     def encounter(self, contact: Contact) -> Scene | None:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
         a, b = self._roles(contact)
-        found = search(self._stages(a, b), (contact.striker_area, contact.struck_area))
+        wanted = (contact.striker_area, contact.struck_area)
+        found = search(self._stages(a, b), wanted) or search([self._stage(a, b, slid, _LAST_TRIES)], wanted)
         if found is None:
             self.notes.append(f"{contact.striker} and {contact.struck} cannot touch as declared")
-            found = search([((self._options(a, b, forced), self._options(b, a, forced)), _TRIES[0])], None)
+            found = search([self._stage(a, b, forced, _TRIES[0])], None)
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
         """Ordinary driving, then with the wanted sides turned to each other, then by force."""
         for ways, tries in zip((options, aimed, forced, spun), _TRIES, strict=True):
-            yield (self._options(a, b, ways), self._options(b, a, ways)), tries
+            yield self._stage(a, b, ways, tries)
+
+    def _stage(self, a: Role, b: Role, ways: Callable[[Role], list[Option]], tries: int) -> tuple[Ways, int]:
+        return (self._options(a, b, ways), self._options(b, a, ways)), tries
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]
@@ -140,7 +149,15 @@ class _Cast:
             a = self._set_rolling(a, b)
         places = self._places(a, b)
         pair = [
-            Role(actor, self.courses[actor.id], size_m(actor), place, side)
+            Role(
+                actor,
+                self.courses[actor.id],
+                size_m(actor),
+                place,
+                side,
+                surface=self.behavior.surface,
+                may_skid=self.may_skid,
+            )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]
         first, second = pair
@@ -185,7 +202,8 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
+        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
+        contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
@@ -250,4 +268,4 @@ class _Cast:
     def _own_role(self, name: str) -> Role:
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
-        return Role(actor, course, size_m(actor), place)
+        return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)

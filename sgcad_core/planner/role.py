@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
-from sgcad_core.specs import Actor, Area
+from sgcad_core.specs import Actor, Area, Surface
 
 MPH = 0.44704
 _STEEP_DEG = 60.0
@@ -33,6 +34,14 @@ class Role:
     """How fast the other one comes."""
     other_width_m: float = 1.8
     other_side: Area | None = None
+    surface: Surface | None = None
+    may_skid: bool = False
+    """The report tells that somebody lost control."""
+
+    @property
+    def grip_mps2(self) -> float:
+        """What tires transmit on the surface."""
+        return DRIVING.friction_mps2(self.surface)
 
 
 class Drift(NamedTuple):
@@ -60,11 +69,17 @@ class Pacing(NamedTuple):
 
 
 class Twist(NamedTuple):
-    """A box turned against its line before contact: a skid, or a car that stands askew."""
+    """A box turned before contact: steered aside, in a skid, or standing askew."""
 
     cost: float
     angle_rad: float = 0.0
     note: str = ""
+    skids: bool = False
+    """The box turns against its line; else the line turns with it."""
+    through: bool = False
+    """It swings out to the other side first, so that it comes through the meeting place all the same."""
+    radius_m: float | None = None
+    """Of the bend; None: as tight as the speed allows."""
 
 
 def is_standing(role: Role) -> bool:

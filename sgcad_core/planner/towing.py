@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,6 +11,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.motion import Motion
 from sgcad_core.planner.path import Path
+from sgcad_core.planner.rolling import rolled
 from sgcad_core.specs import Actor, BehaviorSpec
 
 HITCH_M = 1.3
@@ -43,7 +45,18 @@ def ahead_of(motion: Motion, by_m: float, size: Size) -> Motion:
     """The same motion on the same path with its box further ahead (behind where negative)."""
     if motion.standing:
         return replace(motion, path=_slid(motion, by_m), size=size, penalty=np.zeros_like(motion.penalty))
-    return replace(motion, station_m=motion.station_m + by_m, size=size)
+    if motion.axle is None:
+        return replace(motion, station_m=motion.station_m + by_m, size=size)
+    return _rolling(motion, motion.axle, by_m, size)
+
+
+def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
+    """The other box with its own rear axle on the same line."""
+    backing = math.cos(float(motion.path.heading_rad[0] - axle.heading_rad[0])) < 0
+    path = rolled(axle, size[0], backing=backing)
+    own, other = (float(np.hypot(*(p.points[0] - axle.points[0]))) for p in (motion.path, path))
+    shift = by_m + (own - other) * (-1.0 if backing else 1.0)
+    return replace(motion, path=replace(path, s_m=axle.s_m), station_m=motion.station_m + shift, size=size)
 
 
 def _slid(motion: Motion, by_m: float) -> Path:

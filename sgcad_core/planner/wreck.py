@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
-from sgcad_core.planner.boxes import Apart, apart, radius, touch_point
+from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
+from sgcad_core.planner.ground import Drag, slow
 from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, solve
 from sgcad_core.planner.motion import STEP_S
 
@@ -32,16 +33,7 @@ _HELD_S = 0.06
 """A touch stays as it is for more than one sample: who reads samples must see it."""
 _ROUNDS = 6
 """Of impulses over all touching pairs in one step."""
-_SLIP_LEVER = 0.25
-"""Mean lever of ground friction against turning, as a share of the box's diagonal."""
 _LEAST_LEFT_S = 0.1
-
-
-class Drag(NamedTuple):
-    """Deceleration along and across the box by tires, brakes and ground, m/s2."""
-
-    along: float
-    across: float
 
 
 @dataclass
@@ -157,20 +149,22 @@ class Wreck:
         one.heading += one.spin * step
         if m.free:
             left = max((self.count - 4) * STEP_S - self.now, _LEAST_LEFT_S)
-            _slow(one, m.drag, step, left)
+            slow(one, m.drag, step, left)
 
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
         touching = [(a, b, seen) for a, b in near if self._touches(a, b, seen := apart(a.body, b.body), sample)]
-        points = [touch_point(a.body, b.body) for a, b, _ in touching]
-        for turn in range(_ROUNDS if touching or self.hitches else 0):
-            moved = False
-            for (a, b, seen), at in zip(touching, points, strict=True):
-                bounce = self._bounce(a, b, seen, at, sample) if turn == 0 else 0.0
-                moved |= collide(a.body, b.body, at, seen.normal, bounce)
-            for hitch in self.hitches:
-                moved |= self._pull(hitch)
-            if not moved:
+        corners = [touch_points(a.body, b.body) for a, b, _ in touching]
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            at = mean(points)
+            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample))
+        for _ in range(_ROUNDS if touching or self.hitches else 0):
+            moved = [
+                collide(a.body, b.body, at, seen.normal)
+                for (a, b, seen), points in zip(touching, corners, strict=True)
+                for at in points
+            ]
+            if not any([*moved, *(self._pull(hitch) for hitch in self.hitches)]):
                 break
         for a, b, seen in touching:
             self._part(a, b, seen)
@@ -184,7 +178,7 @@ class Wreck:
             return seen.gap_m < APART_M
         if seen.gap_m > 0:
             return False
-        coming = approach(a.body, b.body, touch_point(a.body, b.body), seen.normal) > 0
+        coming = approach(a.body, b.body, mean(touch_points(a.body, b.body)), seen.normal) > 0
         if coming and seen.gap_m > -SEEN_M:
             return False
         self.touches[key] = self.now
@@ -284,22 +278,3 @@ def _may_meet(a: Mover, b: Mover) -> bool:
 
 def _moves(m: Mover) -> bool:
     return bool(m.body.vx or m.body.vy or m.body.spin)
-
-
-def _slow(one: Body, drag: Drag, step: float, left_s: float) -> None:
-    """Ground friction over a step; more of it where the body would not stand in the time that is left."""
-    speed = one.speed
-    if speed > 0.0:
-        c, s = math.cos(one.heading), math.sin(one.heading)
-        along, across = (one.vx * c + one.vy * s) / speed, (one.vy * c - one.vx * s) / speed
-        brake = math.hypot(drag.along * along, drag.across * across)
-        more = max(1.0, speed / (left_s * max(brake, 1e-6)))
-        if brake * more * step >= speed:
-            one.vx = one.vy = 0.0
-        else:
-            ahead, left = drag.along * along * more * step, drag.across * across * more * step
-            one.vx -= ahead * c - left * s
-            one.vy -= ahead * s + left * c
-    turning = one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * radius(one) * drag.across
-    turning = max(turning, abs(one.spin) / left_s) * step
-    one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)

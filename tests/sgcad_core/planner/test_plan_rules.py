@@ -205,14 +205,14 @@ def test_a_struck_trailer_counts_as_the_contact():
 
 
 # ------------------------------------------------------------------ afterwards
-def test_both_come_to_rest_within_four_seconds():
+def test_both_come_to_rest_within_five_seconds():
     _, made = planned(
         "four_leg", actor("V1", "straight", "S", speed_mph=55), actor("V2", "straight", "E", speed_mph=45),
         contacts=("V1 front V2 left",),
     )  # fmt: skip
     for t in made.trajectories:
-        assert t.speed_mps[-1] < 0.1
-        assert t.t_s[-1] == pytest.approx(made.contact.t_s + 4, abs=0.06)
+        assert t.speed_mps[-3:].max() == 0
+        assert t.t_s[-1] == pytest.approx(made.contact.t_s + 5, abs=0.06)
 
 
 def test_the_struck_one_is_pushed_on():
