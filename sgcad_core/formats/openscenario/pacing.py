@@ -15,6 +15,8 @@ NEAR_M = 0.03
 """How far along the path the pieces may lead beside the motion."""
 SHORTEST = 3
 """Rows of the shortest piece, 0.05 s each: shorter ones nobody edits."""
+MOVED = 2
+"""Rows by which a new knot may lie beside the bend that asked for it: differences smear bends over their neighbors."""
 STILL_MPS = 0.02
 """Speeds below are a stand."""
 
@@ -26,11 +28,18 @@ def pieces(t_s: Floats, along_m: Floats) -> tuple[Floats, Floats]:
     (there it bends), until the distance gone is within NEAR_M everywhere or no piece is left to cut.
     """
     knots, wanted = [0, len(t_s) - 1], np.gradient(along_m, t_s)
+    bends = np.gradient(np.gradient(wanted, t_s), t_s)
     while True:
         speeds, error = _fitted(t_s, along_m, knots)
         if np.abs(error).max() <= NEAR_M or (cut := _cut(t_s, wanted, knots)) is None:
             return t_s[knots], speeds
-        knots = sorted([*knots, cut])
+        beside = [row for row in range(cut - MOVED, cut + MOVED + 1) if _long(knots, row)]
+        knots = sorted([*knots, max(beside, key=lambda row: abs(bends[row]))])
+
+
+def _long(knots: list[int], row: int) -> bool:
+    """Whether a knot there leaves no piece too short."""
+    return knots[0] < row < knots[-1] and min(abs(row - knot) for knot in knots) >= SHORTEST
 
 
 def _fitted(t_s: Floats, along_m: Floats, knots: list[int]) -> tuple[Floats, Floats]:
