@@ -17,8 +17,8 @@ MAX_FILE_BYTES = 50_000_000
 
 def read_regular(path: Path, inside: Path | None = None, most: int = MAX_FILE_BYTES) -> bytes:
     """A regular file's bytes. Raises BadInput if it is no such file, leads out of `inside` or has over `most`."""
-    if inside is not None and not leads_inside(path, inside):
-        raise BadInput(f"{path}: leads out of its folder: put the file itself into {inside}")
+    if inside is not None:
+        check_inside(path, inside)
     try:
         opened = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as fault:
@@ -33,6 +33,12 @@ def read_regular(path: Path, inside: Path | None = None, most: int = MAX_FILE_BY
             return file.read(most + 1)[:most]
         except OSError as fault:
             raise BadInput(f"{path}: cannot be read: {fault.strerror or fault}") from fault
+
+
+def check_inside(path: Path, folder: Path) -> None:
+    """Raise BadInput where a path, all its links followed, leads out of the folder."""
+    if not leads_inside(path, folder):
+        raise BadInput(f"{path}: leads out of its folder: put the file itself into {folder}")
 
 
 def is_regular(path: Path) -> bool:

@@ -10,7 +10,7 @@ from plugins.report_reader.nhtsa_xml import NhtsaXml, parse_case
 from plugins.report_reader.pdf import Pdf
 from sgcad_core.errors import BadInput
 from sgcad_core.records import CrashReport, Diagram
-from sgcad_core.report_files import is_regular, read_regular
+from sgcad_core.report_files import check_inside, is_regular, read_regular
 
 TEXTS = ("report.txt", "narrative.txt")
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp")
@@ -48,7 +48,7 @@ class Folder(EvidenceReader):
         for suffix, reader in ((".xml", NhtsaXml), (".pdf", Pdf)):
             found = [f for f in files if f.suffix.lower() == suffix]
             if len(found) == 1:
-                read_regular(found[0], source)
+                check_inside(found[0], source)
                 report = reader(**self.model_dump()).read(found[0])
                 return report.model_copy(update={"diagrams": pictures or report.diagrams})
         loose = [f for f in files if f.suffix.lower() == ".txt"]
