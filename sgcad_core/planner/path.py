@@ -219,7 +219,7 @@ def end_heading(points: Floats, *, at_end: bool, over_m: float = 8.0) -> float:
 
 
 def _rounded(points: Floats, half: Floats) -> Floats:
-    """Moving mean over `half` points to either side, twice; the ends stay (the window narrows towards them).
+    """Moving mean over `half` points to either side, three times; the ends stay (the window narrows towards them).
 
     Windows may be broken numbers, so that one that varies along the line leaves no steps in it.
     """
@@ -229,7 +229,7 @@ def _rounded(points: Floats, half: Floats) -> Floats:
     whole = reach.astype(int)
     part = (reach - whole)[:, None]
     low, high = np.maximum(index - whole - 1, 0), np.minimum(index + whole + 1, n - 1)
-    for _ in range(2):
+    for _ in range(3):
         total = np.vstack((np.zeros(2), np.cumsum(points, axis=0)))
         inner = total[index + whole + 1] - total[index - whole]
         points = (inner + part * (points[low] + points[high])) / (2 * reach + 1)[:, None]
