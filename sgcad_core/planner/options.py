@@ -41,6 +41,7 @@ from sgcad_core.specs import Area
 _ZONE_M = 12.0
 _SWING_ASIDE_M = 5.0
 """Who steers aside does so within this much of its line, if need be slowly."""
+_PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
 _UNDER_WAY_M = 2.5
@@ -110,6 +111,11 @@ def aimed(role: Role) -> list[Option]:
     return _sorted(role, product(drifts(role, fine=False), pacings(role), angles))
 
 
+def plainly(role: Role) -> list[Option]:
+    """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
+    return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
+
+
 def forced(role: Role) -> list[Option]:
     """A few ways that lead through the very meeting place with the wanted side ahead, however odd."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
@@ -170,7 +176,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
     ahead, left = offset(line, turned, place.station_m)
     off = place.aside_m - left
     length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
-    end = place.station_m - ahead
+    end = place.station_m - ahead + place.ahead_m
     begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
     return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
 

@@ -28,6 +28,7 @@ _TURN_HALF_M = 20.0
 _TURN_RAD = math.radians(25)
 """Over twice that length: less is no turn but a shift from lane to lane across a junction."""
 _WINDOWS_M = (2.0, 3.0, 4.5, 6.0, 9.0, 13.0, 18.0, 25.0)
+_EVEN_M = 6.0
 _TAPER = 0.35
 """Metres by which a smoothing window narrows per metre of distance."""
 
@@ -41,22 +42,26 @@ class Path:
     heading_rad: Floats
 
     def poses(self, s_m: ArrayLike) -> Floats:
-        """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between the points."""
+        """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between points."""
         at = np.clip(np.asarray(s_m, dtype=float), self.s_m[0], self.s_m[-1])
         i = np.clip(np.searchsorted(self.s_m, at) - 1, 0, len(self.s_m) - 2)
         step = self.s_m[i + 1] - self.s_m[i]
         t = (at - self.s_m[i]) / step
         t2, t3 = t * t, t * t * t
-        p, m = self.points, self._slopes
+        p, m = self._columns, self._slopes
         ends = (2 * t3 - 3 * t2 + 1)[:, None] * p[i] + (3 * t2 - 2 * t3)[:, None] * p[i + 1]
-        slopes = (t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1]
-        heading = self.heading_rad[i] + t * (self.heading_rad[i + 1] - self.heading_rad[i])
-        return np.column_stack((ends + step[:, None] * slopes, heading))
+        bent: Floats = ends + step[:, None] * ((t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1])
+        return bent
+
+    @cached_property
+    def _columns(self) -> Floats:
+        """(n, 3) x, y, heading at the points."""
+        return np.column_stack((self.points, self.heading_rad))
 
     @cached_property
     def _slopes(self) -> Floats:
-        """(n, 2) change of place per metre of station."""
-        slopes: Floats = np.gradient(self.points, self.s_m, axis=0)
+        """(n, 3) their change per metre of station."""
+        slopes: Floats = np.gradient(self._columns, self.s_m, axis=0)
         return slopes
 
     def lengths(self) -> Floats:
@@ -133,8 +138,7 @@ def _spread(points: Floats, speed_mps: float, least_m: float) -> Floats:
     """
     turning = np.abs(swing(_tangents(points), arc_lengths(points))) >= _TURN_RAD
     free_m = _steps_to(turning) * STEP_M
-    half: Floats = np.minimum(least_m + _TAPER * free_m, max(0.55 * speed_mps, least_m)) / STEP_M
-    return half
+    return _even(np.minimum(least_m + _TAPER * free_m, max(0.55 * speed_mps, least_m)) / STEP_M)
 
 
 def swing(angle: Floats, at: Floats) -> Floats:
@@ -155,8 +159,16 @@ def tamed(line: Path, most_per_m: float) -> Path:
         if not over.any():
             break
         half = np.clip(window_m - _TAPER * np.maximum(_steps_to(over) * STEP_M - window_m, 0.0), 0.0, None)
-        points = _rounded(points, half / STEP_M)
+        points = _rounded(points, _even(half / STEP_M))
     return line if points is line.points else line.displaced(points - line.points)
+
+
+def _even(half: Floats) -> Floats:
+    """Windows without corners: where a window changes abruptly, so does the direction of the line."""
+    n = round(_EVEN_M / STEP_M)
+    for _ in range(2):
+        half = np.convolve(np.pad(half, n, mode="edge"), np.ones(2 * n + 1) / (2 * n + 1), mode="valid")
+    return half
 
 
 def _steps_to(marked: NDArray[np.bool_]) -> Floats:

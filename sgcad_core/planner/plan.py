@@ -14,7 +14,7 @@ from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import STEP_S
-from sgcad_core.planner.options import Option, aimed, forced, options, spun
+from sgcad_core.planner.options import Option, aimed, forced, options, plainly, spun
 from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there
@@ -28,8 +28,10 @@ LEAD_S = (4.2, 8.0)
 """Shortest and longest approach before the first contact."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
-_TRIES = (16, 26, 24, 45)
+_TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
+_ONE_TURNS = 24
+"""Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
@@ -134,9 +136,15 @@ class _Cast:
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, then with the wanted sides turned to each other, then by force."""
-        for ways, tries in zip((options, aimed, forced, spun), _TRIES, strict=True):
-            yield (self._options(a, b, ways), self._options(b, a, ways)), tries
+        """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
+        ways = {f: (self._options(a, b, f), self._options(b, a, f)) for f in (options, aimed)}
+        yield ways[options], _TRIES[0]
+        yield ways[aimed], _TRIES[1]
+        plain = self._options(a, b, plainly), self._options(b, a, plainly)
+        yield (plain[0], ways[aimed][1]), _ONE_TURNS
+        yield (ways[aimed][0], plain[1]), _ONE_TURNS
+        yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
+        yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]

@@ -18,7 +18,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
-from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, solve
+from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, hold, solve
 from sgcad_core.planner.motion import STEP_S
 
 SEEN_M = 0.015
@@ -174,7 +174,8 @@ class Wreck:
             ]
             if not any([*moved, *(self._pull(hitch) for hitch in self.hitches)]):
                 break
-        for a, b, seen in touching:
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            self._keep_seen(a, b, seen, mean(points), sample)
             self._part(a, b, seen)
         for hitch in self.hitches:
             self._draw_together(hitch)
@@ -211,6 +212,16 @@ class Wreck:
         closing = approach(a.body, b.body, at, seen.normal)
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         return min(RESTITUTION, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
+
+    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> None:
+        """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
+        if self.touches[_key(a, b)] <= sample * STEP_S:
+            return
+        left = max((sample + 1) * STEP_S - self.now, 1e-3)
+        allowed = 0.5 * max(-seen.gap_m, 0.0) / left
+        parting = -approach(a.body, b.body, at, seen.normal)
+        if parting > allowed:
+            hold(a.body, b.body, at, seen.normal, parting - allowed)
 
     def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
         """Move two apart that sank into each other: places only, no motion comes of it."""
