@@ -7,6 +7,7 @@ no passages; findings cannot change its answer.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
@@ -16,9 +17,13 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
+from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
-from sgcad_core.specs import RoadSpec
+from sgcad_core.specs import Area, BehaviorSpec, RoadSpec
+
+_MOST_SIDES = 6
+"""Pairs of sides that are planned besides the declared ones."""
 
 
 class Rules(ScenarioWriter):
@@ -39,8 +44,21 @@ class Rules(ScenarioWriter):
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
         facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
-        scenario = compile_scenario(behavior_of_facts(facts, spec), network)
+        lost = tells_lost_control(context.narrative)
+        behavior = behavior_of_facts(facts, spec)
+        scenario = compile_scenario(behavior, network, may_skid=lost, sides=_other_sides(facts, behavior))
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
+
+
+def _other_sides(facts: CrashFacts, behavior: BehaviorSpec) -> list[tuple[Area, Area]]:
+    """Sides of the first contact that the text allows as well: those that change one of both first."""
+    pairs = {(c.striker, c.struck) for c in behavior.contacts[:1]}
+    first = next((c for c in facts.contacts if (c.striker, c.struck) in pairs), None)
+    if first is None:
+        return []
+    told = (first.striker_area, first.struck_area)
+    others = [pair for pair in product(first.striker_may, first.struck_may) if pair != told]
+    return sorted(others, key=lambda pair: (pair[0] != told[0]) + (pair[1] != told[1]))[:_MOST_SIDES]
 
 
 def _read_back(network: RoadNetwork) -> RoadSpec:

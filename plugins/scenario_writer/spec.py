@@ -15,6 +15,7 @@ from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.specs import BehaviorSpec, RoadSpec
@@ -47,7 +48,8 @@ class SpecScenario(ScenarioWriter):
             answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
             attempt=attempt,
         )
-        return compile_scenario(parse_answer(ask(context, query).text, BehaviorSpec), network)
+        behavior = parse_answer(ask(context, query).text, BehaviorSpec)
+        return compile_scenario(behavior, network, may_skid=tells_lost_control(context.narrative))
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

@@ -7,7 +7,6 @@ holds further answers to what meets in ordinary driving.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -19,16 +18,11 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
-
-_LOST = re.compile(
-    r"\b(?:los[et]|losing|loss of|regain\w*) (?:\w+ ){0,3}(?:control|traction)|(?<!no )\bskid(?! mark)|"
-    r"\bslid(?:e|ing)?\b(?! door)|\bfishtail|\byaw|\bhydroplan|\bout of control|\bovercorrect|\bjackknif|"
-    r"\bspun out", re.I)  # fmt: skip
-"""Somebody did not drive in the ordinary way."""
 
 
 class Meeting(Validator):
@@ -49,7 +43,7 @@ class Meeting(Validator):
         if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
             return []
         network, text = evidence.network, evidence.report.narrative
-        if artifact.oddity < self.odd_from or _LOST.search(text) or network is None or network.net_xml is None:
+        if artifact.oddity < self.odd_from or tells_lost_control(text) or network is None or network.net_xml is None:
             return []
         holds: tuple[Hold, ...] = ()
         if self.try_others and network.spec is not None:

@@ -98,6 +98,15 @@ def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool
     return sides == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
+def _cannot(contact: Contact, found: Encounter | None) -> str:
+    """That a pair cannot touch as declared, and what would come of it as both drive."""
+    said = f"{contact.striker} and {contact.struck} cannot touch as declared in any driving"
+    if found is None:
+        return f"{said}: their ways never meet"
+    sides = found.meeting.sides
+    return f"{said}; as they drive, the {sides[0]} of {contact.striker} meets the {sides[1]} of {contact.struck}"
+
+
 @dataclass
 class _Cast:
     """The actors with their courses, and what happened to their stated behavior on the way."""
@@ -131,8 +140,8 @@ class _Cast:
         a, b = self._roles(contact)
         found = search(self._stages(a, b), (contact.striker_area, contact.struck_area))
         if found is None:
-            self.notes.append(f"{contact.striker} and {contact.struck} cannot touch as declared")
-            found = search([((self._options(a, b, forced), self._options(b, a, forced)), _TRIES[0])], None)
+            found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
+            self.notes.append(_cannot(contact, found))
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
