@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 export HF_HUB_OFFLINE := 1
+SIDE_BY_SIDE = -n $(or $(WORKERS),logical) --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean pages
@@ -24,11 +25,11 @@ $(READY): pyproject.toml
 demo: setup ## three bundled reports become scenarios; prints where to look
 	$(BIN)/sgcad evaluate docs/demo --config configs/template.yaml --out runs/demo
 
-test: setup ## the whole test suite
-	$(BIN)/python -m pytest
+test: setup ## the whole test suite, as many tests at once as there are cores (WORKERS=2)
+	$(BIN)/python -m pytest $(SIDE_BY_SIDE)
 
 test-fast: setup ## the tests that take no more than seconds
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" $(SIDE_BY_SIDE)
 
 up: setup ## server, worker, MLflow and deployments on this machine (UP="--server-port 4300 ...")
 	$(BIN)/python -m deploy.local up $(UP)
@@ -67,7 +68,8 @@ test-hosts: setup ## a study on two hosts that lose network and power (Linux, ro
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,hosts]' 'moto[s3]>=5.1'
 	$(BIN)/python -m tests.hosts.run
 
-lint: setup ## ruff, mypy, import-linter
+lint: setup ## ruff (rules and format), mypy, import-linter
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports

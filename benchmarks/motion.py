@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from flows.store import read_trajectories
 from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
@@ -58,13 +59,7 @@ class Figures:
 
 def read_motions(file: Path) -> tuple[Trajectory, ...]:
     """The trajectories of a trajectories.csv, in the order of their names."""
-    rows = np.genfromtxt(file, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    return tuple(_motion(name, rows[rows["actor"] == name]) for name in sorted(set(rows["actor"])))
-
-
-def _motion(name: str, rows: Any) -> Trajectory:
-    columns = {key: rows[key].astype(float) for key in ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")}
-    return Trajectory(actor=str(name), **columns)
+    return tuple(sorted(read_trajectories(file), key=lambda t: t.actor))
 
 
 def count(case: Path, figures: Figures) -> None:

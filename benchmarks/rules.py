@@ -27,7 +27,7 @@ from mini.feed import HELD_OUT_BASE  # noqa: E402
 from mini.generator.report import Report, make_report  # noqa: E402
 from sgcad_core.narrative.behavior import behavior_of_facts  # noqa: E402
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts  # noqa: E402
-from sgcad_core.narrative.roads import road_facts  # noqa: E402
+from sgcad_core.narrative.reading import road_facts  # noqa: E402
 from sgcad_core.roads.layout import COMPASS, road_spec  # noqa: E402
 from sgcad_core.specs import Compass  # noqa: E402
 

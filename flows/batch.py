@@ -100,9 +100,13 @@ def batch_of(
 def batch_over(
     found: Sequence[Case], configs: tuple[Config, ...], out: Path, jobs: int | None = None, fresh: bool = False
 ) -> Batch:
-    """`batch_of` with configs that are loaded already."""
+    """`batch_of` with configs that are loaded already. Raises MissingTool too: a simulator's program is not there."""
     if jobs is not None and jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least 1 is needed")
+    for config in configs:
+        for simulator in (config.simulator, config.judge):
+            if simulator:
+                simulator.ready()
     out = out.resolve()
     store.check_writable(out)
     for config in configs:

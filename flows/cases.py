@@ -19,6 +19,7 @@ from sgcad_core import settings
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
+from sgcad_core.report_files import is_regular
 
 TEXTS = {"report.txt", "narrative.txt"}
 SUFFIXES = {".txt", ".xml", ".pdf"}
@@ -166,6 +167,8 @@ def _files_digest(files: Iterable[Path], root: Path) -> str:
     for file in files:
         found.update(f"\n{file.relative_to(root)}\n".encode("utf-8", "surrogateescape"))
         try:
+            if not is_regular(file):  # a pipe or a device never ends
+                raise OSError("no regular file")
             with file.open("rb") as content:
                 found.update(hashlib.file_digest(content, "sha256").digest())
         except OSError as fault:  # the reader will say what is wrong with it

@@ -7,9 +7,9 @@ import json
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
+from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin

@@ -20,7 +20,8 @@ from flows.sharing import Sharing
 from flows.view import View
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
-from sgcad_core.errors import BadInput, ConfigError, MissingTool, SgcadError
+from sgcad_core.errors import ConfigError, MissingTool, SgcadError
+from sgcad_core.execution.judgement import Judgement, judge
 from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
 from sgcad_core.records import (
@@ -66,6 +67,7 @@ class _Run:
     report: CrashReport | None = None
     outcomes: dict[str, StageOutcome] = field(default_factory=dict)
     execution: Execution | None = None
+    judgement: Judgement | None = None
     metrics: dict[str, Any] | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
@@ -102,6 +104,10 @@ class _Run:
         self.execution = self._once("simulate", lambda: simulator.execute(scenario, network), scenario, network)
         with self._clock("measure"):
             self.metrics = measure(self.execution, scenario)
+        if self.config.judge:
+            with self._clock("judge"):
+                self.judgement = judge(self.config.judge, self.execution, scenario, network)
+            self.metrics["judge"] = self.judgement.summary()
 
     def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
         """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
@@ -124,13 +130,13 @@ class _Run:
         return value
 
     def _road(self, report: CrashReport, passages: tuple[Passage, ...]) -> Refinement:
-        writer, context = self.config.road_writer, context_of(report)
+        writer, context = self.config.road_writer, Context.of(report)
         return self._refinement(
             "road", writer, lambda findings, ask, n: writer.write(context, passages, findings, ask, n), report, None
         )
 
     def _scenario(self, report: CrashReport, passages: tuple[Passage, ...], network: RoadNetwork) -> Refinement:
-        writer, context = self.config.scenario_writer, context_of(report)
+        writer, context = self.config.scenario_writer, Context.of(report)
         return self._refinement(
             "scenario",
             writer,
@@ -175,9 +181,9 @@ class _Run:
     def record(self) -> CaseRecord:
         """Everything known, for result.json and the player."""
         notes = self.report.notes if self.report else ()
-        return CaseRecord(
-            self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        )
+        reading = self.report.reading if self.report else None
+        about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
+        return CaseRecord(*about, reading, self.judgement)
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""
@@ -219,11 +225,6 @@ class _Run:
         self.trace = "".join(traceback.format_exception(fault))
 
 
-def context_of(report: CrashReport) -> Context:
-    """CAD's c: the crash evidence."""
-    return Context(narrative=report.narrative, diagrams=report.diagrams)
-
-
 def ask_of(config: Config) -> Ask:
     """How writers of this config speak to its model; a later attempt draws with another seed."""
     backbone, decoder = config.backbone, config.decoder
@@ -254,12 +255,8 @@ def run_case(
 
 
 def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
-    """The folder of a case whose process died: report.txt as far as it can be read, and the reason."""
+    """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
     run = _Run(config, case, run_at_once, failure=reason)
-    try:
-        run.report = config.report_reader.read(case.source)
-    except BadInput:
-        run.report = None
     return Ending(_leave(run, store.CaseFolder(out, config.name, case.id), digest))
 
 

@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | study | table | report | plugins | index | check | doctor`.
+"""The command line: `sgcad run | evaluate | play | study | table | report | plugins | index | check | explain`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
@@ -45,6 +45,7 @@ Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YA
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
 Out = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.")]
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", help="Cases at a time; default: the cores, with a model 8.")]
+Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini: does it play the same?")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Do finished cases again.")]
 
 
@@ -71,11 +72,13 @@ def evaluate(
     out: Out = DEFAULT_OUT,
     jobs: Jobs = None,
     fresh: Fresh = False,
+    judge: Judge = "",
 ) -> None:
     """Run every case of a folder under one or several configs; run again to go on where it stopped."""
     from flows.cases import cases_in
 
-    _batch(cases_in(cases), config, overrides, out, jobs, fresh)
+    judged = [f"judge.name={judge}"] if judge else []
+    _batch(cases_in(cases), config, [*(overrides or ()), *judged], out, jobs, fresh)
 
 
 def _batch(
@@ -157,6 +160,22 @@ def check(
     describe_config(load(config, tuple(overrides or ())))
 
 
+@app.command()
+def play(
+    file: Annotated[Path, typer.Argument(help="An OpenSCENARIO file (.xosc), or one with a parameter distribution.")],
+    out: Out = Path("played"),
+    given: Annotated[list[str] | None, typer.Option("--set", help="NAME=VALUE for a parameter of the file.")] = None,
+    maps: Annotated[list[Path] | None, typer.Option("--maps", help="A folder with maps that are not there.")] = None,
+    sets: Annotated[int, typer.Option(help="Most parameter sets that are played.", min=1)] = 20,
+    until: Annotated[float, typer.Option(help="Seconds after which it is cut.", min=0.1, max=300)] = 300.0,
+) -> None:
+    """Play any scenario file: trajectories.csv, player.html, contacts.json, metrics.json, played.json."""
+    from flows import foreign
+
+    for folder in foreign.play(file, out, given or (), maps or (), sets, until):
+        typer.echo(str(folder / "player.html"))
+
+
 @plugins_app.command("list")
 def plugins_list() -> None:
     """Every installed plugin, kind by kind."""
@@ -171,6 +190,16 @@ def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or k
     from flows.catalogue import show_plugin
 
     show_plugin(name)
+
+
+@app.command()
+def explain(
+    case: Annotated[Path, typer.Argument(help="A case's folder in a run, or a report, which is read on the spot.")],
+) -> None:
+    """What was read of a report: each sentence with its facts, what follows from them, what is assumed."""
+    from flows.explain import explain as account
+
+    typer.echo(account(case))
 
 
 @app.command()

@@ -15,11 +15,11 @@ from pathlib import Path
 import httpx
 import psutil
 from rich.console import Console
-from rich.markup import escape
 
 from flows import store
 from flows.deployments import health
 from flows.server import prefect_server
+from flows.terminal import escape
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
 

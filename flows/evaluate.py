@@ -17,12 +17,11 @@ from prefect.events.worker import EventsWorker
 from prefect.futures import as_completed
 from prefect.runtime import flow_run
 from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
-from prefect.task_runners import ThreadPoolTaskRunner
 
 from flows import cases, tracking
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
 from flows.chain import Ending
-from flows.tasks import Board, case_task, hush_prefect, plain
+from flows.tasks import Board, case_task, hush_prefect, plain, threads
 from flows.tracking import OnEnding
 
 DRAIN_S, STOP_S = 60.0, 2.0
@@ -63,7 +62,7 @@ def _settle(identity: str, task_runs: int, patience: float) -> None:
 
 def _flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]]) -> Any:
     """The flow of one batch; its parameters are for people to read. Its id and task runs go into `run`."""
-    runner = ThreadPoolTaskRunner(max_workers=batch.jobs)
+    runner = threads(batch.jobs)
 
     @flow(name=batch.flow, flow_run_name=plain(batch.title) or None, task_runner=runner, persist_result=False)
     def evaluate(configs: list[str], cases: int, out: str) -> None:
@@ -98,7 +97,7 @@ def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding) -> Non
         on_ending(job, ending, tracking.track_safely(job, ending))
 
 
-@flow(name="evaluate-deployed", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)
+@flow(name="evaluate-deployed", task_runner=threads(MAX_JOBS), persist_result=False)
 def evaluate_flow(
     folders: list[str],
     configs: list[str] | None = None,

@@ -6,8 +6,9 @@
   const last = Math.max(data.t_s.length - 1, 0), step = last ? data.t_s[1] - data.t_s[0] : 0.05;
   const contact = data.collision.observed, declared = data.collision.declared;
   const contactStep = contact ? contact.t_s / step : null;
-  const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d" };
+  const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d" };
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
+  let lit = new Set();                                   // things pointed at: "V1", "road main", "contact"
   let now = 0, playing = false, before = 0, follow = false, box = { x: 0, y: 0, scale: 4 };
 
   // ---------------------------------------------------------------- view
@@ -51,8 +52,9 @@
         trace(area); ink.closePath(); ink.fillStyle = ink.strokeStyle = pass ? "#d3d8cc" : COLOR.asphalt;
         ink.lineWidth = pass * 2; ink.fill(); if (pass) ink.stroke();
       }
-      for (const [width, cars, flat] of data.drawing.strips) {
-        trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? COLOR.asphalt : COLOR.path; ink.stroke();
+      for (const [width, cars, flat, road] of data.drawing.strips) {
+        const asphalt = lit.has(road) ? COLOR.lit : COLOR.asphalt;
+        trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? asphalt : COLOR.path; ink.stroke();
       }
     }
     for (const [style, flat] of data.drawing.lines) {
@@ -76,6 +78,7 @@
     ink.save(); ink.translate(p.x, p.y); ink.rotate(p.heading);
     ink.beginPath();
     if (actor.type === "pedestrian") ink.arc(0, 0, Math.max(l, w) / 2, 0, 7); else ink.roundRect(-l / 2, -w / 2, l, w, Math.min(w * 0.22, 0.5));
+    if (lit.has(actor.id)) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 9 / box.scale; ink.stroke(); }
     ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = thin * 1.5;
     ink.shadowColor = "rgba(0,0,0,.45)"; ink.shadowBlur = 7; ink.fill(); ink.shadowBlur = 0; ink.stroke();
     if (!["pedestrian", "object", "trailer"].includes(actor.type) && w > 1) {
@@ -114,7 +117,9 @@
       const r = i % 2 ? big * 0.45 : big, a = (i * Math.PI) / 10;
       ink[i ? "lineTo" : "moveTo"](x + r * Math.cos(a), y + r * Math.sin(a));
     }
-    ink.closePath(); ink.lineWidth = 1.5; ink.strokeStyle = hit ? "#fff" : COLOR.hit;
+    ink.closePath();
+    if (lit.has("contact")) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 8; ink.stroke(); }
+    ink.lineWidth = 1.5; ink.strokeStyle = hit ? "#fff" : COLOR.hit;
     if (hit) { ink.fillStyle = COLOR.hit; ink.globalAlpha = 0.92; ink.fill(); ink.globalAlpha = 1; }
     ink.stroke();
   }
@@ -146,6 +151,45 @@
     $("scale").firstElementChild.style.width = `${metres * box.scale}px`; $("scale").lastElementChild.textContent = `${metres} m`;
   }
 
+  // ---------------------------------------------------------------- pointing: a thing and its sentences, both ways
+  function thingAt(px, py) {
+    for (const actor of data.actors) {
+      const p = pose(actor, now), [x, y] = toScreen(p.x, p.y);
+      if (Math.hypot(px - x, py - y) < Math.max((actor.length_m / 2) * box.scale, 14)) return actor.id;
+    }
+    if (contact && contact.x !== undefined) { const [x, y] = toScreen(contact.x, contact.y); if (Math.hypot(px - x, py - y) < 14) return "contact"; }
+    const [w, h] = size(), gx = box.x + (px - w / 2) / box.scale, gy = box.y - (py - h / 2) / box.scale;
+    for (const [width, , flat, road] of data.drawing.strips) {
+      if (!road) continue;
+      for (let i = 2; i < flat.length; i += 2) {
+        const [ax, ay, bx, by] = flat.slice(i - 2, i + 2), dx = bx - ax, dy = by - ay, long = dx * dx + dy * dy || 1;
+        const u = Math.min(Math.max(((gx - ax) * dx + (gy - ay) * dy) / long, 0), 1);
+        if (Math.hypot(gx - ax - u * dx, gy - ay - u * dy) < width / 2) return road;
+      }
+    }
+    return "";
+  }
+  function point(things, sentence) {                     // things light up; so do the sentences that tell of them
+    lit = new Set(things);
+    const facts = things.flatMap((t) => (data.facts[t] || []).filter((f) => !sentence || f.of === sentence.of).map((f) => [t, f]));
+    document.querySelectorAll("#narrative .told").forEach((span) => {
+      const own = data.sentences[Number(span.dataset.k)];
+      span.classList.toggle("lit", sentence ? own === sentence : own.things.some((t) => lit.has(t)));
+    });
+    if (!sentence) document.querySelector("#narrative .told.lit")?.scrollIntoView({ block: "nearest" });
+    const because = $("because"); because.replaceChildren(); because.hidden = !facts.length;
+    for (const [thing, f] of facts) {
+      const text = `${thing} ${words(f.name)}: ${show(Array.isArray(f.value) ? f.value.join(", ") : f.value)}`;
+      because.append(make("span", f.status === "default" ? `${text} (assumed)` : text, { className: f.status, title: f.status }));
+    }
+    draw();
+  }
+  function pointable(node, things, sentence) {
+    node.onmouseenter = node.onfocus = node.onclick = () => point(things, sentence);
+    node.onmouseleave = node.onblur = () => point([]);
+    return node;
+  }
+
   // ---------------------------------------------------------------- time
   function go(to) { now = Math.min(Math.max(to, 0), last); draw(); }
   function tick(time) {
@@ -167,11 +211,15 @@
   $("hit").hidden = !contact;
   $("time").max = last; $("time").oninput = (e) => { playing = false; go(Number(e.target.value)); };
   canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); }, { passive: false });
+  let hovered = "";
+  canvas.addEventListener("pointerleave", () => { hovered = ""; point([]); });
   canvas.addEventListener("pointerdown", (e) => canvas.setPointerCapture(e.pointerId));
   canvas.addEventListener("pointermove", (e) => {
+    if (!e.buttons) { const at = thingAt(e.offsetX, e.offsetY); if (at !== hovered) { hovered = at; point(at ? [at] : []); } }
     if (e.buttons) { follow = false; box.x -= e.movementX / box.scale; box.y += e.movementY / box.scale; draw(); }
   });
   document.addEventListener("keydown", (e) => {
+    if (e.key === "Escape") { point([]); return; }
     if (e.target.tagName === "SELECT" || e.ctrlKey || e.metaKey || e.altKey) return;
     const far = e.shiftKey ? 1 / step : 1, round = (v) => Math.round(v);
     const keys = { " ": toggle, ArrowRight: () => go(round(now) + far), ArrowLeft: () => go(round(now) - far), Home: () => go(0), End: () => go(last),
@@ -222,9 +270,18 @@
     verdict.textContent = declared ? "the declared contact did not happen ✗" : "no contact"; verdict.className = declared ? "bad" : "";
     $("mark").hidden = true;
   }
-  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); $("legend").append(line); }
+  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
   for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
-  tell($("narrative"), data.narrative);
+  let read = 0;
+  data.sentences.forEach((s, k) => {
+    tell($("narrative"), data.narrative.slice(read, s.start));
+    const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
+    span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end)); $("narrative").append(span);
+    read = s.end;
+  });
+  tell($("narrative"), data.narrative.slice(read));
+  for (const thing of Object.keys(data.facts)) if (thing.startsWith("road ")) $("roads").append(pointable(make("button", thing), [thing]));
+  if (data.facts.contact) $("roads").append(pointable(make("button", "contact"), ["contact"]));
   row($("actors"), ["", "type", "maneuver", "size"], true);
   for (const a of data.actors) row($("actors"), [pill(a), a.type, a.maneuver, `${a.length_m.toFixed(1)} × ${a.width_m.toFixed(1)} m`]);
   $("conditions").textContent = Object.entries(data.conditions).map(([k, v]) => `${k}: ${words(v)}`).join(" · ");

@@ -3,7 +3,8 @@
 A stage's key is a fingerprint of all that it depends on: the evidence as the reader gave it, the passages, the
 network for a scenario, and what the config contributes (`Keys`). So two arms that differ in the scenario
 writer share their roads, and ten that differ in the number of attempts share every attempt. The folder is a
-cache and nothing more: whatever is missing, damaged or deleted is computed again and comes out the same.
+cache and nothing more: whatever is missing, damaged or deleted is computed again and comes out the same. It may
+lie where others can write: what is read from it is records in JSON, validated, and never code (`flows.packing`).
 
 Knows the file system, configs and refinement; nothing of studies.
 """
@@ -14,10 +15,8 @@ import fcntl
 import hashlib
 import json
 import os
-import pickle
 import tempfile
 import time
-import zlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,17 +27,18 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from flows import cases
-from sgcad_core import settings
+from flows import cases, packing
+from flows.packing import Unpackable, pack, unpack
+from sgcad_core import evidence, records, specs
+from sgcad_core.asking import narrowing, refine
 from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
+from sgcad_core.records import CrashReport, Execution
 
 T = TypeVar("T")
 WAIT_S, LOOK_S = 3600.0, 0.05
 """How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
-UNREADABLE = (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, zlib.error)
-"""What a damaged file, or one of other code, raises: it is computed again."""
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,8 @@ def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
 
 @cache
 def _records_digest() -> str:
-    """What is kept is pickled: other records are another cache."""
-    files = (settings.ROOT / "sgcad_core" / f"{name}.py" for name in ("records", "specs", "refine", "holds"))
+    """Other records are another cache."""
+    files = (Path(str(module.__file__)) for module in (evidence, records, specs, refine, narrowing, packing))
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
@@ -103,7 +103,7 @@ def content_of(value: Any) -> str:
 
 def _feed(found: Any, value: Any) -> None:
     if isinstance(value, BaseModel):
-        value = dict(value)
+        value = {name: getattr(value, name) for name in type(value).model_fields}  # no reading, which follows from them
     if isinstance(value, dict):
         value = sorted(value.items())
     if isinstance(value, list | tuple):
@@ -130,21 +130,21 @@ class Shelf:
             check, _, packed = self._file(key).read_bytes().partition(b"\n")
             if hashlib.sha256(packed).hexdigest().encode() != check:
                 return None
-            return pickle.loads(zlib.decompress(packed))  # noqa: S301 - our own file in the user's output folder
-        except UNREADABLE:
+            return unpack(packed)
+        except (OSError, Unpackable):
             return None
 
     def put(self, key: str, value: Any) -> None:
-        """Keep a value. A full disk or a folder that vanished costs the sharing, not the case."""
-        packed = zlib.compress(pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL), 1)
+        """Keep a value. A full disk, a vanished folder or a stranger's record costs the sharing, not the case."""
         file = self._file(key)
         try:
+            packed = pack(value)
             file.parent.mkdir(parents=True, exist_ok=True)
             made, partial = tempfile.mkstemp(prefix=f"{key}.", suffix=".partial", dir=file.parent)
             with os.fdopen(made, "wb") as out:
                 out.write(hashlib.sha256(packed).hexdigest().encode() + b"\n" + packed)
             os.replace(partial, file)
-        except OSError:
+        except (OSError, TypeError):
             return
 
     @contextmanager
@@ -164,16 +164,22 @@ class Shelf:
         finally:
             os.close(held)
 
-    def once(self, key: str, compute: Callable[[], Any]) -> tuple[Any, bool]:
-        """A value and whether it was there already."""
-        if (value := self.get(key)) is not None:
-            return value, True
+    def timed(self, key: str, compute: Callable[[], tuple[T, float]]) -> tuple[T, float, bool]:
+        """A value, the seconds that it took, and whether it was there already."""
+        if (found := self._timed(key)) is not None:
+            return (*found, True)
         with self.alone(key):
-            if (value := self.get(key)) is not None:
-                return value, True
-            value = compute()
-            self.put(key, value)
-            return value, False
+            if (found := self._timed(key)) is not None:
+                return (*found, True)
+            made = compute()
+            self.put(key, made)
+            return (*made, False)
+
+    def _timed(self, key: str) -> tuple[Any, float] | None:
+        found = self.get(key)
+        if not (isinstance(found, tuple) and len(found) == 2 and isinstance(found[1], float)):
+            return None
+        return found if isinstance(found[0], CrashReport | Execution) else None
 
     def turns(self, key: str, refinement: Refinement) -> tuple[list[Turn], int]:
         """A stage's turns, and how many of them were there already.
@@ -192,7 +198,10 @@ class Shelf:
             return turns, len(found)
 
     def _fitting(self, key: str, refinement: Refinement) -> list[Turn]:
-        return list(self.get(key) or ())[: refinement.limit]
+        found = self.get(key)
+        if not (isinstance(found, list) and all(isinstance(turn, Turn) for turn in found)):
+            return []
+        return found[: refinement.limit]
 
     def _file(self, key: str) -> Path:
         return self.folder / key[:2] / key
@@ -245,5 +254,4 @@ def timed(sharing: Sharing | None, step: str, compute: Callable[[], T], *content
 
     if sharing is None:
         return (*work(), False)
-    (value, seconds), known = sharing.shelf.once(sharing.key(step, *content), work)
-    return value, seconds, known
+    return sharing.shelf.timed(sharing.key(step, *content), work)

@@ -7,6 +7,7 @@ a kill, a full disk or Ctrl-C leaves no half case that looks finished.
 from __future__ import annotations
 
 import contextlib
+import csv
 import errno
 import json
 import os
@@ -17,6 +18,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from sgcad_core.errors import ConfigError
 from sgcad_core.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
@@ -194,6 +197,18 @@ def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
     with file.open("w", encoding="utf-8", newline="") as out:
         out.write("t_s,actor,x_m,y_m,heading_rad,speed_mps\n")
         out.writelines(row for _, _, row in sorted(rows))
+
+
+def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
+    """What `write_trajectories` wrote, actors in the order of the file."""
+    names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
+    rows: dict[str, list[list[float]]] = {}
+    with file.open(encoding="utf-8", newline="") as lines:
+        for row in csv.DictReader(lines):
+            rows.setdefault(row["actor"], []).append([float(row[name]) for name in names])
+    return tuple(
+        Trajectory(actor=actor, **dict(zip(names, np.array(values).T, strict=True))) for actor, values in rows.items()
+    )
 
 
 def write_json(file: Path, content: Any) -> None:

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from flows import judging
 from flows.batch import Batch, Job
 from flows.chain import Ending
 from flows.store import CaseFolder
+from flows.terminal import escape
 from flows.tracking import OnEnding
 from sgcad_core.result import STATUSES
 
@@ -80,6 +81,7 @@ def show(tally: Tally) -> None:
     console = Console(emoji=False, highlight=False)
     console.width = max(console.width, TABLE_WIDTH)
     console.print(_table(tally))
+    judging.show(console, {c.name: [e.result for e in tally.of(c.name)] for c in tally.batch.configs})
     for line in _reasons(tally):
         console.print(escape(line), soft_wrap=True)
     console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)

@@ -9,11 +9,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 from prefect import task
 from prefect.cache_policies import NO_CACHE
-from prefect.states import Completed, Failed, State
+from prefect.client.schemas.objects import State
+from prefect.futures import PrefectFuture
+from prefect.states import Completed, Failed
+from prefect.task_runners import TaskRunner, ThreadPoolTaskRunner
 
 from flows.batch import Crew, Job
 from flows.chain import Ending
@@ -22,6 +25,11 @@ from sgcad_core.errors import SgcadError
 from sgcad_core.records import Attempt
 
 DECLINED = ("exhausted", "failed")
+
+
+def threads(count: int) -> TaskRunner[PrefectFuture[Any]]:
+    """A task runner of so many threads, in the type that Prefect's own decorator asks for."""
+    return cast("TaskRunner[PrefectFuture[Any]]", ThreadPoolTaskRunner(max_workers=count))
 
 
 @dataclass

@@ -66,9 +66,9 @@ def _has(job: Job) -> bool:
 
 
 def _mark(job: Job) -> str:
-    """What identifies a tracker to a case's folder."""
+    """What identifies a tracker, and the place where it logs, to a case's folder."""
     tracker = job.config.tracker
-    return f"{type(tracker).__module__} {tracker.model_dump_json()}"
+    return f"{type(tracker).__module__} {tracker.model_dump_json()} {tracker.identity(job.folder.out)}".rstrip()
 
 
 def _open(job: Job) -> Path:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from flows.drawing import Drawing, drawing_of
+from flows.pointing import facts_by_thing, road_along, road_axes, sentences_of
 from sgcad_core.geometry.plane import Box, overlap_polygon
 from sgcad_core.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
 from sgcad_core.result import CaseRecord
@@ -86,11 +87,13 @@ class View:
             "status": self.result["status"],
             "collision": {**self.result["collision"], "observed": contact or None},
             "network": self.result["network"],
-            "drawing": _drawing(self.drawing),
+            "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
             "actors": [_actor(mover) for mover in self.movers],
             "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
             "conditions": _conditions(self.record.scenario),
             "narrative": self.report.narrative,
+            "sentences": sentences_of(self.report, self.result.get("facts", ())),
+            "facts": facts_by_thing(self.result.get("facts", ())),
             "diagrams": [_data_url(d.png) for d in self.report.diagrams[:DIAGRAM_LIMIT]],
             "metrics": self.metrics,
             "grounding": self.result["grounding"],
@@ -111,10 +114,12 @@ def _actor(mover: Mover) -> dict[str, Any]:
     }
 
 
-def _drawing(drawing: Drawing) -> dict[str, Any]:
+def _drawing(drawing: Drawing, axes: Mapping[str, float]) -> dict[str, Any]:
+    strips = ([round(s.width_m, 2), int(s.cars), _rounded(s.points.ravel(), 2), road_along(s, axes)]
+              for s in drawing.strips)  # fmt: skip
     return {
         "areas": [_rounded(a.ravel(), 2) for a in drawing.areas],
-        "strips": [[round(s.width_m, 2), int(s.cars), _rounded(s.points.ravel(), 2)] for s in drawing.strips],
+        "strips": list(strips),
         "lines": [[line.style, _rounded(line.points.ravel(), 2)] for line in drawing.lines],
     }
 

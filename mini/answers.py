@@ -12,31 +12,15 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
+from sgcad_core.kinds import MANEUVERS as MANEUVERS
+from sgcad_core.kinds import ROADS
+
 Path = tuple[Any, ...]
 
 COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 TURNS = ("left", "through", "right", "left_through", "through_right", "left_right", "any")
 MEDIANS = ("none", "painted", "raised", "grass", "barrier")
 KINDS = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object")
-MANEUVERS = (
-    "straight",
-    "turn_left",
-    "turn_right",
-    "u_turn",
-    "stopped",
-    "parked",
-    "slowing",
-    "negotiating_curve",
-    "lane_change_left",
-    "lane_change_right",
-    "merge",
-    "overtaking",
-    "crossing_centerline",
-    "departing_road_left",
-    "departing_road_right",
-    "backing",
-    "other",
-)
 AREAS = ("front", "back", "left", "right")
 LIGHTS = ("day", "dusk", "dawn", "dark", "dark_lit")
 WEATHERS = ("clear", "cloudy", "rain", "snow", "sleet", "fog")
@@ -119,7 +103,7 @@ def _leg_walk(path: Path) -> Walk:
     yield from _turns_walk((*path, "turns_in"))
     yield Pick(BOOL, (*path, "center_turn_lane"))
     yield from field("median", quoted(MEDIANS), path)
-    yield from field("kind", quoted(("road", "driveway", "ramp")), path)
+    yield from field("kind", quoted(ROADS), path)
     yield from field("control", quoted(CONTROLS), path)
     yield from field("curve", quoted(("none", "left", "right")), path)
     yield from field("speed_limit_mph", NULL + numbers(5, 85), path)
@@ -140,7 +124,7 @@ def _access_walk(path: Path) -> Walk:
     yield Pick(quoted(COMPASS), (*path, "leg"))
     yield from field("side", quoted(("left", "right", "both")), path)
     yield from field("distance_m", tuple(f"{n}.0" for n in (20, 30, 40, 60, 80)), path)
-    yield from field("kind", quoted(("road", "driveway", "ramp")), path)
+    yield from field("kind", quoted(ROADS), path)
     yield from field("lanes_in", numbers(0, 8), path)
     yield from field("lanes_out", numbers(0, 8), path)
     yield from field("control", quoted(("none", "signal", "stop", "yield")), path)

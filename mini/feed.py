@@ -60,7 +60,7 @@ def length_for(rng: Random, stage: str, progress: float) -> float:
     """How much noise a report gets: little at first, later up to as much as real ones have."""
     if stage == "text":
         return rng.random() * (0.1 + 0.5 * progress)
-    return rng.random() ** (1.6 - 0.6 * progress) * (0.5 + 0.9 * progress)
+    return float(rng.random() ** (1.6 - 0.6 * progress)) * (0.5 + 0.9 * progress)
 
 
 def one_row(coder: Coder, seed: int, progress: float, stage: str = "all") -> Row:

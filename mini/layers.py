@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import torch
@@ -58,4 +59,5 @@ class _RmsNorm(torch.autograd.Function):
 
 def norm(layer: Any, x: Tensor) -> Tensor:
     """RMS norm with a module's weight."""
-    return _RmsNorm.apply(x, layer.weight, layer.variance_epsilon)  # type: ignore[no-any-return]
+    apply: Callable[..., Tensor] = _RmsNorm.apply
+    return apply(x, layer.weight, layer.variance_epsilon)

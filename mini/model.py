@@ -102,7 +102,8 @@ class Forward:
     @property
     def dtype(self) -> torch.dtype:
         """Of the weights."""
-        return self.model.lm_head.weight.dtype
+        dtype: torch.dtype = self.model.lm_head.weight.dtype
+        return dtype
 
     def hidden(self, batch: Batch) -> Tensor:
         """Last hidden states (B, L, hidden), normed."""
@@ -168,13 +169,15 @@ class Forward:
         dim = self.heads * d
         k, v = (part.reshape(b * self.kv, length, d) for part in (k, v))
         out = causal(q.reshape(b * self.kv, self.heads // self.kv, length, d), k, v, mask)
-        return block.o_proj(out.view(b, self.heads, length, d).transpose(1, 2).reshape(b, length, dim))
+        given: Tensor = block.o_proj(out.view(b, self.heads, length, d).transpose(1, 2).reshape(b, length, dim))
+        return given
 
     @staticmethod
     def _mlp(block: Any, x: Tensor) -> Tensor:
         bias = None if block.gate_proj.bias is None else torch.cat((block.gate_proj.bias, block.up_proj.bias))
         gate, up = F.linear(x, torch.cat((block.gate_proj.weight, block.up_proj.weight)), bias).chunk(2, dim=-1)
-        return block.down_proj(F.silu(gate) * up)
+        given: Tensor = block.down_proj(F.silu(gate) * up)
+        return given
 
     def pictures(self, patches: Tensor, grids: Tensor, lengths: Tensor) -> Tensor:
         """Tokens of padded pictures, (N, P/4, hidden)."""

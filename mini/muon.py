@@ -26,7 +26,8 @@ def orthogonal(g: Tensor, dtype: torch.dtype, steps: int = 5) -> Tensor:
     for _ in range(steps):
         gram = x @ x.mT
         x = A * x + (B * gram + C * gram @ gram) @ x
-    return (x.mT if tall else x).to(g.dtype)
+    found: Tensor = (x.mT if tall else x).to(g.dtype)
+    return found
 
 
 class Optimizer:
@@ -66,9 +67,9 @@ class Optimizer:
             group["lr"] = self.adam_lr * scale
         self.adam.step()
         shapes: dict[tuple[int, ...], list[str]] = defaultdict(list)
-        for key, p in self.matrices.items():
-            if p.grad is not None:
-                shapes[tuple(p.shape)].append(key)
+        for key, matrix in self.matrices.items():
+            if matrix.grad is not None:
+                shapes[tuple(matrix.shape)].append(key)
         with torch.no_grad():
             for keys in shapes.values():
                 self._muon(keys, scale)

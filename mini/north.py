@@ -43,6 +43,9 @@ def sheet(image: Image.Image) -> tuple[Floats, float]:
 class NorthFinder(nn.Module):
     """A map of scores, one for each quarter turn, over places of STRIDE pixels."""
 
+    seen: Tensor
+    """Made drawings that it was trained on; further training begins behind them."""
+
     def __init__(self, width: int = 8) -> None:
         super().__init__()
         plan = ((1, 1, 5, 2), (1, 2, 5, 2), (2, 4, 5, 2), (4, 4, 3, 1), (4, 4, 3, 1), (4, 6, 3, 1))
@@ -52,7 +55,6 @@ class NorthFinder(nn.Module):
             layers.append(nn.Conv2d(inputs, after * width, kernel, stride, kernel // 2, bias=False))
             layers += [nn.BatchNorm2d(after * width), nn.ReLU()]
         self.register_buffer("seen", torch.tensor(0))
-        """Made drawings that it was trained on; further training begins behind them."""
         self.layers = nn.Sequential(*layers, nn.Conv2d(6 * width, 5, 1))
 
     def forward(self, sheets: Tensor) -> Tensor:

@@ -68,7 +68,7 @@ def _shown(coder: Coder, row: Row, image: Image.Image | None, view: int) -> Row:
     return row
 
 
-def road_ids(road: answers.Any) -> tuple[str, ...]:
+def road_ids(road: Any) -> tuple[str, ...]:
     """Ids of the roads of a layout, legs first."""
     legs = [leg["bearing"] for leg in road["legs"]]
     outer = [f"{a['leg']}_outer" for a in road["accesses"]]
@@ -249,6 +249,6 @@ def _pictures(seen: Sequence[tuple[int, Row]], longest: int) -> dict[str, Any]:
     }
 
 
-def compact(answer: answers.Any) -> str:
+def compact(answer: Any) -> str:
     """An answer as it stands in the next query."""
     return json.dumps(answer, separators=(",", ":"))

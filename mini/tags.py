@@ -16,11 +16,11 @@ from mini.generator.grammar import HINT
 from mini.generator.notes import IDS
 from mini.generator.settled import FROM_LEFT, STEM, VAGUE, driven, lanes_beside, led_to
 from mini.generator.world import Actor, Crash, Leg
+from sgcad_core.kinds import ROADS
 
 BEARINGS = range(8)
 LANES = range(6)
 POSES = ("before", "contact", "after")
-KINDS_OF_LEG = ("road", "driveway", "ramp")
 CURVES = ("left", "right")
 
 
@@ -62,7 +62,7 @@ def _picture_tags() -> dict[str, int]:
     names = [f"leg={b}" for b in BEARINGS] + [f"{way}={n}" for way in ("in", "out") for n in LANES]
     names += [f"median={m}" for m in MEDIANS] + ["center"] + [f"use={t}" for t in TURNS]
     names += [f"control={c}" for c in CONTROLS] + [f"curve={c}" for c in CURVES]
-    names += [f"kind={k}" for k in KINDS_OF_LEG] + [f"north={b}" for b in BEARINGS] + ["access"]
+    names += [f"kind={k}" for k in ROADS] + [f"north={b}" for b in BEARINGS] + ["access"]
     names += [f"id={i}" for i in IDS] + [f"heading={b}" for b in BEARINGS] + [f"faces={b}" for b in BEARINGS]
     names += [f"pose={p}" for p in POSES] + [f"maneuver={m}" for m in MANEUVERS] + [f"lane={n}" for n in range(1, 6)]
     names += [f"type={k}" for k in KINDS] + ["striker", "struck"] + [f"area={a}" for a in AREAS]

@@ -227,7 +227,9 @@ class Trainer:
         """Answer tokens and a tenth of the others, which keeps those down at a tenth of the price."""
         seeded = torch.Generator().manual_seed(self.steps)
         others = torch.randint(len(self.tokenizer), (len(self.tokenizer) // 10,), generator=seeded)
-        return torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted)).unique()
+        kept = torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted))
+        found: torch.Tensor = kept.unique()
+        return found
 
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""

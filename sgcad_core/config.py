@@ -53,6 +53,8 @@ class Config(Record):
     scenario_writer: ScenarioWriter
     validators: tuple[Validator, ...] = ()
     simulator: Simulator
+    judge: Simulator | None = None
+    """A second simulator, whose playing of the generated scenarios is compared with ours."""
     tracker: Tracker
     raw: dict[str, Any] = Field(repr=False)
     """The mapping it was built from, for logs, digests and worker processes."""
@@ -77,17 +79,20 @@ def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
 
 
 def name_of(file: Path) -> str:
-    """The config's name in runs/: its path under configs/ without suffix, "/" as "-"."""
+    """The config's name in runs/: its path under configs/ without suffix, "/" as "-"; else ConfigError."""
     file = file.resolve()
     inner = file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
-    return "-".join(inner.with_suffix("").parts)
+    name = "-".join(inner.with_suffix("").parts)
+    if name.startswith(".") or not name.isprintable():
+        raise ConfigError(f"{file}: its name would name the folder of its results: begin it with a letter, as my.yaml")
+    return name
 
 
 def build(raw: dict[str, Any], name: str, where: str) -> Config:
     """Build a Config from a mapping. Raises ConfigError listing every fault with its key path."""
     faults: list[str] = []
     fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
-    known = {*SINGLE, "validators", *SCALARS}
+    known = {*SINGLE, "judge", "validators", *SCALARS}
     faults += [f"{key}: unknown key; known: {', '.join(sorted(known))}" for key in raw if key not in known]
     for kind in SINGLE:
         if raw.get(kind) is None:
@@ -95,6 +100,8 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
                 faults.append(f"{kind}: missing; give it a `name`")
         else:
             fields[kind] = _plugin(kind, raw[kind], kind, faults)
+    if raw.get("judge") is not None:
+        fields["judge"] = _plugin("simulator", raw["judge"], "judge", faults)
     validators = raw.get("validators") or []
     if not isinstance(validators, list):
         faults.append(f"validators: expected a list, found {validators!r}")

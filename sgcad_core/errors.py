@@ -5,6 +5,7 @@
     ├── BadInput           this report cannot be read: mend the file  (the case fails, the batch goes on)
     ├── MissingTool        install what is named                      (exit 2, nothing started)
     ├── InvalidOutput      the writer's output is wrong: ask again    (caught by the refinement loop)
+    │   └── Unsupported    right, but more than our player plays      (named with its line, never left out silently)
     ├── Refused            the evidence does not carry the crash      (a result, never retried)
     └── SimulationFailed   the execution died: may be retried         (the case fails, the batch goes on)
 
@@ -43,6 +44,14 @@ class InvalidOutput(SgcadError):
     def __init__(self, message: str, findings: Sequence[Finding] = ()) -> None:
         super().__init__(message)
         self.findings = tuple(findings)
+
+
+class Unsupported(InvalidOutput):
+    """A scenario uses what our player lacks; `element` names it, the finding its line and what would help."""
+
+    def __init__(self, message: str, findings: Sequence[Finding] = (), element: str = "") -> None:
+        super().__init__(message, findings)
+        self.element = element
 
 
 class Refused(SgcadError):

@@ -163,6 +163,10 @@ class Simulator(Plugin):
 
     kind = "simulator"
 
+    def ready(self) -> None:
+        """Called before a batch starts. Raises MissingTool where a program lacks; the default needs none."""
+        return
+
     @abstractmethod
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
         """Execute in a process that may die. Raises SimulationFailed."""
@@ -192,6 +196,13 @@ class Tracker(Plugin):
     def end(self, arm: Arm, finished: bool) -> None:
         """Told after the last case; `finished` is false after an interruption. The default keeps nothing."""
         return
+
+    def identity(self, out: Path) -> str:
+        """What tells the place where it logs from another one at the same address; made anew, it has another one.
+
+        Cheap, and makes nothing: it is asked for every case, to see whether that case is logged there. Default: "".
+        """
+        return ""
 
     def log_training(self, name: str, params: dict[str, Any], lines: Sequence[Mapping[str, Any]]) -> int:
         """Log what is new in a training log, a line with a "step" a row; how many lines that were. Default: none."""

@@ -11,8 +11,13 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from sgcad_core.evidence import Context as Context
+from sgcad_core.evidence import CrashReport as CrashReport
+from sgcad_core.evidence import Diagram as Diagram
+from sgcad_core.evidence import Fact as Fact
+from sgcad_core.evidence import Record as Record
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, RoadLayout, RoadSpec
 
 Floats = NDArray[np.float64]
@@ -21,39 +26,7 @@ Source = Literal["written", "openstreetmap", "map_library"]
 """Where a road network's shape comes from: drawn for the report, a real junction, a map that existed before."""
 
 
-class Record(BaseModel):
-    """Frozen, closed, compared by value."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
-
-
-# ------------------------------------------------------------------ evidence
-class Diagram(Record):
-    """A crash diagram, always re-encoded as RGB PNG by the reader, so that later stages trust it."""
-
-    png: bytes = Field(repr=False)
-    width_px: int
-    height_px: int
-
-
-class CrashReport(Record):
-    """What is known of one crash. `coded` is None unless the config sets use_coded_fields."""
-
-    case: str
-    narrative: str
-    diagrams: tuple[Diagram, ...] = ()
-    coded: Mapping[str, Any] | None = None
-    notes: tuple[str, ...] = ()
-    """What the reader changed or left out, for result.json and the log."""
-
-
-class Context(Record):
-    """CAD's c: the crash evidence, which the context-free row does not see."""
-
-    narrative: str
-    diagrams: tuple[Diagram, ...] = ()
-
-
+# ------------------------------------------------------------------ questions and answers
 class Passage(Record):
     """A retrieved piece of knowledge; stands in the query, so in both rows."""
 
@@ -184,6 +157,8 @@ class Execution(Record):
     contact: ObservedContact | None = None
     """First contact between any two actors that move or are struck; None if nothing touched."""
     log: str = ""
+    complaints: tuple[str, ...] = ()
+    """What the simulator said that it cannot do, though it ran."""
 
 
 # ------------------------------------------------------------------ judgement
@@ -247,6 +222,7 @@ class Evidence(Record):
     """What a validator may compare an artifact with."""
 
     report: CrashReport
+    """With `reading`: what the rules read of it."""
     network: RoadNetwork | None = None
     """The written network while the scenario stage is judged."""
     generation: Generation | None = None

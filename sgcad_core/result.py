@@ -7,19 +7,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from sgcad_core.execution.contact import realised
+from sgcad_core.execution.judgement import Judgement
+from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.lane_graph import network_figures, segments
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import (
     ActorInfo,
     Execution,
-    ObservedContact,
+    Fact,
+    Generation,
     RoadNetwork,
     Scenario,
     StageOutcome,
 )
-from sgcad_core.specs import Contact
+
+if TYPE_CHECKING:
+    from sgcad_core.narrative.reading import Reading
 
 Status = Literal["generated", "refused", "exhausted", "failed"]
 STATUSES: tuple[Status, ...] = ("generated", "refused", "exhausted", "failed")
@@ -41,6 +47,9 @@ class CaseRecord:
     failure: str = ""
     notes: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict)
+    reading: Reading | None = None
+    """What the rules read of the narrative."""
+    judgement: Judgement | None = None
 
     @property
     def network(self) -> RoadNetwork | None:
@@ -62,6 +71,7 @@ class CaseRecord:
 def result_of(record: CaseRecord) -> dict[str, Any]:
     """The content of result.json, JSON-able."""
     status, reason, missing = _end(record)
+    judged = {"judge": record.judgement.summary()} if record.judgement else {}
     return {
         "case": record.case,
         "config": record.config,
@@ -72,18 +82,37 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "network": _network(record.network),
         "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
+        **judged,
         "grounding": _grounding(record.outcomes),
+        "sentences": _sentences(record.reading),
+        "facts": [fact.model_dump(mode="json") for fact in facts_of(record)],
         "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
         "notes": [*record.notes, *_stage_notes(record)],
     }
 
 
-def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
-    """Whether the first contact is the declared pair with the declared areas, in either order."""
-    if declared is None or observed is None:
-        return False
-    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
-    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+def _sentences(reading: Reading | None) -> list[dict[str, Any]]:
+    """The sentences that facts point to: places in the narrative as it was written, the text as it was read."""
+    told = reading.sentences if reading else ()
+    return [{"start": s.start, "end": s.end, "role": s.role, "text": s.text} for s in told]
+
+
+def facts_of(record: CaseRecord) -> tuple[Fact, ...]:
+    """Every fact that is known: as read of the narrative, then of the roads and actors that were written."""
+    if record.reading is None:
+        return ()
+    found = list(record.reading.facts)
+    network, scenario = record.network, record.scenario
+    if network is not None:
+        found += road_facts_written(network, record.reading, _answer(record, "road"))
+    if network is not None and scenario is not None:
+        found += actor_facts_written(scenario, network, record.reading, _answer(record, "scenario"))
+    return tuple(found)
+
+
+def _answer(record: CaseRecord, stage: str) -> Generation | None:
+    attempt = record.outcomes[stage].told_by
+    return attempt.generation if attempt else None
 
 
 def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
@@ -147,4 +176,5 @@ def _stage_notes(record: CaseRecord) -> list[str]:
     told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
     notes = [f.line() for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")]
     notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in told for hold in attempt.held]
+    notes += record.judgement.lines() if record.judgement else []
     return notes + list(record.scenario.notes if record.scenario else ())

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -22,6 +23,8 @@ _QUIET = {
     "PREFECT_SERVER_ANALYTICS_ENABLED": "false",
     "DO_NOT_TRACK": "1",
     "MLFLOW_DISABLE_TELEMETRY": "true",
+    "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",  # its own 7 tell after four minutes that nobody answers
+    "MLFLOW_HTTP_REQUEST_TIMEOUT": "30",
     "TOKENIZERS_PARALLELISM": "false",
 }
 
@@ -74,6 +77,21 @@ def netconvert() -> Path:
     if not binary.exists():
         raise MissingTool(f"{binary} does not exist: `pip install --force-reinstall eclipse-sumo`")
     return binary
+
+
+def program(name: str, path: str, variable: str, source: str) -> Path:
+    """A user's program: where a config names it, else the variable, else PATH. Raises MissingTool saying all three."""
+    named = path or os.environ.get(variable, "")
+    found = shutil.which(str(Path(named).expanduser()) if named else name)
+    if found:
+        return Path(found).resolve()
+    what = f"{named!r} is no program that can be run" if named else f"there is no {name!r} on PATH"
+    raise MissingTool(f"{what}: name the {name} binary by `path` or by the variable {variable} (get it from {source})")
+
+
+def plain_environment() -> dict[str, str]:
+    """What a program of somebody else's needs of the environment: where things are, no keys."""
+    return {name: os.environ[name] for name in ("PATH", "HOME", "LANG", "LD_LIBRARY_PATH") if name in os.environ}
 
 
 def subprocess_environment() -> dict[str, str]:

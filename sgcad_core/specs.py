@@ -9,9 +9,12 @@ copy rather than compute; everything behind the specs is SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from sgcad_core.kinds import Maneuver as Maneuver
+from sgcad_core.kinds import RoadKind as RoadKind
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
 ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTO][0-9]{1,2}$")]
@@ -19,16 +22,11 @@ Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
-RoadKind = Literal["road", "driveway", "ramp"]
+RoadArea = Literal["", "rural", "town", "motorway"]
 ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
 Area = Literal["front", "back", "left", "right"]
-Maneuver = Literal[
-    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
-    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
-    "departing_road_left", "departing_road_right", "backing", "other",
-]  # fmt: skip
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
 Surface = Literal["dry", "wet", "snow", "ice"]
@@ -81,6 +79,14 @@ class RoadSpec(Spec):
 
     nodes: Annotated[tuple[Node, ...], Field(min_length=2, max_length=40)]
     roads: Annotated[tuple[Road, ...], Field(min_length=1, max_length=60)]
+
+
+class ToldRoad(NamedTuple):
+    """What a report tells of a drawn road that no field of a spec holds (specs are answers; this is read by rules)."""
+
+    posted: bool = True
+    """Whether its speed limit is told; else it is a usual one."""
+    area: RoadArea = ""
 
 
 # ------------------------------------------------------------------ road, as a small model or a template says it

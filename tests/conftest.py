@@ -1,10 +1,16 @@
-"""For all tests: Ctrl-C reaches the programs that they start, even where the tests themselves run in the background.
+"""For all tests: Ctrl-C reaches the programs that they start, and tests that run side by side share the cores.
 
 A shell without job control starts background jobs with SIGINT ignored, and children inherit that; a handler here
-makes them start with the usual one.
+makes them start with the usual one. A worker of pytest-xdist (`make test`) has one core for itself and its programs:
+torch and its like would start as many threads in each as there are cores, and wait for each other.
 """
 
+import os
 import signal
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+if "PYTEST_XDIST_WORKER" in os.environ:
+    for threads in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"):
+        os.environ.setdefault(threads, "1")

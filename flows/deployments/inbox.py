@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from prefect import flow
-from prefect.task_runners import ThreadPoolTaskRunner
 
 from flows.batch import MAX_JOBS, Crew, Job, batch_of
 from flows.cases import Case
@@ -26,13 +25,14 @@ from flows.deployments.defaults import inbox_address, overrides_of
 from flows.deployments.intake import Do, Intake, OnResult
 from flows.deployments.place import Place
 from flows.evaluate import drive
+from flows.tasks import threads
 from sgcad_core.errors import ConfigError
 
 PORTION = 48
 """Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
 
 
-@flow(name="inbox", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)
+@flow(name="inbox", task_runner=threads(MAX_JOBS), persist_result=False)
 def inbox_flow(
     address: str | None = None,
     config: str = "template.yaml",

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from prefect import flow
-from prefect.states import Completed, Failed, State
-from prefect.task_runners import ThreadPoolTaskRunner
+from prefect.client.schemas.objects import State
+from prefect.states import Completed, Failed
 
 from flows import cases as case_sets
 from flows import store
@@ -33,6 +33,7 @@ from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUT
 from flows.results.reading import Study, load_study
 from flows.study.machine import git_commit
 from flows.study.plan import dataset_digest
+from flows.tasks import threads
 from sgcad_core.errors import ConfigError
 
 LATEST, ACCEPTED = "latest.json", "accepted.json"
@@ -51,7 +52,7 @@ class Tolerance(NamedTuple):
     seconds_factor: float = 1.5
 
 
-@flow(name="nightly", task_runner=ThreadPoolTaskRunner(max_workers=MAX_JOBS), persist_result=False)
+@flow(name="nightly", task_runner=threads(MAX_JOBS), persist_result=False)
 def nightly_flow(
     cases: str | None = None,
     configs: list[str] | None = None,

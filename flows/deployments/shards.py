@@ -12,18 +12,19 @@ import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import httpx
 from prefect import flow
-from prefect.client.orchestration import get_client
+from prefect.client.orchestration import SyncPrefectClient, get_client
 from prefect.client.schemas.filters import FlowRunFilter, FlowRunFilterId
+from prefect.client.schemas.objects import FlowRun, State
 from prefect.deployments import run_deployment
 from prefect.exceptions import ObjectNotFound
 from prefect.runtime import flow_run
-from prefect.states import Completed, Crashed, State
-from prefect.task_runners import ThreadPoolTaskRunner
+from prefect.states import Completed, Crashed
 
 from flows import tracking
 from flows.batch import Job
@@ -35,6 +36,7 @@ from flows.study.shards import Shard, lay_out, work_of, work_on
 from flows.study.share import Mark, Share, Unreachable
 from flows.study.watch import PATIENCE_S, START_S, Watch, follow
 from flows.study.watch import State as Standing
+from flows.tasks import threads
 from flows.tracking import OnEnding
 from sgcad_core.errors import ConfigError
 
@@ -51,7 +53,7 @@ _T = TypeVar("_T")
 @flow(
     name="shard",
     flow_run_name="{study} {shard}",
-    task_runner=ThreadPoolTaskRunner(max_workers=THREADS),
+    task_runner=threads(THREADS),
     persist_result=False,
 )
 def shard_flow(
@@ -87,7 +89,7 @@ class PrefectPool:
         """Ask for a run of a shard; its id. Raises ConfigError if there is no such deployment."""
         parameters = {**self.parameters, "study": self.study, "shard": shard}
         try:
-            made = _ask(
+            made: Any = _ask(
                 lambda: run_deployment(
                     self.deployment, parameters=parameters, timeout=0, as_subflow=False, tags=[f"study:{self.study}"]
                 )
@@ -104,7 +106,7 @@ class PrefectPool:
         found: dict[str, tuple[Standing, str]] = dict.fromkeys(runs, ("ended", "the server has no such run"))
         for start in range(0, len(runs), PAGE):
             wanted = FlowRunFilter(id=FlowRunFilterId(any_=list(runs[start : start + PAGE])))
-            read = _told(lambda client, wanted=wanted: client.read_flow_runs(flow_run_filter=wanted, limit=PAGE))
+            read = _told(partial(_read_runs, wanted))
             found |= {str(run.id): (_standing(run.state), _words(run.state)) for run in read}
         return found
 
@@ -113,7 +115,11 @@ class PrefectPool:
         _told(lambda client: client.set_flow_run_state(run, Crashed(message=reason), force=True))
 
 
-def _told(request: Callable[[Any], _T]) -> _T:
+def _read_runs(wanted: FlowRunFilter, client: SyncPrefectClient) -> list[FlowRun]:
+    return client.read_flow_runs(flow_run_filter=wanted, limit=PAGE)
+
+
+def _told(request: Callable[[SyncPrefectClient], _T]) -> _T:
     """What a client answers."""
 
     def ask() -> _T:

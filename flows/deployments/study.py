@@ -9,7 +9,6 @@ from collections import Counter
 from pathlib import Path
 
 from prefect import flow
-from prefect.task_runners import ThreadPoolTaskRunner
 
 from flows.batch import MAX_JOBS, Crew, Job
 from flows.chain import Ending
@@ -17,9 +16,10 @@ from flows.deployments.defaults import overrides_of
 from flows.evaluate import drive
 from flows.study.plan import plan
 from flows.study.spec import load_study
+from flows.tasks import threads
 
 
-@flow(name="study", flow_run_name="study {file}", task_runner=ThreadPoolTaskRunner(MAX_JOBS), persist_result=False)
+@flow(name="study", flow_run_name="study {file}", task_runner=threads(MAX_JOBS), persist_result=False)
 def study_flow(
     file: str,
     cases: list[str] | None = None,

@@ -11,12 +11,12 @@ from collections.abc import Iterator, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table as Grid
 
 from flows.results.measures import Measure
 from flows.results.published import publication
 from flows.results.table import Cell, Row, Table, Tables
+from flows.terminal import escape
 
 SIGNIFICANT = 0.05
 COLUMN = 16
@@ -122,8 +122,13 @@ def as_csv(tables: Tables) -> str:
     for table in tables.tables:
         for row in table.rows:
             for measure in table.measures:
-                writer.writerow(_record(table, row, measure))
+                writer.writerow({key: _no_formula(value) for key, value in _record(table, row, measure).items()})
     return out.getvalue()
+
+
+def _no_formula(value: object) -> object:
+    """A text that a spreadsheet would compute, told apart by an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
 
 
 def _record(table: Table, row: Row, measure: Measure) -> dict[str, object]:

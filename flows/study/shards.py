@@ -18,7 +18,7 @@ from flows.cases import Case
 from flows.chain import Ending
 from flows.sharing import Sharing, keys_of
 from flows.store import CaseFolder
-from flows.study.lease import Lease, LeaseLost
+from flows.study.lease import BEAT_S, Lease, LeaseLost
 from flows.study.share import Share, mark_name
 from sgcad_core.config import Config, build
 from sgcad_core.errors import ConfigError
@@ -187,7 +187,7 @@ Run = Callable[[Sequence[Job], Crew, Callable[[Job, Ending, str], None]], object
 
 def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | None = None) -> Tally:
     """Do what is left of a shard and hand in each case as it ends. Raises ConfigError, LeaseLost, Unreachable."""
-    lease = Lease(shard.share, shard.number, shard.run, **({"beat_s": beat_s} if beat_s else {}))
+    lease = Lease(shard.share, shard.number, shard.run, beat_s or BEAT_S)
     counts = dict.fromkeys(("done", "found", "doubled", "failed"), 0)
     shard.check()
     with lease.held():

@@ -5,22 +5,19 @@ A part of the writer.
 
 from __future__ import annotations
 
-import re
+from collections.abc import Callable
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_motion as motion
+from mini.generator.clauses_words import NEARING
 from mini.generator.grammar import Told
+from mini.generator.labels import plain
 from mini.generator.mentions import Mentions
 from mini.generator.settled import STEM
 from mini.generator.world import Actor, Crash
 
-GOES_ON = re.compile(
-    r"straight|no turn|no maneuver|(?:normal|ordinary)\]? (?:driving|travel)|joined|mixed with", re.IGNORECASE
-)
-"""Clauses of one that stays where it drives."""
 LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
-"""How maneuvers begin of one that does not."""
+"""How maneuvers begin of one that does not stay where it drives."""
 
 UNSAID = 0.25
 """Share of those on the leg that ends at a junction of whom no word says which way they drove."""
@@ -38,11 +35,11 @@ class ApproachMixin:
     who: tuple[int, int]
     waited: bool
 
-    say: Any
-    fitting: Any
-    spoken: Any
-    reason: Any
-    scene_junction: Any
+    say: Callable[..., str]
+    fitting: Callable[..., str]
+    spoken: Callable[..., str]
+    reason: Callable[..., str]
+    scene_junction: Callable[..., str]
     junction_named: bool
 
     def _approaches(self) -> list[str]:
@@ -89,10 +86,10 @@ class ApproachMixin:
         alone = self.crash.layout in motion.FROM_STEM and [leg.bearing for leg in self.crash.stems] == [actor.leg]
         if alone and actor.maneuver != "backing" and not self.held_out and self.rng.random() < UNSAID:
             return self._from_stem(actor, index, ahead, before)
-        options = motion.PRESENTED["moving"] if presented else motion.APPROACH
-        if not self.held_out and actor.maneuver.startswith(LEAVES):
-            options = [clause for clause in options if not GOES_ON.search(clause)]
-        return self.say(options, index, ahead, appr=lambda: self._approaching(index, bool(before)))
+        leaves = not self.held_out and actor.maneuver.startswith(LEAVES)
+        moving = motion.PRESENTED["moving"] if presented else motion.APPROACH
+        clauses = moving.without(self.held_out, ["goes_on"] * leaves)
+        return self.say(clauses, index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
         """One on the leg that ends at the junction, without a word of the compass."""
@@ -152,8 +149,8 @@ class ApproachMixin:
         if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren and not beside else 0.4):
             same = later and (self.junction_named or self.held_out)
             place = "the same intersection" if same else self.scene_junction()
-            text = " " + rng.choice((f"and was approaching {place}", f"approaching {place}", f"and approached {place}"))
+            text = " " + rng.choice(NEARING.side(False)).format(place=place)
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:
             self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
-            text += (", " if text else " ") + self.spoken(self.fitting(motion.INTENT[actor.maneuver], actor))
+            text += (", " if text else " ") + plain(self.spoken(self.fitting(motion.INTENT[actor.maneuver], actor)))
         return text

@@ -6,16 +6,16 @@ often told there, or by a driver, more plainly than among the events.
 
 from __future__ import annotations
 
-import re
+from collections.abc import Callable, Sequence
 from functools import cache
 from random import Random
-from typing import Any
 
 from mini.generator import clauses_codes as said
-from mini.generator import words
+from mini.generator import labels, words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.grammar import Told, clause_of, families, fill
-from mini.generator.turnoffs import SIGNAL
+from mini.generator.grammar import Told, clause_of, fill
+from mini.generator.labels import has, plain
+from mini.generator.records import Group, slots_of
 from mini.generator.world import WORDS, Actor, Contact, Crash
 
 BY_MANEUVER = {
@@ -35,13 +35,9 @@ BY_MANEUVER = {
 TELLS = ("turn_left", "turn_right", "u_turn", "backing", "crossing_centerline", "departing_road_left",
          "departing_road_right")  # fmt: skip
 """Maneuvers that their critical event tells; a crossed lane line may be several things."""
-PEDESTRIAN = re.compile(
-    r"(?:pedestrian|person on foot|walking person|walker)(?!.*(?:pedalcycl|nonmotor|cyclist))", re.IGNORECASE
-)
-"""Words for the one whom a vehicle hits, where they name no cyclist too."""
-OF_OTHERS = re.compile(r"\{W\}|\b(?:both|neither|two) (?:vehicle|driver|operator|car|motorist|of the)", re.IGNORECASE)
-"""Noise that needs a second vehicle."""
-TELLING = re.compile(r"\{(?:spd|dir|lane|doing|code|move)\}")
+ON_FOOT = {"pedestrian", "person_on_foot", "walking_person", "walker"}
+"""Slots of words for one whom a vehicle hits, as they are said of one on foot."""
+TELLING = {"spd", "dir", "lane", "doing", "code", "move"}
 """Slots that tell something of the one whom a clause is about."""
 
 
@@ -82,10 +78,11 @@ def _encroachment(crash: Crash, culprit: Actor, actor: Actor) -> str | None:
 
 
 @cache
-def allowed(clause: str, alone: bool, signals: bool) -> bool:
-    """Whether a clause of noise speaks of a second vehicle or of a signal only where there is one."""
-    signal = not signals and (SIGNAL.search(clause) or "the light was" in clause)
-    return not signal and not (alone and words.OF_TWO.search(clause))
+def clear(clauses: Sequence[str], stands: bool, named: bool) -> list[str]:
+    """Of clauses on one vehicle those that tell no speed of one that stands and, until the vehicle is named, those that
+    name it or tell nothing of it."""
+    moves = [clause for clause in clauses if not (stands and "spd" in slots_of(clause))]
+    return [clause for clause in moves if named or "V" in slots_of(clause) or not TELLING & set(slots_of(clause))]
 
 
 class BlocksMixin:
@@ -101,10 +98,10 @@ class BlocksMixin:
     people: dict[int, dict[str, str]]
     lately: set[int]
 
-    say: Any
-    id_of: Any
-    _slot: Any
-    impact: Any
+    say: Callable[..., str]
+    id_of: Callable[..., str]
+    _slot: Callable[..., str]
+    impact: Callable[..., str]
 
     def _about(self, index: int) -> list[str]:
         """The block on one vehicle: driver, interview, health, codes."""
@@ -114,8 +111,8 @@ class BlocksMixin:
             return self._noise("tow", 0.6, index) + self._coded(index) + self._noise("police", 0.5, index)
         speed = self.rng.random() < 0.3
         out = self._noise("occupant", 1.2, index)
-        if speed and (clear := self._clear(SPEED, index)):
-            out.append(self.say(clear, index, **self._person(index)))
+        if speed and (found := self._clear(SPEED, index)):
+            out.append(self.say(found, index, **self._person(index)))
         out += self._noise("interview", 1.1, index) + self._statements(index)
         out += self._noise("tow", 0.6, index) + self._noise("health", 1.0, index)
         return out + self._coded(index) + self._noise("codes", 1.7, index) + self._noise("police", 0.5, index)
@@ -126,17 +123,14 @@ class BlocksMixin:
             self.people[index] = words.person(self.rng)
         return self.people[index]
 
-    def _clear(self, options: list[str], index: int) -> list[str]:
-        """Clauses of its side of the split that leave nobody in doubt whom they are about.
+    def _clear(self, options: Group, index: int, untrue: Sequence[str] = ()) -> list[str]:
+        """Clauses of its side of the split without some labels that leave nobody in doubt whom they are about.
 
         "He was driving 30 mph" says whose speed that is only behind a sentence of the block that names the vehicle.
         """
-        found = families(options, self.held_out)
-        if self.crash.actors[index].maneuver in ("stopped", "parked"):
-            found = [clause for clause in found if "{spd}" not in clause]
-        if index in self.lately or self.crash.alone:
-            return found
-        return [clause for clause in found if "{V}" in clause or not TELLING.search(clause)]
+        stands = self.crash.actors[index].maneuver in ("stopped", "parked")
+        named = index in self.lately or self.crash.alone
+        return clear(options.without(self.held_out, untrue), stands, named)
 
     def _noise(self, group: str, mean: float, index: int | None = None) -> list[str]:
         """About mean * length sentences of a noise group."""
@@ -152,13 +146,10 @@ class BlocksMixin:
             w = self.rng.choice(others) if others else v
             if index is None:  # they stand in no block and in any order
                 self.lately.clear()
-            clear = self._clear(GROUPS[group], v)
-            if not self.held_out:
-                clear = [c for c in clear if allowed(c, alone, signals)]
-            elif not others:
-                clear = [c for c in clear if not OF_OTHERS.search(c)]
-            if clear:
-                out.append(self.say(clear, v, w, **self._person(v)))
+            single = not others if self.held_out else alone
+            untrue = ["two"] * single + ["signals"] * (not self.held_out and not signals)
+            if found := self._clear(GROUPS[group], v, untrue):
+                out.append(self.say(found, v, w, **self._person(v)))
         return out
 
     def _noise_slot(self, slot: str, v: int) -> str:
@@ -167,7 +158,7 @@ class BlocksMixin:
             actor = self.crash.actors[v]
             waited = self.waited and v == self.who[0]  # and drove as fast as its road allows only before that
             if not actor.speed or f"speed.{actor.id}" in self.told or waited:
-                slowly = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
+                slowly: tuple[str, ...] = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
                 return rng.choice((*slowly, "at an unknown speed", "at normal speed"))
             text, actor.speed = words.driver_speed(rng, actor.speed)
             self.told.add(f"speed.{actor.id}")
@@ -185,7 +176,8 @@ class BlocksMixin:
 
     def _coded(self, index: int) -> list[str]:
         """Critical event, movement before it, crash type: as often as reports have them, of vehicles."""
-        rng, out = self.rng, []
+        rng = self.rng
+        out: list[str] = []
         if not self.crash.actors[index].vehicle:
             return out
         share = min(1.0, self.length)
@@ -195,13 +187,13 @@ class BlocksMixin:
         maneuver = self.crash.actors[index].maneuver
         if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
             move = self._phrase(said.MOVEMENT[maneuver])
-            if not maneuver.startswith("lane_change") or maneuver.rpartition("_")[2] in move:
+            if not maneuver.startswith("lane_change") or has(move, "side"):
                 self.told |= {f"man.{self.id_of(index)}"}
-            out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=move))
+            out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=plain(move)))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
-            kind = self._of_whom(self._phrase(said.CRASH_TYPE[self.crash.config]))
-            if index == self.who[0] or "turn" not in kind:  # of the one that turns
-                out.append(self.say(said.TYPE_FRAMES, index, kind=kind))
+            kind = self._phrase(said.CRASH_TYPE[self.crash.config])
+            if index == self.who[0] or not has(kind, "turner"):
+                out.append(self.say(said.TYPE_FRAMES, index, kind=plain(kind)))
         return out
 
     def _event(self, index: int, key: str) -> str:
@@ -214,30 +206,30 @@ class BlocksMixin:
         elif index == self.who[1] and self.crash.config in ("head_on", "lane_change"):  # from where, over what
             self.told |= {f"man.{erring.id}"}
             self.told |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.told else set()
-        frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other)
-        if key == "from_side_left" and erring.out == self.crash.actors[index].heading and not self.held_out:
-            code = code.replace("opposite direction", "same direction")
-        return self.say(frames, index, other, code=self._of_whom(code))
+        same = erring.out == self.crash.actors[index].heading and not self.held_out
+        onto = {"onto": "same" if same else "opposite"}
+        frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other, onto)
+        return self.say(frames, index, other, code=plain(code))
 
-    def _of_whom(self, code: str) -> str:
-        """A code that calls a cyclist no pedestrian."""
+    def _on_foot(self, slot: str) -> str:
+        """What a code calls one whom a vehicle hits: as the slot says, but a cyclist no pedestrian."""
         rides = any(actor.kind == "bicycle" for actor in self.crash.actors)
-        return PEDESTRIAN.sub("bicyclist", code) if rides else code
+        return "bicyclist" if rides else slot.replace("_", " ")
 
     def _statements(self, index: int) -> list[str]:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""
         rng, out, share = self.rng, [], min(1.0, self.length)
         actor, other = self.crash.actors[index], self._opponent(index)
         person, does = self._person(index), actor.maneuver in said.DOING
-        if does and rng.random() < 0.3 * share and (clear := self._clear(said.SELF_FRAMES, index)):
+        if does and rng.random() < 0.3 * share and (frames := self._clear(said.SELF_FRAMES, index)):
             self.told |= {f"man.{actor.id}"}
             doing = self._phrase(said.DOING[actor.maneuver], index, other, person)
-            out.append(self.say(clear, index, other, doing=doing, **person))
+            out.append(self.say(frames, index, other, doing=plain(doing), **person))
         key = None if other is None else self._seen(other)
-        if key and rng.random() < 0.25 * share and (clear := self._clear(said.OTHER_FRAMES, index)):
+        if key and rng.random() < 0.25 * share and (frames := self._clear(said.OTHER_FRAMES, index)):
             self.told |= {f"man.{self.id_of(other)}"}
             did = self._phrase(said.DID[key], index, other, person)
-            out.append(self.say(clear, index, other, did=did, **person))
+            out.append(self.say(frames, index, other, did=plain(did), **person))
         if rng.random() < 0.1 * share:
             contact: Contact = self.crash.contacts[0]
             if index in (contact.striker, contact.struck):
@@ -255,9 +247,10 @@ class BlocksMixin:
         maneuver = self.crash.actors[index].maneuver
         return maneuver if maneuver in said.DID else None
 
-    def _phrase(
-        self, options: list[str], v: int = 0, w: int | None = None, person: dict[str, str] | None = None
-    ) -> str:
-        """One phrase of its side of the split, with its slots filled."""
-        chosen = clause_of(self.rng, options, self.held_out)
-        return fill(chosen, lambda slot: self._slot(slot, v, v if w is None else w, person or {}))
+    def _phrase(self, options: Group, v: int = 0, w: int | None = None, extra: dict[str, str] | None = None) -> str:
+        """One phrase of its side of the split, with its slots filled, and behind it its labels."""
+        chosen, given = clause_of(self.rng, options, self.held_out), extra or {}
+        if set(slots_of(chosen)) & ON_FOOT:
+            given = given | {slot: self._on_foot(slot) for slot in ON_FOOT}
+        text = fill(chosen, lambda slot: self._slot(slot, v, v if w is None else w, given))
+        return labels.marked(text, tuple(labels.labels_of(chosen)))

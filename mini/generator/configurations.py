@@ -60,10 +60,9 @@ def crossing(rng: Random, crash: Crash) -> bool:
 def left_opposite(rng: Random, crash: Crash) -> bool:
     """A left turn across the path of oncoming traffic."""
     found = [
-        b
-        for b in _drivable(crash)
-        if crash.leg(b + 4) and crash.leg(b + 4).lanes_in and opens(crash, b + 2) and opens(crash, b)
-    ]  # type: ignore[union-attr]
+        b for b in _drivable(crash)
+        if (facing := crash.leg(b + 4)) and facing.lanes_in and opens(crash, b + 2) and opens(crash, b)
+    ]  # fmt: skip
     if not found:
         return False
     a = rng.choice(found)
@@ -169,10 +168,10 @@ def head_on(rng: Random, crash: Crash) -> bool:
 def lane_change(rng: Random, crash: Crash) -> bool:
     """A sideswipe or a strike between lanes of one direction."""
     found = [
-        b
-        for b in _drivable(crash)
-        if crash.leg(b).lanes_in >= 2 and opens(crash, b + 4) and crash.leg(b + 4).lanes_out >= 2
-    ]  # type: ignore[union-attr]
+        b for b in _drivable(crash)
+        if (back := crash.leg(b)) and back.lanes_in >= 2
+        and opens(crash, b + 4) and (ahead := crash.leg(b + 4)) and ahead.lanes_out >= 2
+    ]  # fmt: skip
     if not found:
         return False
     a, side = rng.choice(found), rng.choice(("left", "right"))

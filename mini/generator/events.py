@@ -6,57 +6,23 @@ A part of the writer.
 
 from __future__ import annotations
 
-import re
+from collections.abc import Sequence
 from random import Random
 from typing import Any
 
 from mini.generator import clauses_contact as told
 from mini.generator import clauses_motion as motion
+from mini.generator import clauses_turning as turning
 from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
-from mini.generator.clauses_turning import ONWARD, PROCEEDS, STRAYS
-from mini.generator.grammar import Told, clause_of, families, fill
+from mini.generator.grammar import Told, clause_of, fill
 from mini.generator.impacts import TRIES, ImpactsMixin
+from mini.generator.labels import has, plain
+from mini.generator.records import Group, slots_of
 from mini.generator.world import OPPOSITE, Actor, Crash
 
-_BEHIND = {
-    "stopped": "stopped|stand|stood|sitting|sat|stationary|halted|motionless|not moving|at rest|to a [a-z ]*stop|waiting|last vehicle",
-    "slowing": "slow(?:s|ed|ing)?|decelerat|brak(?:ed|ing|es)|stopping|losing speed|reduc[a-z]+ (?:its )?speed|speed had",
-}
-_BEFORE = {
-    "stopped": "stopped|stationary|standing|stopping|sudden stop",
-    "slowing": "slow|slowing|decelerating|braking|brake lights",
-}
-_APART = {
-    "stopped": r"\{W\} to a stop|when \{W\} did|\{W\} stop\b|stop made by \{W\}|just stopped in front"
-    r"|stops? (?:of|by) \{W\}|for \{W\} to stop|Stopped dead ahead|its stop\b|a surprise$",
-    "slowing": r"brake lights ahead|\{W\} began to brake|\{W\} first and|\{W\} and \{V\} were both braking"
-    r"|slow speed of \{W\}|moving slowly, \{W\}|slower vehicle, \{W\}|while (?:braking|slowing)"
-    r"|(?:slow-moving|slower) \{W\}|slowing[^{]{0,14} of \{W\}",
-}
-STATES = {
-    word: re.compile(
-        rf"\{{W\}}[^{{.;]*?\b(?:{behind})|\b(?:{_BEFORE[word]}) (?:vehicle, |of |by )?\{{W\}}|{_APART[word]}",
-        re.IGNORECASE,
-    )
-    for word, behind in _BEHIND.items()
-}
-"""Clauses that say of the other vehicle that it had stopped or was slowing."""
-MOVED = re.compile(
-    r"\{([VW])\} was (?:pushed|shoved|shunted|dragged|bulldozed|plowed|knocked)\b"
-    r"|\{([VW])\}[^{.;]*\b(?:where it was|hardly|scarcely|barely)\b"
-    r"|\b(?:pushed|moved|drove|knocked|sent|pushes) \{([VW])\}",
-    re.IGNORECASE,
-)
-"""Clauses of rest that say of one that another moved it, or that it stood where it was struck: the struck one."""
-DRIFTS = re.compile(
-    r"drift|stray|wander|veer|swerv|swung|edged|crept|shifted|leaning|\bslip(?:ped|s)? right|came over|bore (?:off |curb|right)"
-    r"|\beas(?:ed|ing)|sagged|meander|sidled|lurch|inched|angled|gravitat|encroach|trespass|intrud|invad|sheer|creep|deviat"
-    r"|\btending|pulling|pulled over|bent to|\bright went|g[eo]t o(?:ff|ver)|moved over|(?:driven|guided|came) too far right"
-    r"|(?:went|moved|steered|ran|slid|crossed|headed|turned)[a-z ]* right|to the right,? (?:toward|and)|parking lane|curbward",
-    re.IGNORECASE,
-)
-"""Clauses of one that hits a parked vehicle which say that it left its lane."""
+STATES = ("stopped", "slowing")
+"""What clauses of an error may say of the other vehicle, as labels and as maneuvers."""
 BOUND = 0.12
 """Share of those who turn of whom it is told which way they meant to go on."""
 STRAYING = 0.2
@@ -109,54 +75,60 @@ class EventsMixin(ImpactsMixin):
             clause = self._true_of(w, self._error(key))
             if self.crash.actors[v].maneuver == "departing_road_right" and self._drifts(clause):
                 self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
-            self.told |= {f"man.{self.id_of(w)}"} if goes_on and "{W}" in clause else set()
+            self.told |= {f"man.{self.id_of(w)}"} if goes_on and "W" in slots_of(clause) else set()
             out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=OPPOSITE[side]))
-        alone, rest = self.crash.alone, told.REST
         if rng.random() < (0.12 if self.ciren else 0.4):
-            avoids = families(told.AVOID, self.held_out)
-            if not self.held_out and (alone or self.crash.actors[w].maneuver == "parked"):
-                avoids = words.of_one(avoids)
-            elif alone:
-                avoids = [clause for clause in avoids if "{W}" not in clause]
+            avoids = self._avoids(self.crash.actors[w])
             out += [self.say(avoids, v, w)] if avoids else []
         for number, contact in enumerate(self.crash.contacts):
             out.append(self.impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        if not self.held_out and all(leg.median == "none" for leg in self.crash.legs):
-            rest = [clause for clause in families(rest, False) if "median" not in clause]
-        if alone and not self.held_out:  # a tree or a pedestrian does not slap sides
-            rest = words.of_one(rest)
-        if self.crash.layout not in ("four", "t") and not self.held_out:
-            rest = [clause for clause in rest if "intersection" not in clause]
+        rest = told.REST.without(self.held_out, self._untrue_rest())
         return out + [self._rests(rest) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
-    def _rests(self, options: list[str]) -> str:
+    def _avoids(self, other: Actor) -> Sequence[str]:
+        """Clauses of avoidance; of one that is alone those that speak of no second vehicle."""
+        single = not self.held_out and (self.crash.alone or other.maneuver == "parked")
+        unnamed = self.crash.alone and not single
+        return told.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
+
+    def _untrue_rest(self) -> list[str]:
+        """Labels of clauses of rest that need what is not there."""
+        if self.held_out:
+            return []
+        untrue = ["median"] * all(leg.median == "none" for leg in self.crash.legs)
+        untrue += ["two"] * self.crash.alone  # a tree or a pedestrian does not slap sides
+        return untrue + ["junction"] * (self.crash.layout not in ("four", "t"))
+
+    def _rests(self, options: Sequence[str]) -> str:
         """Where they come to rest, with the struck as the one that is pushed."""
         v, w = self.who
         if self.held_out:
             return str(self.say(options, v, w))
         clause, first = clause_of(self.rng, options, False), self.crash.contacts[0]
-        while self.crash.alone and MOVED.search(clause):
+        while self.crash.alone and (has(clause, "moved_v") or has(clause, "moved_w")):
             clause = clause_of(self.rng, options, False)
-        if moved := MOVED.search(clause):
-            v, w = (first.struck, first.striker) if "V" in moved.groups() else (first.striker, first.struck)
+        if has(clause, "moved_v"):
+            v, w = first.struck, first.striker
+        elif has(clause, "moved_w"):
+            v, w = first.striker, first.struck
         return str(self.say([clause], v, w))
 
-    def _error(self, key: str) -> list[str]:
+    def _error(self, key: str) -> Group | Sequence[str]:
         """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
         if self.held_out:
             return CRITICAL[key]
         if self.crash.layout == "driveway" and key == "left_opposite" and self.rng.random() < 0.5:
-            return turnoffs.INTO
+            return turning.INTO
         turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != "driveway")
         if turns and self.rng.random() < BOUND:
-            return ONWARD
+            return turning.ONWARD
         if key == "lane_change" and self.rng.random() < STRAYING:
             at_edge = self._at_edge(self.crash.actors[self.who[0]])
-            return [clause for clause in STRAYS if at_edge or "shoulder" not in clause]
+            return turning.STRAYS.without(False, [] if at_edge else ["shoulder"])
         if self.waited and self.rng.random() < 0.5:
-            return PROCEEDS["cross" if key == "crossing" else "turn"]
+            return turning.PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
 
     def _at_edge(self, actor: Actor) -> bool:
@@ -164,7 +136,7 @@ class EventsMixin(ImpactsMixin):
         leg = self.crash.leg(actor.leg)
         return leg is not None and actor.lane == (1 if actor.maneuver.endswith("left") else leg.lanes_in)
 
-    def _true_of(self, index: int, options: list[str]) -> str:
+    def _true_of(self, index: int, options: Group | Sequence[str]) -> str:
         """A clause that says of the other vehicle only what it does: that it slowed, that it had stopped; of a good many
         that are not true the last."""
         does, erring = self.crash.actors[index].maneuver, self.crash.actors[self.who[0]]
@@ -172,13 +144,14 @@ class EventsMixin(ImpactsMixin):
         for _ in range(TRIES):
             clause = self.fitting(options, erring)
             strays = erring.maneuver != "departing_road_right" and self._drifts(clause)
-            if not strays and not any(word != does and found.search(clause) for word, found in STATES.items()):
+            states = [word for word in STATES if word != does]
+            if not strays and not any(has(clause, word) for word in [*states, "barred"]):
                 break
         return clause
 
     def _drifts(self, clause: str) -> bool:
         """Whether a clause says of one that hits a parked vehicle that it left its lane."""
-        return self.crash.config == "parked" and not self.held_out and bool(DRIFTS.search(clause))
+        return self.crash.config == "parked" and not self.held_out and has(clause, "drifts")
 
     def reason(self, key: str, actor: Actor) -> str:
         """What one stands or slows for; of those who turn off a road into a driveway half say so."""
@@ -186,13 +159,14 @@ class EventsMixin(ImpactsMixin):
         others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
         if others and self.rng.random() < YIELDING:
             slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
-            return fill(clause_of(self.rng, turnoffs.YIELDS, False), slots.__getitem__)
-        if key in turnoffs.WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
-            return self.spoken(self.fitting(turnoffs.WHY[key] if self.rng.random() < 0.5 else motion.WHY[key], actor))
+            return fill(clause_of(self.rng, turning.YIELDS, False), slots.__getitem__)
+        if key in turning.INTO_WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
+            options = turning.INTO_WHY[key] if self.rng.random() < 0.5 else motion.WHY[key]
+            return plain(self.spoken(self.fitting(options, actor)))
         if key in ("sign", "light"):
             self.told |= turnoffs.met(key, self.crash)
-            return self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out))
-        return self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves))
+            return plain(self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out)))
+        return plain(self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves)))
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
         """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
@@ -208,7 +182,7 @@ class EventsMixin(ImpactsMixin):
         self.told |= turnoffs.told(text, self.crash)
         return text
 
-    def fitting(self, options: list[str], actor: Actor, into: bool = True) -> str:
+    def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:
         """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one,
         of a stop sign only where the one that it speaks of meets one.
 
@@ -218,7 +192,7 @@ class EventsMixin(ImpactsMixin):
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if turnoffs.suits(clause, self.crash, actor) and (into or not turnoffs.DRIVEWAY.search(clause)):
+            if turnoffs.suits(clause, self.crash, actor) and (into or not has(clause, "driveway")):
                 break
             clause = clause_of(self.rng, options, self.held_out)
         return clause

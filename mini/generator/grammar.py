@@ -1,60 +1,27 @@
-"""The small language in which clauses are written: `[a|b|c]` chooses, `{slot}` is filled, `~` marks held-out.
+"""The small language in which phrases are written: `[a|b|c]` chooses, `{slot}` is filled.
 
-A clause list is one string a clause; a clause that starts with "~" belongs to the families that are never
-trained on and make the test set. Choices may nest. Filling a slot is reported, so that the caller knows which
-facts the text told.
+Choices may nest. Filling a slot is reported, so that the caller knows which facts the text told; labels of a phrase
+(`labels`) stay in it until it is filled.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
+from mini.generator.labels import plain
 from mini.generator.notes import name_of
+from mini.generator.records import SLOTS, Group
 
 _CHOICE = re.compile(r"\[([^\[\]]*)\]")
-SLOTS = re.compile(r"\{(\w+)\}")
 Fill = Callable[[str], str]
 
 
 _NUMBERED = re.compile(r"\bthe (lane (?:one|two|three|four|five|\d)\b)")
 _ARTICLE = re.compile(r"\b([Aa]) (?=(?:[aeioAEIO]|8|11\b|18\b|un(?!i)|urb)(?!ne\b|nce|eu))")
 """`a` before a vowel, which fillings and choices bring together; not before "one" or "unit"."""
-
-
-def clauses(text: str) -> list[str]:
-    """One clause a line; blank lines and `#` lines are passed over."""
-    return [line.strip() for line in text.strip().splitlines() if line.strip() and not line.startswith("#")]
-
-
-def phrases(text: str) -> list[str]:
-    """`a|b [c|d]|~e` split at the outer bars."""
-    out, depth = [""], 0
-    for letter in text:
-        depth += (letter == "[") - (letter == "]")
-        if letter == "|" and not depth:
-            out.append("")
-        else:
-            out[-1] += letter
-    return out
-
-
-def tables(**texts: str) -> dict[str, list[str]]:
-    """Phrases by what they tell."""
-    return {key: phrases(text) for key, text in texts.items()}
-
-
-TRAINS = "+"
-"""First letter of clauses that only train, as "~" is of held-out ones."""
-
-
-def families(options: list[str], held_out: bool) -> list[str]:
-    """The clauses of one side of the split; a list without held-out ones serves both, but for those that only train."""
-    if not held_out:
-        return [o.removeprefix(TRAINS) for o in options if not o.startswith("~")] or [o.lstrip("~") for o in options]
-    return [o[1:] for o in options if o.startswith("~")] or [o for o in options if not o.startswith(TRAINS)]
 
 
 def choose(rng: Random, clause: str) -> str:
@@ -67,14 +34,19 @@ def choose(rng: Random, clause: str) -> str:
         clause = clause[: found.start()] + chosen + clause[found.end() :]
 
 
-def clause_of(rng: Random, options: list[str], held_out: bool) -> str:
-    """One clause of a side of the split, its choices made."""
-    return choose(rng, rng.choice(families(options, held_out)))
+def clause_of(rng: Random, options: Group | Sequence[str], held_out: bool) -> str:
+    """One clause of a side of the split, or of those chosen before, its choices made."""
+    return choose(rng, rng.choice(sided(options, held_out)))
+
+
+def sided(options: Group | Sequence[str], held_out: bool) -> Sequence[str]:
+    """The clauses of a side of the split; of those chosen before all."""
+    return options.side(held_out) if isinstance(options, Group) else options
 
 
 def fill(clause: str, slot: Fill) -> str:
-    """Put slot values in and tidy the spaces."""
-    text = SLOTS.sub(lambda m: slot(m[1]), clause)
+    """Put slot values in, take the labels out and tidy the spaces."""
+    text = SLOTS.sub(lambda m: slot(m[1]), plain(clause))
     text = re.sub(r" +", " ", text)
     text = re.sub(r" ([,.;])", r"\1", text)
     text = re.sub(r",+(?=[,.;:]|'s\b)", "", text)

@@ -1,18 +1,12 @@
-# ruff: noqa: E501 - lists of words
-"""Lists of the lanes of a road, item by item: those in brackets behind its name, and those of a sentence about both ways."""
+"""Lists of the lanes of a road, item by item: in brackets behind its name, and in a sentence about both ways."""
 
 from __future__ import annotations
 
 from random import Random
 
 from mini.generator import notes, words
+from mini.generator.clauses_words import IN_BRACKETS
 from mini.generator.world import Leg
-
-IN_BRACKETS = {
-    "grass": ("grass median", "grassy median", "grass divider"),
-    "raised": ("raised median", "raised divider", "raised concrete median"),
-    "barrier": ("concrete barrier", "median barrier", "concrete dividing wall"),
-}
 
 
 def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str, held_out: bool) -> str:
@@ -20,7 +14,8 @@ def split(rng: Random, leg: Leg, back: Leg, xb: str, yb: str, held_out: bool) ->
     plain = held_out or rng.random() < 0.4
     listed = lane_list if plain else _further_lanes
     ways = [lanes for lanes in (listed(rng, leg, xb), listed(rng, back, yb)) if lanes]
-    middles = ("center turn lane",) if leg.twltl else IN_BRACKETS.get(leg.median, ())
+    dividers = IN_BRACKETS[leg.median].side(False) if leg.median in IN_BRACKETS else ()
+    middles = ("center turn lane",) if leg.twltl else dividers
     middle = [middles[0] if plain else rng.choice(middles)] if middles and len(ways) == 2 else []
     if plain:
         return f"({', '.join([ways[0], *middle, *ways[1:]])})"

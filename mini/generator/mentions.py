@@ -1,22 +1,18 @@
-# ruff: noqa: E501 - lists of words
 """How one report names its vehicles: V1, Vehicle #1, the Ford, V1 (the Ford Taurus) ..., mixed as investigators mix."""
 
 from __future__ import annotations
 
 from random import Random
 
+from mini.generator.clauses_words import OBJECT, PERSON
 from mini.generator.vehicles import COLORS, YEARS, body_text, model_text
 from mini.generator.world import Actor, Crash
 
 NUMBER_WORDS = ("zero", "one", "two", "three", "four", "five")
 STYLES = {
-    "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4, "Vehicle-{n}": 2,
-    "V {n}": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
+    "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4,
+    "Vehicle-{n}": 2, "V {n}": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
 }  # fmt: skip
-OBJECTS = (
-    "a tree", "a utility pole", "a {d}cm tree", "a guardrail", "a concrete barrier", "a {d}-cm diameter tree", "a sign post", "a large tree", "an embankment",
-    "a fence", "a mailbox", "a light pole", "a traffic signal pole", "a telephone pole", "a wooden pole", "a ditch", "a bridge abutment", "a rock wall",
-)  # fmt: skip
 
 
 def _numbered(style: str, number: int) -> str:
@@ -39,9 +35,11 @@ class Mentions:
 
     def _other(self, actor: Actor) -> str:
         if actor.kind == "object":
-            return self.rng.choice(OBJECTS).format(d=self.rng.randint(10, 90))
-        return {"pedestrian": self.rng.choice(("a pedestrian", "the pedestrian", f"a {self.rng.randint(8, 80)}-year-old pedestrian")),
-                "bicycle": self.rng.choice(("a bicyclist", "a cyclist", "a bicycle"))}[actor.kind]  # fmt: skip
+            return self.rng.choice(OBJECT.side(False)).format(d=self.rng.randint(10, 90))
+        on_foot = PERSON["pedestrian"].side(False)
+        age = self.rng.randint(8, 80)
+        names = {"pedestrian": self.rng.choice(on_foot), "bicycle": self.rng.choice(PERSON["bicycle"].side(False))}
+        return names[actor.kind].format(age=age)
 
     def name(self, index: int) -> str:
         """A later mention."""

@@ -10,8 +10,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterable, Mapping
+from itertools import pairwise
 
 from mini.answers import AREAS
+from mini.generator.labels import has
+from mini.generator.records import slots_of
 from mini.generator.world import Actor
 
 IDS = ("V1", "V2", "V3", "V4", "P1", "B1", "O1")
@@ -50,7 +53,8 @@ OWNERS = {"sa": "S", "ta": "T"}
 def noted(text: str, names: Iterable[str]) -> str:
     """A phrase with marks behind its words, before what punctuation it ends with; `names` are of `NOTES`."""
     marks = "".join(chr(_FIRST + NOTES[name]) for name in names)
-    end = _TAIL.search(text).start()  # type: ignore[union-attr] - it matches every text
+    tail = _TAIL.search(text)
+    end = tail.start() if tail else len(text)
     return text[:end] + marks + text[end:] if end else text
 
 
@@ -105,7 +109,9 @@ class Slots:
         headings: dict[str, int | None] = {"dir": one.heading, "xb": one.heading, "from": one.heading, "opp": one.leg}
         headings |= {"outdir": one.out, "outxb": one.out}
         self.headings = {slot: heading for slot, heading in headings.items() if slot not in given}
-        self.joined = {a for a in areas if re.search(rf"\{{{a}\}}[^{{}}.;,]{{0,16}}\{{{OWNERS[a]}\}}", clause)}
+        named = slots_of(clause)
+        pairs = set(pairwise(named))
+        self.joined = {a for a in areas if (a, OWNERS[a]) in pairs and not has(clause, f"{a}_apart")}
         """Sides whose owner follows them ("the {sa} of {S}")."""
         self.filled: set[str] = set()
         self.open: set[str] = set()

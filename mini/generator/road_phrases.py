@@ -1,33 +1,21 @@
-# ruff: noqa: E501 - lists of words
 """How a report names a road: how many lanes, which way, divided by what; a part of the writer."""
 
 from __future__ import annotations
 
-import re
 from random import Random
 
 from mini.generator import clauses_road as more
-from mini.generator import notes, words
-from mini.generator.grammar import Told
-from mini.generator.lane_lists import IN_BRACKETS, split
+from mini.generator import clauses_words as told_of
+from mini.generator import labels, notes, words
+from mini.generator.grammar import Told, clause_of
+from mini.generator.labels import has, plain
+from mini.generator.lane_lists import split
+from mini.generator.records import Group, slots_of
 from mini.generator.settled import AXIS, FLOW, ROAD, VAGUE
 from mini.generator.world import Crash, Leg
 
-ROAD_WORDS = ("road", "road", "roadway", "roadway", "street", "highway", "trafficway")
-MEDIAN_WORDS = {
-    "grass": "divided by a grass median", "barrier": "divided by a concrete barrier", "raised": "divided by a raised median",
-    "painted": "divided by a painted median",
-}  # fmt: skip
-LOOKS = ("level", "busy", "level", "hilly", "paved", "narrow")
-"""Adjectives that may stand before the number of lanes and tell nothing that is asked for."""
-_ARTICLE = re.compile("^an? ")
-_DIVIDED = re.compile(r"\bdivided\b")
 UNCOUNTED = 0.5
 """Share of one-way roads whose lanes nobody counts: in real reports most often there is one."""
-NAMED = "\uf8ff"
-"""A mark in a phrase that says by what a road is divided."""
-PARTED = "\uf8fe"
-"""A mark in a phrase that says in other words than "divided" that a road is."""
 
 
 class RoadsMixin:
@@ -49,7 +37,7 @@ class RoadsMixin:
 
     @property
     def _first(self) -> int:
-        """Axis of the road that the scene is told of first: the main one, unless all are on the road that crosses it."""
+        """Axis of the road that the scene is told of first: the main one, unless all are on the one that crosses it."""
         crossing = self.crash.layout in ("four", "t") and not any(self.crash.is_main(a.leg) for a in self.crash.actors)
         return (self.crash.main + 2 * crossing) % 4
 
@@ -60,30 +48,28 @@ class RoadsMixin:
         leg = legs[0] if legs else self.crash.legs[0]
         if leg.kind != "road" and len(legs) == 1:
             self.told |= {"layout"}
-            return {
-                "driveway": rng.choice(("a private driveway", "a driveway", "a parking lot driveway")),
-                "ramp": "an entrance ramp",
-            }[leg.kind]
+            driveway = clause_of(rng, told_of.ACCESS["driveway"], False)
+            return driveway if leg.kind == "driveway" else told_of.ACCESS["ramp"].side(False)[0]
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.stated or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
                 self.spoken_of = axis % 4
                 again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
-                return self._uncounted(leg, again, rng.choice(more.ROAD_WORD))
+                return plain(self._uncounted(leg, again, clause_of(rng, more.ROAD_WORD, False)))
             return self._again(axis % 4)
         self.stated.add(key)
         self.spoken_of = axis % 4
         text, told = self._lanes_text(leg, legs)
         self.told |= {key} if told else set()
         median = f"median.{axis % 4}"
-        if leg.median == "none" or NAMED in text:
+        if leg.median == "none" or has(text, "by_what"):
             self.told.add(median)
-        elif PARTED in text or _DIVIDED.search(text):
+        elif has(text, "divided"):
             self.told |= {median, f"{VAGUE}.{median}"}
-        text = text.replace(NAMED, "").replace(PARTED, "")
+        text = plain(text)
         if not (bare or self.held_out or axis % 4 == self._first or rng.random() < 0.75):
             others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
-            text = f"the {rng.choice(others)} {_ARTICLE.sub('', text)}"
+            text = f"the {rng.choice(others)} {text.removeprefix('a ').removeprefix('an ')}"
         return text if bare else self._noted(text, leg, legs, told)
 
     def _noted(self, text: str, leg: Leg, legs: list[Leg], told: bool) -> str:
@@ -99,70 +85,70 @@ class RoadsMixin:
         """A road of which no more is told: "the same road" is the one that was named last."""
         rng, last, self.spoken_of = self.rng, self.spoken_of, axis
         if axis != self._first:
-            return rng.choice(("the intersecting road", "the intersecting roadway", "the side street"))
+            return clause_of(rng, told_of.AGAIN["other"], False)
         if last not in (axis, None):
             self.told.add(f"{AXIS}.{axis}")
-            return f"the {words.axis(rng, axis)} {rng.choice(('road', 'roadway', 'street'))}"
-        return rng.choice(
-            ("the same road", "the same roadway", "the roadway") if last == axis else ("the road", "the roadway")
-        )
+            run = words.axis(rng, axis)
+            return clause_of(rng, told_of.AGAIN["axis"], False).format(axis=run)
+        return clause_of(rng, told_of.AGAIN["same" if last == axis else "first"], False)
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
-        """`a four-lane, two-way urban road (...)` and whether that tells the lanes for sure.
-
-        A mark stands in it where it says by what the road is divided.
-        """
+        """`a four-lane, two-way urban road (...)` with its labels and whether that tells the lanes for sure."""
         rng = self.rng
         kind = rng.choice((self.crash.area_word, "", "", "residential", "asphalt")).replace("highway", "limited access")
         turns = any(side.turns_in for side in legs)
         simple = not turns and not (leg.twltl and leg.lanes_in != leg.lanes_out)
         if not leg.two_way and not self.held_out and rng.random() < UNCOUNTED:
-            return self._uncounted(leg, more.UNCOUNTED, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), False
+            noun = f"{kind} {clause_of(rng, more.ROAD_WORD, False)}".strip()
+            return self._uncounted(leg, more.UNCOUNTED, noun), False
         if simple and not self.held_out and rng.random() < words.MORE:
-            return self._further(leg, f"{kind} {rng.choice(more.ROAD_WORD)}".strip()), True
-        even = leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
-        plain = not turns and not leg.twltl and leg.two_way
+            return self._further(leg, f"{kind} {clause_of(rng, more.ROAD_WORD, False)}".strip()), True
+        return self._counted_lanes(leg, legs, kind, turns)
+
+    def _counted_lanes(self, leg: Leg, legs: list[Leg], kind: str, turns: bool) -> tuple[str, bool]:
+        """The same in words that follow counts of real reports."""
+        rng, even = self.rng, leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
-        other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
-        total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
-        extra = sum(use in ("left", "right") for use in leg.turns_in)
-        if not bracket and extra and leg.lanes_in > extra and rng.random() < 0.4:
-            total -= extra  # investigators often count the lanes that go on only; the drawing shows the others
-        if bracket:
-            self.totals[leg.bearing % 4] = total
-        elif not self.held_out:
-            total = self.totals.setdefault(leg.bearing % 4, total)
-        word = f"{kind} {rng.choice(ROAD_WORDS)}".strip()
+        total = self._total(leg, legs, bracket)
+        word = f"{kind} {clause_of(rng, told_of.ROAD_NOUN, False)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")
         )
         if not leg.two_way:
             return self._one_way(leg, n, word), not turns
-        divided = MEDIAN_WORDS.get(leg.median, "")
-        divided += NAMED * bool(divided)
-        if plain and not self.held_out and rng.random() < 0.3:
-            return self._ways_text(leg, even, total, word) + (f" {divided}" if divided else ""), True
+        divided = f" {told_of.DIVIDER[leg.median].side(False)[0]}" if leg.median in told_of.DIVIDER else ""
+        if not turns and not leg.twltl and not self.held_out and rng.random() < 0.3:
+            return self._ways_text(leg, even, total, word) + divided, True
         if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35 and not turns:
-            text = f"a {rng.choice(('two-way ', 'divided ', '') if divided else ('two-way ', 'undivided ', ''))}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction"
-            return text + (f" {divided}" if divided else ""), True
-        ways = (
-            ("divided", "two-way, divided", "physically divided")
-            if divided and (leg.median != "painted" or self.held_out)
-            else ("divided", "two-way, divided")
-            if divided
-            else ("two-way", "two-way", "undivided", "two-way, undivided", "not physically divided")
-        )
-        text = self._counted(n, rng.choice(ways), word)
+            before = clause_of(rng, told_of.BESIDE["parted" if divided else "open"], False)
+            return f"a {before}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction{divided}", True
+        painted = leg.median == "painted" and not self.held_out
+        ways = told_of.WAYS["painted" if painted else "parted" if divided else "open"]
+        text = self._counted(n, clause_of(rng, ways, False), word)
         told = (even and not turns) or (leg.twltl and total in (3, 5))
         if bracket:
-            text, told = f"{text} {self._bracket(leg, legs)}", True
-            text += NAMED * (leg.median in IN_BRACKETS)
+            named = labels.mark("by_what") * (leg.median in told_of.IN_BRACKETS)
+            text, told = f"{text} {self._bracket(leg, legs)}{named}", True
             self.told.add(f"turns.{leg.bearing % 4}")
         elif divided and rng.random() < 0.5:
-            text += f" {divided}"
+            text += divided
         elif leg.twltl and rng.random() < 0.5:
             text += " with a center turn lane"
         return text, told
+
+    def _total(self, leg: Leg, legs: list[Leg], bracket: bool) -> int:
+        """Lanes of a road as they are counted; investigators often count the lanes that go on only, while a drawing
+        shows the others."""
+        other = legs[1].lanes_in if bracket and len(legs) > 1 else leg.lanes_out
+        total = min(leg.lanes_in + other + leg.twltl, len(words.NUMBERS) - 1)
+        extra = sum(use in ("left", "right") for use in leg.turns_in)
+        if not bracket and extra and leg.lanes_in > extra and self.rng.random() < 0.4:
+            total -= extra
+        if bracket:
+            self.totals[leg.bearing % 4] = total
+        elif not self.held_out:
+            total = self.totals.setdefault(leg.bearing % 4, total)
+        return total
 
     def _further(self, leg: Leg, noun: str) -> str:
         """A phrase of `clauses_road` for a road without turn lanes at the junction, whatever its lanes."""
@@ -171,21 +157,21 @@ class RoadsMixin:
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
         if not leg.two_way:
             xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
-            text = more.phrase(rng, more.ONE_WAY, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
-            return self._flowing(leg, xb, text)
+            clause = clause_of(rng, more.ONE_WAY, False)
+            self._flowing(leg, clause)
+            return more.put(clause, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
         if leg.lanes_in != leg.lanes_out:
             self.told.add(f"{AXIS}.{axis}")
             a, b = self._sides(leg, to, fro)
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
             return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
         options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
-        parted = PARTED * (options is more.DIVIDED)
-        median = more.phrase(rng, more.MEDIAN[leg.median]) + NAMED if leg.median in more.MEDIAN else ""
-        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median) + parted
+        median = more.phrase(rng, more.MEDIAN[leg.median]) if leg.median in more.MEDIAN else ""
+        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
 
     @staticmethod
     def _sides(leg: Leg, to: str, fro: str) -> list[str]:
-        """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and of those who leave by it."""
+        """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and who leave by it."""
         back = (leg.bearing + 4) % 8
         return [
             notes.item(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
@@ -194,8 +180,9 @@ class RoadsMixin:
 
     def _counted(self, n: str, ways: str, word: str) -> str:
         """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
-        rng = self.rng
-        looks = f"{rng.choice(LOOKS)} " if not self.ciren and not self.held_out and rng.random() < 0.2 else ""
+        rng, looks = self.rng, ""
+        if not self.ciren and not self.held_out and rng.random() < 0.2:
+            looks = f"{clause_of(rng, told_of.LOOKS, False)} "
         comma = rng.choice((",", ",", ""))
         if not self.held_out and rng.random() < 0.15:
             return f"a {looks}{ways}{comma} {n} {word}"
@@ -205,53 +192,42 @@ class RoadsMixin:
         """`a one-lane, one-way street`, `a northbound one-way roadway with two lanes of travel`."""
         rng, lanes = self.rng, max(leg.lanes_in, leg.lanes_out)
         xb = words.bound(rng, leg.flow)
-        forms = [f"a {n}, one-way {word}", f"a one-way, {n} {word}", f"a {n} one-way {word}"]
-        if not self.held_out:
-            count = words.lanes(lanes)
-            forms += [
-                f"a one-way {word} with {count}{rng.choice((' of travel', ' for travel', ''))}",
-                f"a {xb} one-way {word} with {count}",
-                f"a {n}, one-way, {xb} {word}",
-                f"a one-way {xb} {word} that had {count}",
-            ]
-        text = rng.choice(forms)
-        return self._flowing(leg, xb, text)
+        travel = "" if self.held_out else clause_of(rng, told_of.TRAVEL, False)
+        clause = clause_of(rng, told_of.ONE_WAY, self.held_out)
+        self._flowing(leg, clause)
+        return clause.format(n=n, noun=word, xb=xb, travel=travel, count=words.lanes(lanes))
 
-    def _flowing(self, leg: Leg, xb: str, text: str) -> str:
-        """That phrase of a one-way street, noted if it tells the way that its traffic goes."""
-        self.told |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if xb in text else set()
-        return text
+    def _flowing(self, leg: Leg, clause: str) -> None:
+        """Note of a phrase for a one-way street that tells the way that its traffic goes, if it does."""
+        self.told |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if "xb" in slots_of(clause) else set()
 
     def _differs(self, leg: Leg) -> bool:
         """Whether one of two roads is one-way: this or the other."""
         ways = {side.bearing % 4: side.two_way for side in self.crash.legs if side.kind == "road"}
         return list(ways.values()).count(False) == 1 and (not leg.two_way or len(ways) > 1)
 
-    def _uncounted(self, leg: Leg, options: list[str], noun: str) -> str:
+    def _uncounted(self, leg: Leg, options: Group, noun: str) -> str:
         """A phrase that says whether a road is one-way and leaves open how many lanes it has."""
         xb = words.bound(self.rng, leg.flow)
         self.told.add(f"ways.{leg.bearing % 4}")
-        return self._flowing(leg, xb, more.phrase(self.rng, options, noun=noun, xb=xb))
+        clause = clause_of(self.rng, options, False)
+        self._flowing(leg, clause)
+        return more.put(clause, noun=noun, xb=xb)
 
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
         """`a road with two northbound lanes and one southbound lane` and the like."""
-        rng, kind = self.rng, self.rng.choice(("two-way ", "", "undivided " if leg.median == "none" else "divided "))
+        rng = self.rng
+        kind = clause_of(rng, told_of.BEFORE["open" if leg.median == "none" else "parted"], False)
         if even and rng.random() < 0.6:
-            each = words.lanes(leg.lanes_in)
-            way = rng.choice(("in each direction", "each way", "for each direction", "per direction"))
-            return rng.choice(
-                (
-                    f"a {kind}{word} with {each} {way}",
-                    f"a {kind}{word} that had {each} {way}",
-                    f"a {kind}{word} consisting of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
-                    f"a {kind}{word} of {words.NUMBERS[total]} lanes, {words.NUMBERS[leg.lanes_in]} {way}",
-                )
-            )
+            way = clause_of(rng, told_of.EACH_DIRECTION, False)
+            each = {"each": words.lanes(leg.lanes_in), "half": words.NUMBERS[leg.lanes_in], "way": way}
+            text = clause_of(rng, told_of.EVEN, False)
+            return text.format(kind=kind, noun=word, total=words.NUMBERS[total], **each)
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
         lanes = self._sides(leg, to, fro)
         rng.shuffle(lanes)
         self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        return f"a {kind}{word} {rng.choice(('with', 'that had', 'of', 'which has'))} {lanes[0]} and {lanes[1]}"
+        return clause_of(rng, told_of.SIDES, False).format(kind=kind, noun=word, a=lanes[0], b=lanes[1])
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
@@ -271,4 +247,5 @@ class RoadsMixin:
         axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
         self.told |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
-        return words.limit(self.rng, limit, self.held_out)  # type: ignore[arg-type] - clauses are chosen so
+        assert limit is not None  # noqa: S101 - clauses are chosen so
+        return words.limit(self.rng, limit, self.held_out)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
-from functools import cache, partial
-from typing import Any
+from collections.abc import Callable, Sequence
+from functools import partial
 
 from mini.generator import clauses_road as roads
 from mini.generator import clauses_scene as scene
 from mini.generator import conditions, words
-from mini.generator.grammar import choose, families
+from mini.generator.grammar import choose, sided
 from mini.generator.junction_phrases import JunctionMixin
+from mini.generator.labels import has, plain
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
+from mini.generator.records import Group, slots_of
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg
 
@@ -27,28 +27,14 @@ TIMES = {
     "dark_lit": _DARK,
 }
 """Times of day that agree with the light."""
-IN_LANES = re.compile(r"\{xb\} lane")
-NO_CURVE = re.compile(r"straight|\b(?:no|not|nor|neither|without)\b.*\b(?:curve|bend|turn)", re.IGNORECASE)
-SHARED = re.compile(r"(?:drivers|vehicles|cars|motorists)\b.*(?:\{road(?:bare)?\}|(?:on|using)\]? a )")
-"""Clauses that put everybody on one road."""
-POINTS = re.compile(r"^\[?(?:It|This|Here)\b|\bhere\b|\bthis (?:\[?road|\[?street|\[?highway|section|stretch)")
-"""Clauses that mean the road that was spoken of last."""
-SEVERAL = re.compile(r"\b(?:two|both|vehicles|cars|drivers|motorists|pileup)\b", re.IGNORECASE)
-"""Openings that speak of two vehicles."""
 PASSED_OVER = 0.35
 """Share of openings that name the road and leave the driveway to those who turn there."""
-
-
-@cache
-def unbent(clause: str) -> bool:
-    """Whether a clause says that a road does not bend."""
-    return "{curve}" not in clause and bool(NO_CURVE.search(clause))
 
 
 class SceneMixin(JunctionMixin):
     """Slots and sentences about the place; needs the writer's fields."""
 
-    say: Any
+    say: Callable[..., str]
     of_road: bool
 
     def _scene_slot(self, slot: str, v: int) -> str:
@@ -115,42 +101,37 @@ class SceneMixin(JunctionMixin):
             return self._of_road(scene.OPENING_PLAIN, main)
         if self.crash.layout in ("driveway", "merge", "four"):
             self.told.add("layout")
-        options = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
+        group = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
+        options: Sequence[str] = group.without(self.held_out, ["two"] * self.crash.alone)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
-            options = [clause for clause in options if "{jn}" in clause.lower()]
-        if self.crash.alone:
-            options = [clause for clause in families(options, self.held_out) if not SEVERAL.search(clause)]
+            options = [clause for clause in options if {"jn", "Jn"} & set(slots_of(clause))]
         return self._of_road(options, main)
 
-    def _of_road(self, options: list[str], main: int) -> list[str]:
+    def _of_road(self, options: Group | Sequence[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
-        true = [clause for clause in families(options, self.held_out) if self._true(clause)]
-        if self.crash.alone and not self.held_out:
-            true = words.of_one(true)
+        untrue = self._untrue() + ["two"] * (self.crash.alone and not self.held_out)
+        unset = [slot for slot in ("lim", "lim2") if self._limit_of(slot) is None]
+        clauses = sided(options, self.held_out)
+        true = [c for c in clauses if not (any(has(c, label) for label in untrue) or set(unset) & set(slots_of(c)))]
         if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
-            true = [clause for clause in true if "{axis}" in clause or not POINTS.search(clause)]
+            true = [clause for clause in true if "axis" in slots_of(clause) or not has(clause, "last_road")]
         self.of_road = True
         text = [self.say(true, main)] if true else []
         self.of_road = False
         return text
 
-    def _true(self, clause: str) -> bool:
-        """Whether what a clause on the road says beside its slots may be said of this crash."""
-        for slot in ("lim", "lim2"):
-            if f"{{{slot}}}" in clause and self._limit_of(slot) is None:
-                return False
-        if unbent(clause) and any(leg.curve != "none" for leg in self.crash.legs):
-            return False
-        vehicles = [actor for actor in self.crash.actors if actor.vehicle]
-        if SHARED.search(clause) and len({actor.leg % 4 for actor in vehicles}) > 1:
-            return False
+    def _untrue(self) -> list[str]:
+        """Labels of clauses on the road that say, beside their slots, what is not so."""
+        untrue = ["unbent"] * any(leg.curve != "none" for leg in self.crash.legs)
+        untrue += ["one_road"] * (len({actor.leg % 4 for actor in self.crash.actors if actor.vehicle}) > 1)
         elsewhere = ("head_on", "overtaking", "left_opposite")  # not in the lanes of the one who comes to mind first
-        return self.crash.config not in elsewhere or not IN_LANES.search(clause)
+        return untrue + ["own_lanes"] * (self.crash.config in elsewhere)
 
     def _road_sentences(self) -> list[str]:
         """What they say is made in the order of the text: "the same road" is the one that was named last."""
         rng = self.rng
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
+        makers: list[Callable[[], list[str]]]
         makers = [partial(self._of_road, scene.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
         if self.crash.layout in ("four", "t") and rng.random() < 0.4:
             makers.append(partial(self._of_road, scene.ROAD2, main))
@@ -263,7 +244,7 @@ class SceneMixin(JunctionMixin):
         if self.rng.random() >= odds:
             return []
         alone = self.crash.alone and not self.held_out
-        return [self.say(words.of_one(scene.CONDITIONS) if alone else scene.CONDITIONS)]
+        return [self.say(scene.CONDITIONS.without(self.held_out, ["two"] * alone))]
 
     def _condition(self, slot: str) -> str:
         key, table = {
@@ -271,9 +252,7 @@ class SceneMixin(JunctionMixin):
             "wx": ("weather", scene.WEATHER),
             "surf": ("surface", scene.SURFACE),
         }[slot]
-        options = families(table[getattr(self.crash, key)], self.held_out)
-        if not self.held_out:
-            options = conditions.fitting(key, tuple(options), self.crash.light, self.crash.weather)
-        text = choose(self.rng, self.rng.choice(options))
+        untrue = [] if self.held_out else conditions.untrue(key, self.crash.light, self.crash.weather)
+        text = choose(self.rng, self.rng.choice(table[getattr(self.crash, key)].without(self.held_out, untrue)))
         self.told |= {key} if self.held_out else {key, *conditions.beside(key, text, self.crash)}
-        return text
+        return plain(text)

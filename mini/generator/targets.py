@@ -160,7 +160,7 @@ class Targets:
             "lane": self._lane(actor) if actor.vehicle else None,
             "exit_road": COMPASS[out] if out is not None else None,
             "maneuver": actor.maneuver,
-            "speed_mph": self._speed(actor, sure),  # type: ignore[index]
+            "speed_mph": self._speed(actor, sure),
             "length_m": None,
             "width_m": None,
         }

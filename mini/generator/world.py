@@ -10,8 +10,11 @@ from collections.abc import Set
 from dataclasses import dataclass, field
 from random import Random
 
-COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
-WORDS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+from mini.answers import COMPASS as COMPASS
+from sgcad_core.language import values
+
+_WORD_OF = {point: word for word, point in values("compass").items()}
+WORDS = tuple(_WORD_OF[point] for point in COMPASS)
 TURN_OF = {"left": 2, "right": -2, "through": 4}
 """Leg taken from leg b: b + TURN_OF[turn]."""
 

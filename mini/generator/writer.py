@@ -6,18 +6,19 @@ and 4), "limit.2", "areas.0", "light". Facts are told where a slot that holds th
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
 from mini.generator import words
 from mini.generator.approaches import ApproachMixin
 from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
-from mini.generator.grammar import HINT, MARK, SLOTS, Told, Written, clause_of, fill, sentence, unmark
+from mini.generator.grammar import HINT, MARK, Told, Written, clause_of, fill, sentence, unmark
+from mini.generator.labels import has
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
 from mini.generator.notes import Slots, noted
+from mini.generator.records import Group, slots_of
 from mini.generator.scene import SceneMixin
 from mini.generator.settled import AXIS, FROM_LEFT
 from mini.generator.world import WORDS, Crash
@@ -37,10 +38,6 @@ CIREN_ORDER = (
 Words = str | Callable[[], str]
 PRONOUNS = ("he", "He", "his", "His")
 """Slots of words for the driver of the one whom a clause is about."""
-OTHERS = re.compile(
-    r"(?:driver|operator|occupants?) of \{W\}|passenger|witness|spouse|wife|husband|friend", re.IGNORECASE
-)
-"""Clauses that speak of another person than the driver of the one whom they are about."""
 
 
 class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
@@ -133,7 +130,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
     # -------------------------------------------------------------- slots
     def say(
         self,
-        options: list[str],
+        options: Group | Sequence[str],
         v: int = 0,
         w: int | None = None,
         touching: dict[str, str] | None = None,
@@ -147,7 +144,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
         self.told |= self._hints(clause, v, other)
         slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
-        others = OTHERS.search(clause)
+        others = has(clause, "third")
 
         def filled(slot: str) -> str:
             text = self._slot(slot, v, other, extra)
@@ -163,7 +160,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
     def _hints(self, clause: str, v: int, w: int) -> set[str]:
         """How a clause is built, which is no fact of the crash but what its facts are read from: who is named first and
         second, and whether an impact is told from the one who strikes (active) or from the one who is struck."""
-        named = [slot for slot in SLOTS.findall(clause) if slot in "VWST"]
+        named = [slot for slot in slots_of(clause) if slot in "VWST"]
         order = list(dict.fromkeys(v if slot in "VS" else w for slot in named))
         hints = {f"{HINT}named{place}.{self.id_of(index)}" for place, index in enumerate(order[:2])}
         if "S" in named and "T" in named:
@@ -206,15 +203,15 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
             return WORDS[actor.leg]
         if slot in ("outdir", "outxb"):  # of one that turns: with the turn, where it goes tells where it came from
             self.told |= {f"{fact}.{actor.id}" for fact in ("heading", "man", "exit")}
-            way: int = actor.out  # type: ignore[assignment] - who turns takes a leg
-            return WORDS[way] if slot == "outdir" else words.bound(self.rng, way)
+            assert actor.out is not None  # noqa: S101 - who turns takes a leg
+            return WORDS[actor.out] if slot == "outdir" else words.bound(self.rng, actor.out)
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
             xb = words.bound(self.rng, actor.heading)
-            name, from_left = words.lane(self.rng, leg, actor.lane, xb, self.held_out)  # type: ignore[arg-type]
-            self.told |= {f"heading.{actor.id}"} if xb in name else set()
-            self.told |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if from_left else set())
-            return name  # the leg is there: actors stand on legs
+            name = words.lane(self.rng, leg, actor.lane, xb, self.held_out)  # type: ignore[arg-type]
+            self.told |= {f"heading.{actor.id}"} if name.headed else set()
+            self.told |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if name.from_left else set())
+            return name.text  # the leg is there: actors stand on legs
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
         if bearing is not None:
             return words.bound(self.rng, bearing)

@@ -143,7 +143,8 @@ def bend(inbound: Points, away: Points, turn: int) -> Points:
     reach = float(np.hypot(*(b - a))) * {0: 0.8, 4: 0.2}.get(turn, 0.45)
     t = np.linspace(0, 1, max(3, int(np.hypot(*(b - a)) / STEP * 1.3)))[1:-1, None]
     p, q = a + u * reach, b - v * reach
-    return a * (1 - t) ** 3 + 3 * p * t * (1 - t) ** 2 + 3 * q * t**2 * (1 - t) + b * t**3
+    curve: Points = a * (1 - t) ** 3 + 3 * p * t * (1 - t) ** 2 + 3 * q * t**2 * (1 - t) + b * t**3
+    return curve
 
 
 def headings(points: Points) -> NDArray[np.float64]:
@@ -157,4 +158,5 @@ def shift(points: Points, start: int, end: int, amount: float) -> Points:
     u = np.clip((np.arange(len(points)) - start) / max(end - start, 1), 0, 1)
     u = u * u * (3 - 2 * u)
     h = headings(points)
-    return points + (amount * u)[:, None] * np.stack((-np.sin(h), np.cos(h)), axis=1)
+    moved: Points = points + (amount * u)[:, None] * np.stack((-np.sin(h), np.cos(h)), axis=1)
+    return moved

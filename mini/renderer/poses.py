@@ -105,7 +105,8 @@ class Stage:
 
     def _on_way(self, actor: int, index: int) -> Pose:
         """An actor where its way has an index."""
-        return Pose(*self.ways[actor][index], wrap(float(self.faces[actor][index]) + _turned(self.crash.actors[actor])))
+        x, y = self.ways[actor][index]
+        return Pose(x, y, wrap(float(self.faces[actor][index]) + _turned(self.crash.actors[actor])))
 
     def _along(self, keeper: int, other: int) -> int | None:
         """Index on the keeper's way at which it is met by one of its own road; None: where their ways cross."""

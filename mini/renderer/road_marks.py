@@ -152,7 +152,7 @@ class RoadMarks:
         else:
             self._median(band, s)
 
-    def _center_line(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+    def _center_line(self, band: Band, s: Points) -> None:
         pen, wide = self.pen, max(0.35, 1.6 / self.pen.scale)
         narrow = band.leg.lanes_in == band.leg.lanes_out == 1
         if self.center == "dashed" and narrow:
@@ -166,7 +166,7 @@ class RoadMarks:
             dash = self.dash if self.center == "solid_dashed" and narrow else 0.0
             pen.line(band.at(s, -wide), width=self.mark, dash=dash, gap=self.gap)
 
-    def _median(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+    def _median(self, band: Band, s: Points) -> None:
         pen, kind = self.pen, band.leg.median
         for side in (1, -1):
             pen.line(band.at(s, side * band.middle / 2), width=self.mark)
@@ -181,7 +181,7 @@ class RoadMarks:
         else:
             self._tufts(band, s)
 
-    def _tufts(self, band: Band, s: np.ndarray) -> None:  # type: ignore[type-arg]
+    def _tufts(self, band: Band, s: Points) -> None:
         for k in range(2, len(s) - 2, 9):
             x, y = self.pen.px(band.at(s[k], self.rng.uniform(-0.3, 0.3) * band.middle))[0]
             self.pen.draw.line([(x - 3, y + 3), (x, y - 3), (x + 3, y + 3)], fill=(60, 130, 60), width=1)

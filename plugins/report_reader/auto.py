@@ -11,6 +11,7 @@ from plugins.report_reader.pdf import Pdf
 from plugins.report_reader.text import Text
 from sgcad_core.errors import BadInput
 from sgcad_core.records import CrashReport
+from sgcad_core.report_files import leads_inside
 
 READERS: dict[str, type[EvidenceReader]] = {".txt": Text, ".md": Text, ".xml": NhtsaXml, ".pdf": Pdf}
 
@@ -20,6 +21,8 @@ class Auto(EvidenceReader):
 
     def read(self, source: Path) -> CrashReport:
         """Read one case with the reader that fits. Raises BadInput naming what would fit."""
+        if source.is_symlink() and not leads_inside(source, source.parent):
+            raise BadInput(f"{source}: leads out of its folder: give the file or folder itself")
         if source.is_dir():
             reader: type[EvidenceReader] = Folder
         elif not source.exists():

@@ -18,6 +18,7 @@ from typing import Literal, get_args
 
 from PIL import Image, ImageFilter
 
+from sgcad_core.narrative.traced import Traced, joined, placed, runs
 from sgcad_core.records import CrashReport, Diagram
 
 Level = Literal[
@@ -54,6 +55,8 @@ _CRITICAL = re.compile(
     re.IGNORECASE,
 )
 _SENTENCE = re.compile(r"(?<=[.!?])\s+")
+_LEFT_OVER = re.compile(r"(?<=\s)-(?=\w)|\(\s*\)")
+_GAP = re.compile(r"[ \t]{2,}")
 
 
 def degrade(report: CrashReport, level: Level) -> CrashReport:
@@ -64,35 +67,39 @@ def degrade(report: CrashReport, level: Level) -> CrashReport:
     if level in SIGMA_PX:
         changed["diagrams"] = tuple(_blurred(d, SIGMA_PX[level]) for d in report.diagrams)
     elif level == "total_sparsity":
-        changed |= {"narrative": SPARSE, "diagrams": (), "coded": None}
+        changed |= {"narrative": SPARSE, "places": ((0, 0, 0),), "diagrams": (), "coded": None}
     else:
-        text, note = _TEXT[level](report.narrative)
-        changed |= {"narrative": text, "coded": None, "notes": (*report.notes, f"degraded: {level} ({note})")}
+        text, note = _TEXT[level](placed(report.narrative, report.places))
+        changed |= {"narrative": text.text, "places": runs(text), "coded": None}
+        changed["notes"] = (*report.notes, f"degraded: {level} ({note})")
     return report.model_copy(update=changed)
 
 
-def _without_numbers(text: str) -> tuple[str, str]:
+def _without_numbers(text: Traced) -> tuple[Traced, str]:
     """Actor numbers (V1, Vehicle #2, vehicle one) stay: without them nothing could be told apart."""
-    bare, digits = _DIGITS.subn("", text)
-    bare, words = _SPELLED.subn("", bare)
-    bare = re.sub(r"(?<=\s)-(?=\w)|\(\s*\)", "", bare)
-    return re.sub(r"[ \t]{2,}", " ", bare).strip(), f"{digits + words} numbers removed"
+    digits = len(_DIGITS.findall(text.text))
+    bare = text.sub(_DIGITS, "")
+    words = len(_SPELLED.findall(bare.text))
+    bare = bare.sub(_SPELLED, "").sub(_LEFT_OVER, "").sub(_GAP, " ")
+    return bare.strip(), f"{digits + words} numbers removed"
 
 
-def _turned_round(text: str) -> tuple[str, str]:
+def _turned_round(text: Traced) -> tuple[Traced, str]:
     def swap(match: re.Match[str]) -> str:
         word = match.group(0)
         other = _TURNED[word.lower()]
         return other.capitalize() if word[0].isupper() else other
 
-    turned, count = _DIRECTED.subn(swap, text)
-    return turned, f"{count} directions and sides turned: N>E>S>W>N, left<>right, front<>back"
+    count = len(_DIRECTED.findall(text.text))
+    return text.sub(_DIRECTED, swap), f"{count} directions and sides turned: N>E>S>W>N, left<>right, front<>back"
 
 
-def _without_critical(text: str) -> tuple[str, str]:
-    sentences = _SENTENCE.split(text)
-    kept = [s for s in sentences if not _CRITICAL.search(s)]
-    return " ".join(kept) or SPARSE, f"{len(sentences) - len(kept)} of {len(sentences)} sentences removed"
+def _without_critical(text: Traced) -> tuple[Traced, str]:
+    sentences = text.split(_SENTENCE)
+    kept = [s for s in sentences if not _CRITICAL.search(s.text)]
+    left = joined(kept, " ")
+    nothing = Traced(SPARSE, [0] * len(SPARSE), [0] * len(SPARSE))
+    return left if left.text else nothing, f"{len(sentences) - len(kept)} of {len(sentences)} sentences removed"
 
 
 _TEXT = {

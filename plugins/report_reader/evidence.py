@@ -7,23 +7,32 @@ from __future__ import annotations
 
 import io
 import re
+import struct
 import warnings
+import zlib
 from abc import ABC
 from pathlib import Path
 
-from PIL import Image, UnidentifiedImageError
+import numpy as np
+from PIL import Image, ImageOps
 
 from plugins.report_reader.degrade import Level, degrade
 from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import ReportReader
-from sgcad_core.narrative.privacy import redact
+from sgcad_core.narrative.privacy import redacted
+from sgcad_core.narrative.traced import Traced, joined, runs
 from sgcad_core.records import CrashReport, Diagram
 
-MAX_TEXT_BYTES = 1_000_000
-MAX_FILE_BYTES = 50_000_000
+MAX_NARRATIVE = 100_000
+"""Characters: the longest real report here has 6,000."""
 MAX_PIXELS = 40_000_000
 MAX_SIDE_PX = 2048
 MIN_WORDS = 5
+UNREADABLE = (
+    OSError, SyntaxError, EOFError, ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError,
+    RuntimeError, MemoryError, struct.error, zlib.error,
+)  # fmt: skip
+"""What Pillow and pypdf raise for broken files, beside errors of their own: the file is at fault, not the program."""
 _FUNCTION_WORDS = frozenset(
     [
         "the",
@@ -79,22 +88,29 @@ class EvidenceReader(ReportReader, ABC):
         notes: tuple[str, ...] = (),
     ) -> CrashReport:
         """Assemble a report as the switches ask. Raises BadInput if nothing is left to read."""
-        text = checked_narrative(narrative, source) if self.use_narrative else ""
-        text = redact(text) if self.redact_persons else text
+        text = checked_narrative(Traced.of(narrative), source) if self.use_narrative else Traced.of("")
+        text = redacted(text) if self.redact_persons else text
         if self.use_coded_fields and coded:
-            text = f"{text}\n\nCoded fields:\n{coded_lines(coded)}".strip()
+            text = _behind(text, f"\n\nCoded fields:\n{coded_lines(coded)}", len(narrative)).strip()
         shown = diagrams if self.use_diagrams else ()
-        if not text and not shown:
+        if not text.text and not shown:
             raise BadInput(f"{source}: no diagram, and the narrative is switched off: set use_narrative to true")
         name = source.name if source.is_dir() else source.stem
         report = CrashReport(
             case=safe_case(name),
-            narrative=text,
+            narrative=text.text,
             diagrams=shown,
             coded=coded if self.use_coded_fields else None,
             notes=notes,
+            places=runs(text),
         )
         return degrade(report, self.robustness_level)
+
+
+def _behind(text: Traced, more: str, end: int) -> Traced:
+    """The text with more that nobody wrote, placed at the narrative's end."""
+    nowhere = [end] * len(more)
+    return joined([text, Traced(more, nowhere, nowhere)])
 
 
 def safe_case(name: str) -> str:
@@ -104,8 +120,9 @@ def safe_case(name: str) -> str:
 
 def decode(raw: bytes, source: Path) -> str:
     """Bytes of a text file as text: UTF-8 (with or without BOM), UTF-16 with BOM, else Latin-1; LF line ends."""
-    if len(raw) > MAX_TEXT_BYTES:
-        raise BadInput(f"{source}: {len(raw):,} bytes of text; a report has at most {MAX_TEXT_BYTES:,}: cut the file")
+    if len(raw) > 4 * MAX_NARRATIVE:  # four bytes a character, in any of these codings
+        raise BadInput(f"{source}: {len(raw):,} bytes of text; a narrative has at most {MAX_NARRATIVE:,} characters: "
+                       "cut the file")  # fmt: skip
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         text = raw.decode("utf-16", errors="replace")
     else:
@@ -119,10 +136,13 @@ def decode(raw: bytes, source: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def checked_narrative(text: str, source: Path) -> str:
+def checked_narrative(text: Traced, source: Path) -> Traced:
     """The narrative, stripped. Raises BadInput if it is empty or does not read like English."""
     text = text.strip()
-    words = re.findall(r"[^\W\d_]+", text.lower())
+    if len(text.text) > MAX_NARRATIVE:
+        raise BadInput(f"{source}: a narrative of {len(text.text):,} characters, at most {MAX_NARRATIVE:,} are read: "
+                       "give one report, without its appendices")  # fmt: skip
+    words = re.findall(r"[^\W\d_]+", text.text.lower())
     if len(words) < MIN_WORDS:
         raise BadInput(f"{source}: the narrative has {len(words)} words, at least {MIN_WORDS} are needed: is it empty?")
     common = sum(w in _FUNCTION_WORDS for w in words) / len(words)
@@ -131,31 +151,20 @@ def checked_narrative(text: str, source: Path) -> str:
     return text
 
 
-def read_bytes(path: Path) -> bytes:
-    """A file's bytes. Raises BadInput if it cannot be read or is over the limit."""
-    try:
-        size = path.stat().st_size
-        if size > MAX_FILE_BYTES:
-            raise BadInput(f"{path}: {size:,} bytes, the limit is {MAX_FILE_BYTES:,}: cut the file")
-        return path.read_bytes()
-    except OSError as fault:
-        raise BadInput(f"{path}: cannot be read: {fault.strerror or fault}") from fault
-
-
 def diagram(raw: bytes, source: Path) -> Diagram:
     """A picture, re-encoded as RGB PNG of at most 2048 px a side. Raises BadInput for anything else."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the limit below is stricter
+            warnings.simplefilter("ignore")  # the limit below is stricter than Pillow's
             picture = Image.open(io.BytesIO(raw))
             if picture.width * picture.height > MAX_PIXELS:
                 raise BadInput(
                     f"{source}: {picture.width} x {picture.height} pixels, the limit is {MAX_PIXELS:,}: scale it down"
                 )
-            flat = _on_white(picture)
+            flat = _on_white(ImageOps.exif_transpose(picture))
     except Image.DecompressionBombError as fault:
         raise BadInput(f"{source}: {fault}; the limit is {MAX_PIXELS:,} pixels: scale it down") from fault
-    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as fault:
+    except UNREADABLE as fault:
         raise BadInput(f"{source}: no readable picture ({fault}): give PNG, JPEG, GIF, BMP, TIFF or WebP") from fault
     if max(flat.size) > MAX_SIDE_PX:
         flat.thumbnail((MAX_SIDE_PX, MAX_SIDE_PX))
@@ -165,7 +174,10 @@ def diagram(raw: bytes, source: Path) -> Diagram:
 
 
 def _on_white(picture: Image.Image) -> Image.Image:
-    """RGB; transparent parts become paper."""
+    """RGB; transparent parts become paper, 16 bits a pixel become 8."""
+    if picture.mode.startswith("I"):
+        deep = np.asarray(picture).astype(np.int64)
+        return Image.fromarray((deep >> 8).clip(0, 255).astype(np.uint8)).convert("RGB")
     if picture.mode not in ("RGBA", "LA", "PA") and "transparency" not in picture.info:
         return picture.convert("RGB")
     layer = picture.convert("RGBA")

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from plugins.report_reader.evidence import EvidenceReader, read_bytes
+from plugins.report_reader.evidence import EvidenceReader
 from sgcad_core.errors import BadInput
 from sgcad_core.records import CrashReport
+from sgcad_core.report_files import read_regular
 
 MAX_XML_BYTES = 20_000_000
 _ILLEGAL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f]")
@@ -53,7 +54,7 @@ class NhtsaXml(EvidenceReader):
 
     def read(self, source: Path) -> CrashReport:
         """Read one case file."""
-        case = parse_case(read_bytes(source), source)
+        case = parse_case(read_regular(source), source)
         return self.evidence(source, case.narrative, (), case.coded)
 
 

@@ -8,11 +8,16 @@ from pathlib import Path
 from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
-from plugins.report_reader.evidence import EvidenceReader, diagram, read_bytes
+from plugins.report_reader.evidence import MAX_NARRATIVE, UNREADABLE, EvidenceReader, diagram
 from sgcad_core.errors import BadInput
 from sgcad_core.records import CrashReport, Diagram
+from sgcad_core.report_files import read_regular
 
 MAX_PAGES = 60
+MAX_DRAWN_BYTES = 8_000_000
+"""Of what all pages draw, uncompressed: a page of text has 20 kB, a scene diagram some 200 kB."""
+MAX_DRAWN = 400_000
+"""Drawing operators of all pages: what is drawn again and again from one place counts each time."""
 MIN_PICTURE_PX = 200
 
 
@@ -23,8 +28,8 @@ class Pdf(EvidenceReader):
         """Read one PDF. Raises BadInput for scans, encrypted and broken files."""
         pages = self._pages(source)
         try:
-            text = "\n".join(page.extract_text() for page in pages)
-        except (PyPdfError, ValueError, KeyError, TypeError, RecursionError) as fault:
+            text = _text(pages, source)
+        except (PyPdfError, *UNREADABLE) as fault:
             raise BadInput(f"{source}: the text layer cannot be read ({fault}): save the PDF anew") from fault
         if not text.strip():
             raise BadInput(f"{source}: the PDF has no text layer: run text recognition (OCR) on it first")
@@ -33,7 +38,7 @@ class Pdf(EvidenceReader):
 
     def _pages(self, source: Path) -> list:  # type: ignore[type-arg]
         try:
-            reader = PdfReader(io.BytesIO(read_bytes(source)))
+            reader = PdfReader(io.BytesIO(read_regular(source)))
             if reader.is_encrypted and not reader.decrypt(""):
                 raise BadInput(f"{source}: the PDF is encrypted: save it without a password")
             if len(reader.pages) > MAX_PAGES:
@@ -41,8 +46,31 @@ class Pdf(EvidenceReader):
                     f"{source}: {len(reader.pages)} pages, the limit is {MAX_PAGES}: extract the crash report"
                 )
             return list(reader.pages)
-        except (PyPdfError, ValueError, KeyError, TypeError, RecursionError) as fault:
+        except (PyPdfError, *UNREADABLE) as fault:
             raise BadInput(f"{source}: no readable PDF ({fault})") from fault
+
+
+def _text(pages: list, source: Path) -> str:  # type: ignore[type-arg]
+    """The text layer of all pages. Raises BadInput where it takes more drawing than a report has."""
+    found: list[str] = []
+    drawn = drawn_bytes = 0
+
+    def count(*_: object) -> None:
+        nonlocal drawn
+        drawn += 1
+        if drawn > MAX_DRAWN:
+            raise BadInput(f"{source}: draws more than {MAX_DRAWN:,} things: print the report's pages to a new PDF")
+
+    for page in pages:
+        contents = page.get_contents()
+        drawn_bytes += len(contents.get_data()) if contents is not None else 0
+        if drawn_bytes > MAX_DRAWN_BYTES:
+            raise BadInput(f"{source}: its pages hold more than {MAX_DRAWN_BYTES:,} bytes of drawing: "
+                           "print the report's pages to a new PDF")  # fmt: skip
+        found.append(page.extract_text(visitor_operand_before=count))
+        if sum(map(len, found)) > 2 * MAX_NARRATIVE:  # spaces are stripped yet
+            raise BadInput(f"{source}: more than {MAX_NARRATIVE:,} characters of text: extract the crash report")
+    return "\n".join(found)
 
 
 def _largest_picture(pages: list) -> Diagram | None:  # type: ignore[type-arg]
@@ -51,7 +79,7 @@ def _largest_picture(pages: list) -> Diagram | None:  # type: ignore[type-arg]
     for page in pages:
         try:
             found = [diagram(image.data, Path(image.name)) for image in page.images]
-        except (BadInput, PyPdfError, ValueError, KeyError, NotImplementedError, OSError):
+        except (BadInput, PyPdfError, *UNREADABLE):
             continue  # a picture in a codec that we do not read is no reason to lose the text
         for picture in found:
             if min(picture.width_px, picture.height_px) >= MIN_PICTURE_PX and (

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from plugins.report_reader.evidence import EvidenceReader, decode, read_bytes
+from plugins.report_reader.evidence import EvidenceReader, decode
 from sgcad_core.records import CrashReport
+from sgcad_core.report_files import read_regular
 
 
 class Text(EvidenceReader):
@@ -13,4 +14,4 @@ class Text(EvidenceReader):
 
     def read(self, source: Path) -> CrashReport:
         """Read one narrative; Latin-1, BOM and CR line ends are understood."""
-        return self.evidence(source, decode(read_bytes(source), source))
+        return self.evidence(source, decode(read_regular(source), source))

@@ -17,10 +17,11 @@ from plugins.road_writer.template import Template
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.narrative.junction import JunctionFacts, JunctionKind
+from sgcad_core.kinds import JunctionKind
+from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import axis_of
-from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
 from sgcad_core.roads.layout import COMPASS
 from sgcad_core.specs import Compass, Leg, RoadLayout
@@ -43,7 +44,7 @@ class Fused(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Write the network; `log` says what the drawing added. Raises Refused on a text without a crash."""
-        facts = road_facts(context.narrative)
+        facts = context.reading.roads
         told = facts.junction.kind != "none" or facts.junction.stated
         if told or not context.diagrams:
             return self.template.network_of(context.narrative, facts)

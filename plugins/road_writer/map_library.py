@@ -14,7 +14,7 @@ from plugins.road_writer._maps import compiled, library, nearest
 from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 
 
@@ -30,8 +30,9 @@ class MapLibrary(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Choose, turn, compile. Raises Refused on a text without a crash, ConfigError for a folder without maps."""
-        facts = road_facts(context.narrative)
+        facts = context.reading.roads
         if not facts.crash.vehicles and not facts.roads:
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
+        refuse_unsupported(facts.junction.unsupported)
         return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))

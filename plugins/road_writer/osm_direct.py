@@ -22,7 +22,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
 from sgcad_core.registry import plugin_class
 from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, layout_legs
@@ -59,10 +59,11 @@ class OsmDirect(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Describe, look up, turn, compile. Raises Refused (a text of no crash), ConfigError (no junctions)."""
-        facts = road_facts(context.narrative)
+        facts = context.reading.roads
         if not facts.crash.vehicles and not facts.roads:
             missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
             raise Refused("the narrative names neither a vehicle nor a road", missing)
+        refuse_unsupported(facts.junction.unsupported)
         layout = layout_of_facts(facts, Defaults())
         found, data = self._nearest(layout)
         legs = _legs(data)

@@ -6,7 +6,6 @@ netconvert. Reads no diagram and no passages; findings cannot change its answer.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
@@ -16,15 +15,15 @@ from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
+from sgcad_core.language import rule
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFacts
+from sgcad_core.narrative.told_roads import told_roads
+from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.roads.layout import LEG_M, road_spec
 
-_CRASH_WORDS = re.compile(
-    r"\b(?:vehicles?|V\d+|cars?|trucks?|pickups?|sedans?|vans?|minivans?|bus(?:es)?|motorcycl\w+|tractors?|drivers?|roads?|"
-    r"roadways?|streets?|highways?|freeways?|avenues?|lanes?|intersections?|driveways?|crash\w*|collision|collided)\b",
-    re.I)  # fmt: skip
+_CRASH_WORDS = rule("report.crash_words")
 
 
 class Template(RoadWriter):
@@ -43,8 +42,9 @@ class Template(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without a crash."""
-        return self.network_of(context.narrative, road_facts(context.narrative))
+        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without
+        a crash and on a place that cannot be drawn."""
+        return self.network_of(context.narrative, context.reading.roads)
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
@@ -53,8 +53,12 @@ class Template(RoadWriter):
                 "the narrative names neither a vehicle nor a road",
                 ["the road or junction of the crash", "the vehicles and how they traveled"],
             )
+        refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
-        network = compile_network(plain_xml(spec), spec)
+        told = told_roads(facts, spec)
+        network = compile_network(plain_xml(spec, told), spec)
         notes = [f"template: {note}; a default stands in" for note in facts.notes]
+        if open_limits := [name for name, road in told.items() if not road.posted]:
+            notes.append(f"template: no posted speed limit is told of {', '.join(open_limits)}; the map leaves it open")
         return network.model_copy(update={"log": "\n".join([*notes, network.log]).strip()})

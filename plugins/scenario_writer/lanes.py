@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.formats.opendrive.check import RoadIndex, lane_index
+from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.sumo.lane_graph import Connection, Edge, Floats, LaneGraph
 
 MOST_POINTS = 5
@@ -23,9 +23,9 @@ def lane_lines(graph: LaneGraph, xodr: str | None) -> str:
 
 
 def _lanes(edge: Edge, index: RoadIndex | None) -> Iterator[str]:
-    entry = index.by_edge(edge.id) if index else None
     for lane in edge.car_lanes:
-        place = f"road {entry.id!r} lane {lane.index - len(edge.lanes)}, " if entry else ""
+        found = index.lane(edge.id, lane.index) if index else None
+        place = f"road {found.road!r} lane {found.lane}, " if found else ""
         points = f"{_points(lane.shape)}, heading {_heading(lane.shape):.3f} rad, {lane.length_m:.0f} m"
         yield f"- {edge.id} lane {lane.index} (0 = rightmost): {place}{points}"
 

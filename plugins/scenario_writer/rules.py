@@ -11,14 +11,14 @@ from itertools import product
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.execution.scenario import May, compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.losses import tells_lost_control
-from sgcad_core.narrative.roads import road_facts
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import Area, BehaviorSpec, RoadSpec
 
@@ -31,6 +31,8 @@ class Rules(ScenarioWriter):
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
+    openscenario: Version = DEFAULT_VERSION
+    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
 
     def write(
         self,
@@ -43,10 +45,11 @@ class Rules(ScenarioWriter):
     ) -> Scenario:
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
-        facts = road_facts(context.narrative).crash  # its headings fit the roads told, where none is stated
-        lost = tells_lost_control(context.narrative)
+        facts = context.reading.crash
+        lost = tells_lost_control(context.reading.narrative)
         behavior = behavior_of_facts(facts, spec)
-        scenario = compile_scenario(behavior, network, may_skid=lost, sides=_other_sides(facts, behavior))
+        may = May(skid=lost, sides=_other_sides(facts, behavior))
+        scenario = compile_scenario(behavior, network, self.openscenario, may)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 
 

@@ -12,7 +12,8 @@ from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.execution.scenario import May, compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.losses import tells_lost_control
@@ -29,6 +30,9 @@ class SpecScenario(ScenarioWriter):
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     roads: Literal["described", "layout"] = "described"
     """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+
+    openscenario: Version = DEFAULT_VERSION
+    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
 
     def write(
         self,
@@ -49,7 +53,8 @@ class SpecScenario(ScenarioWriter):
             attempt=attempt,
         )
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        return compile_scenario(behavior, network, may_skid=tells_lost_control(context.narrative))
+        may = May(skid=tells_lost_control(context.reading.narrative))
+        return compile_scenario(behavior, network, self.openscenario, may)
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

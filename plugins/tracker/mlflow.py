@@ -80,6 +80,10 @@ class MlflowTracker(Tracker):
             _update(parent)
         parent.end(finished)
 
+    def identity(self, out: Path) -> str:
+        """The experiment's number and time of making, from the database itself."""
+        return self._store(out).identity()
+
     def log_training(self, name: str, params: dict[str, Any], lines: Sequence[Mapping[str, Any]]) -> int:
         """One run a training, one step a line that has a "step"; lines that are there already are passed over."""
         from plugins.tracker.mlflow_training import log_training
@@ -101,7 +105,7 @@ def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, flo
 
 def _machine() -> dict[str, float]:
     """The machine as a case ended: processor use since the case before, memory in use, this process' memory."""
-    import psutil  # type: ignore[import-untyped]
+    import psutil
 
     memory = psutil.virtual_memory()
     return {

@@ -19,6 +19,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
+from plugins.tracker.mlflow_database import make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
@@ -61,7 +62,7 @@ class Store:
         logging.getLogger("mlflow").setLevel(logging.WARNING)
         try:
             if self._file:
-                self._file.parent.mkdir(parents=True, exist_ok=True)
+                make_database(self._file)
             client = mlflow.MlflowClient(tracking_uri=self.uri)
             client.get_experiment("0")
         except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
@@ -70,6 +71,19 @@ class Store:
                 "move it away, or set tracker.database=<file>, or tracker=jsonl"
             ) from fault
         return client
+
+    def identity(self) -> str:
+        """Which experiment of which database this is, without starting MLflow; empty where that cannot be told.
+
+        A database made anew at the same place has another one, so that nobody takes its runs for logged already.
+        """
+        if not self._file or not self._file.is_file():
+            return ""
+        with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(self._file, timeout=30)) as found:
+            asked = "SELECT experiment_id, creation_time FROM experiments WHERE name = ?"
+            row = found.execute(asked, (self.experiment,)).fetchone()
+            return " ".join(map(str, row)) if row else ""
+        return ""
 
     @property
     def _file(self) -> Path | None:

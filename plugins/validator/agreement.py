@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.contact import first_contact
+from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.openscenario.player import entity_boxes, play
@@ -25,7 +25,6 @@ from sgcad_core.records import (
     Scenario,
     Trajectory,
 )
-from sgcad_core.result import realised
 from sgcad_core.specs import Contact
 
 START_M = 6.0

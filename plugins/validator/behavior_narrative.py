@@ -15,7 +15,7 @@ from typing import ClassVar, Literal
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
-from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
@@ -46,7 +46,7 @@ class BehaviorNarrative(Validator):
         """Contradictions, vehicles first; nothing for scenarios without a behavior or texts without vehicles."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None:
             return []
-        facts = crash_facts(evidence.report.narrative)
+        facts = evidence.report.reading.crash
         if not facts.vehicles:
             return []
         behavior = artifact.behavior

@@ -17,7 +17,7 @@ from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
@@ -42,14 +42,16 @@ class Meeting(Validator):
             return []
         if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
             return []
-        network, text = evidence.network, evidence.report.narrative
-        if artifact.oddity < self.odd_from or tells_lost_control(text) or network is None or network.net_xml is None:
+        network, reading = evidence.network, evidence.report.reading
+        if network is None or network.net_xml is None:
+            return []
+        if artifact.oddity < self.odd_from or tells_lost_control(reading.narrative):
             return []
         holds: tuple[Hold, ...] = ()
         if self.try_others and network.spec is not None:
             graph = parse_net(network.net_xml)
             trials = _Trials(artifact.behavior, artifact.declared, network.spec, graph, self.odd_from)
-            holds = trials.holds(crash_facts(text))
+            holds = trials.holds(reading.crash)
         what = "the declared contact comes about only by what the report does not tell"
         remedy = "choose roads, exit roads, maneuvers and sides that meet in ordinary driving"
         seen = "; ".join(artifact.notes) or f"oddity {artifact.oddity:g}"

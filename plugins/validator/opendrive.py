@@ -1,10 +1,10 @@
-"""Whether the .xodr is valid OpenDRIVE 1.7: schema, references, lane links, lengths, gaps."""
+"""Whether the .xodr is valid OpenDRIVE 1.7: schema, references, lane links, lengths, gaps, signals and stop lines."""
 
 from __future__ import annotations
 
 from typing import ClassVar
 
-from sgcad_core.formats.opendrive.mend import xodr_findings
+from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 

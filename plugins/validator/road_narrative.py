@@ -16,28 +16,26 @@ from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of, compass_of_angle, turned
+from sgcad_core.kinds import junction_kind, unsupported_kind
+from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
-from sgcad_core.narrative.roads import RoadFact, RoadFacts, road_facts
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.narrative.unsupported import not_drawn
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
 
-AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "northwest-southeast"}
-WORDS = {
-    "N": "north", "NE": "northeast", "E": "east", "SE": "southeast",
-    "S": "south", "SW": "southwest", "W": "west", "NW": "northwest",
-}  # fmt: skip
-
-
-_ORDER = ("repair", "doubt", "note")
+_ORDER = ("refuse", "repair", "doubt", "note")
 
 
 class RoadNarrative(Validator):
-    """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes."""
+    """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes.
+
+    A crash at a place that cannot be drawn is refused, or noted where the road of it can be.
+    """
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "6"
+    version: ClassVar[str] = "7"
     tolerance_deg: float = 35.0
     """Between a road as drawn and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
@@ -50,10 +48,11 @@ class RoadNarrative(Validator):
             graph = parse_net(artifact.net_xml)
         except InvalidOutput:
             return []
-        facts = road_facts(evidence.report.narrative)
+        facts = evidence.report.reading.roads
         drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
-            *self._legs(facts, len(legs[0]) if legs else 0, pictured), *self._paths(facts, legs, pictured),
+            *_not_drawn(facts), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *self._paths(facts, legs, pictured),
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
             *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
         ]  # fmt: skip
@@ -62,15 +61,15 @@ class RoadNarrative(Validator):
     # -------------------------------------------------------------- junction
     def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
         junction = facts.junction
-        want = {"t": 3, "four_leg": 4}.get(junction.kind)
+        record = junction_kind(junction.kind)
+        want = record.legs if record.rule else None  # what a text names in so many words
         if want and junction.stated and widest < want:
-            said = "a T-intersection" if want == 3 else "a four-leg intersection"
-            what = f"the report says {said}, but no junction of the network has {want} legs"
+            what = f"the report says {record.called}, but no junction of the network has {want} legs"
             remedy = f"let {want} roads meet at one node"
             holds = (Hold(items="legs", at_least=want), *laid(facts, pictured))
             yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
         elif want == 3 and junction.stated and widest > 3:
-            what = "the report says a T-intersection, but the junction has a leg too many"
+            what = f"the report says {record.called}, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
             alone = not pictured and _alone(facts)
             holds = (Hold(items="legs", at_most=want),) if alone else ()
@@ -94,9 +93,9 @@ class RoadNarrative(Validator):
         if not missing:
             return
         severity: Severity = "repair" if self._without(stated, drawn) else "doubt"
-        sides = " and ".join(WORDS[leg] for leg in missing)
+        sides = " and ".join(NAMES[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
-        seen = ", ".join(WORDS[compass_of_angle(at)] for at in drawn)
+        seen = ", ".join(NAMES[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
         yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=laid(facts, pictured))
 
@@ -109,7 +108,7 @@ class RoadNarrative(Validator):
         named = junction.stated if junction.kind == "driveway" else junction.stem_stated and not junction.stated
         if missing != [junction.stem] or not named or not any(map(turns_off, facts.crash.vehicles)):
             return
-        where = f"{WORDS[missing[0]]} of"
+        where = f"{NAMES[missing[0]]} of"
         what = f"a vehicle uses a {'driveway' if junction.kind == 'driveway' else 'road'} {where} the crash"
         holds = (Hold(items="legs", at_least=3), *laid(facts, pictured))
         severity: Severity = "doubt" if pictured else "repair"
@@ -127,7 +126,7 @@ class RoadNarrative(Validator):
                 continue
             if any(self._carries(road, v.heading, divided) for road in drawn):
                 continue
-            word = WORDS[v.heading]
+            word = NAMES[v.heading]
             what = f"{v.id} travels {word}, but no road carries traffic that way"
             remedy = f"give a road lanes that head {word}; x is east, y is north"
             yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
@@ -142,7 +141,7 @@ class RoadNarrative(Validator):
         if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
             return  # nobody knows which of the roads is meant
         for road in facts.streets:
-            here, name = self._on_axis(road, drawn), AXIS_WORDS[road.axis or "N"]
+            here, name = self._on_axis(road, drawn), AXIS_NAMES[road.axis or "N"]
             if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
@@ -166,7 +165,7 @@ class RoadNarrative(Validator):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"
-            what = f"the {AXIS_WORDS[road.axis or 'N']} road has {said} lanes in both directions together in the report"
+            what = f"the {AXIS_NAMES[road.axis or 'N']} road has {said} lanes in both directions together in the report"
             seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
             yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
@@ -191,10 +190,10 @@ class RoadNarrative(Validator):
             fits = any(least <= n <= most for n in there)  # on whichever side of the junction
             if there and not fits and least <= read.get(approach, 0) <= most:
                 said = f"{least}" if least == most else f"at least {least}"
-                what = f"the road has {said} lanes that head {WORDS[way]} in the report"
+                what = f"the road has {said} lanes that head {NAMES[way]} in the report"
                 enough = tuple(n for n in SOME_LANES if least <= n <= most)
                 holds = (Hold(items="legs", key="bearing", values=(approach,), either=({"lanes_in": enough},)),)
-                remedy = f"give it {said} lanes towards the crash on the leg {WORDS[approach]} of it"
+                remedy = f"give it {said} lanes towards the crash on the leg {NAMES[approach]} of it"
                 yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds)
 
     # -------------------------------------------------------------- limits
@@ -204,7 +203,7 @@ class RoadNarrative(Validator):
             limit = road.speed_limit_mph
             if limit is None or not here or any(self._at(limit, s) for d in here for s in d.speeds_mph):
                 continue
-            what = f"the {AXIS_WORDS[road.axis or 'N']} road's posted limit is {limit} mph in the report"
+            what = f"the {AXIS_NAMES[road.axis or 'N']} road's posted limit is {limit} mph in the report"
             seen = f"{here[0].speeds_mph[0]:.0f} mph"
             yield _finding(what, _ids(here), seen, f"set speed_limit_mph to {limit}", "note")
 
@@ -267,6 +266,13 @@ def _vague(road: RoadFact, pictured: bool) -> bool:
 
 def _ids(roads: list[DrawnRoad]) -> str:
     return "roads " + ", ".join(d.id for d in roads[:6])
+
+
+def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
+    """A finding on every place of the crash that cannot be drawn."""
+    for kind in facts.junction.unsupported:
+        record = unsupported_kind(kind)
+        yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
 
 
 def _finding(

@@ -13,7 +13,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
 from sgcad_core.records import ObservedContact, Trajectory
-from sgcad_core.specs import Area
+from sgcad_core.specs import Area, Contact
 
 STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""
@@ -33,6 +33,14 @@ def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size])
         return None
     k, _, a, b = found
     return observe(a, b, cast("int", k), sizes)
+
+
+def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
+    """Whether the first contact is the declared pair with the declared areas, in either order."""
+    if declared is None or observed is None:
+        return False
+    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
+    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
 def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:

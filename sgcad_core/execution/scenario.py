@@ -3,37 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version, write_xosc
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import Plan, plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Area, BehaviorSpec, size_m
 
-
 ODD = 0.5
 """Oddity of a plan (`Plan.oddity`) from which other sides are tried, where the report leaves them open."""
 Sides = tuple[Area, Area]
 
 
+class May(NamedTuple):
+    """What a report allows besides the behavior as declared."""
+
+    skid: bool = False
+    """It tells that somebody lost control."""
+    sides: Sequence[Sides] = ()
+    """Of striker and struck in the first contact, as well as the declared ones, likeliest first."""
+
+
+_NOTHING_MORE = May()
+
+
 def compile_scenario(
-    behavior: BehaviorSpec, network: RoadNetwork, *, may_skid: bool = False, sides: Sequence[Sides] = ()
+    behavior: BehaviorSpec, network: RoadNetwork, version: Version = DEFAULT_VERSION, may: May = _NOTHING_MORE
 ) -> Scenario:
-    """Plan the behavior's motions on the network and write them. Raises InvalidOutput.
+    """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say. `may_skid`: the report tells that somebody lost control. `sides`: of striker and struck,
-    what the report allows as well as the declared ones, likeliest first.
+    for the validators to say.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    behavior, planned = _planned(behavior, parse_net(network.net_xml), may_skid, sides)
+    behavior, planned = _planned(behavior, parse_net(network.net_xml), may)
     actors = actor_infos(behavior)
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior),
+        xosc=write_xosc(actors, planned.trajectories, behavior, version=version),
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
@@ -43,17 +54,15 @@ def compile_scenario(
     )
 
 
-def _planned(
-    behavior: BehaviorSpec, graph: LaneGraph, may_skid: bool, sides: Sequence[Sides]
-) -> tuple[BehaviorSpec, Plan]:
+def _planned(behavior: BehaviorSpec, graph: LaneGraph, may: May) -> tuple[BehaviorSpec, Plan]:
     """The plan of a behavior; with other sides of the first contact where only those meet in ordinary driving."""
     told = behavior
-    best = plan(behavior, graph, may_skid=may_skid)
-    for pair in sides if behavior.contacts else ():
+    best = plan(behavior, graph, may_skid=may.skid)
+    for pair in may.sides if behavior.contacts else ():
         if best.realised and best.oddity < ODD:
             break
         changed = _with_sides(told, pair)
-        found = plan(changed, graph, may_skid=may_skid)
+        found = plan(changed, graph, may_skid=may.skid)
         if found.realised and (not best.realised or found.oddity < best.oddity - ODD / 2):
             note = f"sides as told do not meet in ordinary driving: {pair[0]} and {pair[1]}, which it allows, stand in"
             best, behavior = found.model_copy(update={"notes": (note, *found.notes)}), changed

@@ -6,14 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.formats.opendrive.check import RoadIndex, lane_index
+from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.roads import XodrRoads
 from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.geometry.distances import distance_to
-from sgcad_core.geometry.plane import arc_lengths, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
 from sgcad_core.records import Finding
 
 TOLERANCE_M = 0.5
+UNEVEN_M = 8.0
+"""SUMO cuts the lanes of a road one by one, OpenDRIVE all at one station: the connecting road covers the rest."""
 MAX_EDGES = 12
 """Edges whose lanes are compared; evenly taken from all."""
 _REMEDY = "write both files in one run of netconvert"
@@ -29,33 +31,32 @@ def network_disagreements(graph: LaneGraph, xodr: str) -> list[Finding]:
 
 
 def _unmatched(graph: LaneGraph, index: RoadIndex) -> Iterator[Finding]:
-    roads = {road.edge for road in index.roads.values() if road.edge and not road.edge.startswith(":")}
-    for missing, what in ((set(graph.edges) - roads, "edges without road in the .xodr"),
-                          (roads - set(graph.edges), "roads without edge in the net.xml")):  # fmt: skip
+    for missing, what in ((set(graph.edges) - index.edges, "edges without road in the .xodr"),
+                          (index.edges - set(graph.edges), "roads without edge in the net.xml")):  # fmt: skip
         if missing:
-            yield _finding(what, ", ".join(sorted(map(str, missing))[:10]))
+            yield _finding(what, ", ".join(sorted(missing)[:10]))
 
 
 def _apart(graph: LaneGraph, index: RoadIndex, roads: XodrRoads) -> Iterator[Finding]:
     edges = list(graph.edges.values())
     for edge in edges[:: max(1, -(-len(edges) // MAX_EDGES))]:
-        road = index.by_edge(edge.id)
-        if road is None:
+        if edge.id not in index.edges:
             continue
-        lanes = {lane.index - len(edge.lanes): lane for lane in edge.lanes}  # SUMO counts from the right, from 0
-        ids = {i for _, section in road.sections for i in section}
-        if ids != set(lanes):
-            yield _finding(f"edge {edge.id!r} and road {road.id!r} have other lanes", f"{sorted(lanes)}, {sorted(ids)}")
-            continue
-        yield from _lanes_apart(edge, lanes, road.id, roads)
+        places = [index.lane(edge.id, lane.index) for lane in edge.lanes]
+        if missing := [lane.id for lane, place in zip(edge.lanes, places, strict=True) if place is None]:
+            yield _finding(f"lanes of edge {edge.id!r} are not in the .xodr", ", ".join(missing))
+        for lane, place in zip(edge.lanes, places, strict=True):
+            if place is not None:
+                yield from _lane_apart(edge, lane, roads.lane_center(place.road, place.lane))
 
 
-def _lanes_apart(edge: Edge, lanes: dict[int, Lane], road: str, roads: XodrRoads) -> Iterator[Finding]:
-    for number, lane in lanes.items():
-        probes = resample(lane.shape, np.linspace(0.0, arc_lengths(lane.shape)[-1], 5))
-        away = distance_to(roads.lane_center(road, number), probes).max()
-        if away > TOLERANCE_M:
-            yield _finding(f"lane {lane.index} of edge {edge.id!r} lies elsewhere in the .xodr", f"{away:.2f} m apart")
+def _lane_apart(edge: Edge, lane: Lane, center: Floats) -> Iterator[Finding]:
+    probes = resample(lane.shape, np.linspace(0.0, arc_lengths(lane.shape)[-1], 5))
+    away = float(distance_to(prolonged(center, UNEVEN_M), probes).max())
+    backwards = bool((lane.shape[-1] - lane.shape[0]) @ (center[-1] - center[0]) < 0)
+    if away > TOLERANCE_M or backwards:
+        said = "runs the other way" if backwards else f"{away:.2f} m apart"
+        yield _finding(f"lane {lane.index} of edge {edge.id!r} lies elsewhere in the .xodr", said)
 
 
 def _finding(what: str, value: str) -> Finding:

@@ -132,6 +132,26 @@ def offset_polyline(points: Floats, left_m: ArrayLike) -> Floats:
     return moved
 
 
+def parallel_polyline(points: Floats, left_m: float) -> Floats:
+    """(n, 2) polyline whose segments run parallel to those of another, `left_m` metres to their left (mitered)."""
+    steps = np.diff(points, axis=0)
+    normals = np.column_stack((-steps[:, 1], steps[:, 0])) / np.hypot(*steps.T)[:, None]
+    before, behind = np.vstack((normals[:1], normals)), np.vstack((normals, normals[-1:]))
+    along = 1 + (before * behind).sum(axis=1)
+    moved: Floats = points + left_m * (before + behind) / np.maximum(along, 0.1)[:, None]
+    return moved
+
+
+def prolonged(points: Floats, by_m: float) -> Floats:
+    """(m + 2, 2) polyline that goes on straight at both ends, `by_m` metres; points within 1 mm of the last one go."""
+    kept = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
+    points = points[kept] if kept.sum() > 1 else points[[0, -1]]
+    first, last = points[0] - points[1], points[-1] - points[-2]
+    ahead, behind = (step / max(float(np.hypot(*step)), 1e-12) * by_m for step in (first, last))
+    longer: Floats = np.vstack((points[0] + ahead, points, points[-1] + behind))
+    return longer
+
+
 # ------------------------------------------------------------------ many boxes at once
 SIDES = ("front", "left", "back", "right")
 """Names of the side codes 0 to 3, counter-clockwise from the front."""

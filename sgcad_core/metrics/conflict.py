@@ -31,7 +31,7 @@ class Encroachment(NamedTuple):
     """A post-encroachment time and why it is what it is."""
 
     seconds: float | None
-    reason: Literal["measured", "overlap", "no common area"]
+    reason: Literal["measured", "overlap", "no common area", "ego never leaves", "other there from the start"]
 
 
 # ------------------------------------------------------------------ distance
@@ -141,11 +141,20 @@ def _conflict_area(first: Track, second: Track) -> tuple[tuple[Floats, Floats], 
 
 
 def post_encroachment_time_paper(ego: Track, other: Track) -> Encroachment:
-    """|t_ego_exit - t_other_entry| of the area that both sweep, s."""
+    """|t_ego_exit - t_other_entry| of the area that both sweep, s.
+
+    Only where both happen: an ego that stands in the area when the clock stops has not left it, and an other that
+    stands there when it starts has not come to it; the formula would then measure the clock.
+    """
     area = _conflict_area(ego, other)
     if area is None:
         return Encroachment(None, "no common area")
-    return Encroachment(float(abs(area[0][1].max() - area[1][0].min())), "measured")
+    exit_s, entry_s = float(area[0][1].max()), float(area[1][0].min())
+    if exit_s >= ego.t_s[-1]:
+        return Encroachment(None, "ego never leaves")
+    if entry_s <= other.t_s[0]:
+        return Encroachment(None, "other there from the start")
+    return Encroachment(abs(exit_s - entry_s), "measured")
 
 
 def post_encroachment_time(first: Track, second: Track) -> Encroachment:

@@ -15,7 +15,7 @@ import numpy as np
 from sgcad_core.metrics import conflict, criticality, displacement
 from sgcad_core.metrics.conflict import Encroachment, Track
 from sgcad_core.metrics.thresholds import Thresholds
-from sgcad_core.records import Execution, Scenario, Trajectory
+from sgcad_core.records import Execution, Floats, Scenario, Trajectory
 
 
 def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | None = None) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | N
 
 def _ego(tracks: dict[str, Track]) -> str | None:
     """V1, else the first vehicle, else the first actor."""
-    vehicles = sorted((a for a in tracks if a.startswith("V")), key=lambda a: int(a[1:]))
+    vehicles = sorted((a for a in tracks if a[0:1] == "V" and a[1:].isdecimal()), key=lambda a: int(a[1:]))
     return next(iter([*vehicles, *sorted(tracks)]), None)
 
 
@@ -99,14 +99,23 @@ def _counts(a: Track, b: Track) -> bool:
 
 
 def _impact_speed(pairs: list[tuple[Track, Track]]) -> float | None:
-    """Relative speed at the instance before the first overlap of any pair, m/s."""
+    """Relative speed over the step that ends in the first overlap of any pair, m/s.
+
+    From positions, backwards: velocities are central differences, and what the contact does must not be in it.
+    """
     first: tuple[float, float] | None = None
     for a, b in pairs:
         hit = np.flatnonzero(conflict.overlaps(a, b))
         if hit.size and (first is None or a.t_s[hit[0]] < first[0]):
-            k = max(int(hit[0]) - 2, 0)  # velocities are central differences: two back, the contact is not in them
-            first = float(a.t_s[hit[0]]), float(np.hypot(*(a.velocity[k] - b.velocity[k])))
+            first = float(a.t_s[hit[0]]), float(np.hypot(*(_arriving(a, int(hit[0])) - _arriving(b, int(hit[0])))))
     return first[1] if first else None
+
+
+def _arriving(track: Track, k: int) -> Floats:
+    """(2,) velocity over the step that ends in instance k; of the first step for k = 0."""
+    k = max(k, 1)
+    step: Floats = (track.pose[k, :2] - track.pose[k - 1, :2]) / (track.t_s[k] - track.t_s[k - 1])
+    return step
 
 
 def _finite(value: float) -> float | None:
@@ -120,4 +129,6 @@ def _least(values: list[Any]) -> float | None:
 def _soonest(values: list[Encroachment]) -> Encroachment:
     """The pair with the least time; a pair without a common area has none."""
     timed = [v for v in values if v.seconds is not None]
-    return min(timed, key=lambda v: v.seconds or 0.0) if timed else Encroachment(None, "no common area")
+    if timed:
+        return min(timed, key=lambda v: v.seconds or 0.0)
+    return next((v for v in values if v.reason != "no common area"), Encroachment(None, "no common area"))

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.roles import role_of
 from sgcad_core.narrative.text import Role, Sentence
 from sgcad_core.narrative.vehicles import MENTION, Roster
@@ -37,74 +38,15 @@ class Told(NamedTuple):
     """Whether "they" at its start means all vehicles, not the driver of one."""
 
 
-_LIST = r"V\d+(?:(?:, (?:and )?| and | & )V\d+)+"
-_BOTH = r"\b(?:both|all(?: \w+)?|the two|these|the three|the) (?:of the )?(?:vehicles|drivers|cars)\b|"
-_BOTH += r"\bboth (?=were|are|had)"
-_STRANGER = (
-    r"\b(?:an?|another|some|several|unknown|uninvolved|non-?contact|other|the (?:unknown|uninvolved|"
-    r"non-?contact|lead|other)) "
-    r"(?:(?!(?:of|and|was|in|to|for|by|with|the)\b)[\w-]+ ){0,3}?(?:vehicle|car|truck|bus|van|suv|pickup|motorist|"
-    r"driver|pedestrian|animal|deer|traffic)s?\b"
-    r"(?: (?:directly |stopped |also )?(?:ahead|in front|behind)(?: of (?:it|him|her|them|V\d+))?)?|"
-    r"\b(?:the|a) (?:vehicle|car|truck|traffic|driver) (?:directly |immediately )?(?:ahead|in front|behind)(?: of "
-    r"(?:it|him|her|them|V\d+))?"
-)
-_SUBJECT = re.compile(
-    rf"(?P<both>{_BOTH})|(?P<stranger>{_STRANGER})|(?P<list>{_LIST})(?:'s?)?(?: (?:drivers|vehicles))?|"
-    rf"(?P<one>V\d+)(?P<owner>'s (?:driver|"
-    rf"operator))?(?!')", re.I)  # fmt: skip
-_VERB = re.compile(
-    r"\s*,\s*(?:after|while|when|upon|having|being|without|trying|in an|for an?|due|also|apparently|not|failing|"
-    r"once|as)\b|"
-    r"\s*(?:,\s*)?(?:\([^)]*\)\s*)?(?:(?:which|that|who|and)\s+)?(?:(?:then|also|both|each|all|initially|"
-    r"suddenly|apparently|just|still|"
-    r"never|now|first|had|has|was|were|is|are|being|been|not|had|did|does|may|might|could|would|should|\w+ly)\s+)*"
-    r"(?:[\w-]+(?:ed|ing|s)\b|driven|was|were|is|are|had|did|went|ran|came|comes|made|began|begun|lost|drove|left|"
-    r"swung|"
-    r"slid|spun|fell|took|"
-    r"saw|struck|hit|cut|put|set|got|sped|shot|swept|stuck|could|would|may|might|north\w*|south\w*|east\w*|"
-    r"west\w*|behind|ahead)\b", re.I)  # fmt: skip
-_PARTICIPLE = re.compile(
-    r"\s*(?:,\s*)?(?:(?:which|that|who)\s+\w+|(?:already|still|just|also|suddenly)?\s*(?:traveling|turning|"
-    r"stopped|stopping|crossing|making|parked|"
-    r"waiting|coming|approaching|entering|exiting|slowing|pulling out|attempting|pulling|towing|moving|facing|"
-    r"heading|going|"
-    r"driving|proceeding|"
-    r"changing|backing|merging|turned|turns|turn|pull|pulled|was|were|had|is|began|begin|entered|enter|slow|"
-    r"slowed|stop|"
-    r"come|came|cross|crossed|proceed|proceeded|move|moved|did|north\w*|south\w*|east\w*|west\w*)\b)",
-    re.I)  # fmt: skip
-_PREPOSITION = re.compile(
-    r"(?:\b(?:of|by|to|with|behind|from|into|onto|for|against|over|under|underneath|across|through|toward|towards|"
-    r"between|than|past|around|at|on|"
-    r"in|before|ahead of|"
-    r"struck|hit|hits|strikes|saw|see|seen|noticed|observed|avoid|avoided|avoiding|striking|hitting|impacted|"
-    r"impacting|contacted|"
-    r"contacting|allow|allowed|following|passing|pass|passed|overtaking|rear-ended|approaching|approached|caused|"
-    r"causing|cause|"
-    r"pushing|pushed|push|watched|let|waved|near|beside|realized|clear|cleared|toward|via|upon|sideswiped|"
-    r"clipped|the|a|an|this|"
-    r"signaled|believed|thought|stated|that|spotted|not see)\s*)$", re.I)  # fmt: skip
-_ASIDE = re.compile(r"^\s*,\s*(?:an?|the|aged?|who (?:was|is))\b[^,;.]{0,70},", re.I)
-_BESIDE = re.compile(
-    r"\b(?:ahead of|in front of|behind|beside|next to|alongside|past|following|passing|"
-    r"overtaking)\s*$",
-    re.I,
-)
-_REPORTS = re.compile(r"\b(?:that|saw|see|noticed|observed|believed|thought|stated|realized|spotted|watched)\s*$", re.I)
-_DRIVER_OF = re.compile(
-    r"\b(?:driver|operator|driver's side|front|rear|side|left|right|corner|end|bumper|half|"
-    r"portion)s? (?:\w+ )?of\s*$",
-    re.I,
-)
-_PRONOUN = re.compile(
-    r"^(?:(?:however|then|next|as|when|while|after|once|before|at (?:that|this) (?:time|point)),?\s+)?"
-    r"(?:it(?! (?:was|is|had) (?:\w+ )?(?:day\w*|dark|dusk|dawn|rain\w*|snow\w*|clear|cloudy|the|a|an|possible|"
-    r"\w*believed|thought|known|"
-    r"unknown|noted|not known|likely|determined))|he|she|they|this vehicle|"
-    r"the (?:driver|vehicle|operator|car|truck|van|bus|motorcycle)|this driver|his|her|their|its)\b"
-    r"(?! (?:of|should)\b)",
-    re.I)  # fmt: skip
+_SUBJECT = rule("clauses.subject")
+_VERB = rule("clauses.verb")
+_PARTICIPLE = rule("clauses.participle")
+_PREPOSITION = rule("clauses.preposition")
+_ASIDE = rule("clauses.aside")
+_BESIDE = rule("clauses.beside")
+_REPORTS = rule("clauses.reports")
+_DRIVER_OF = rule("clauses.driver_of")
+_PRONOUN = rule("clauses.pronoun")
 
 
 def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
@@ -116,7 +58,7 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        current = _main_subject(text, current, role)
+        current = _main_subject(text, current, role, who)
         told.append(Told(text, role, s.number, current, several))
         several = _of_several(text, several)
     return tuple(told)
@@ -126,33 +68,27 @@ def _of_several(text: str, before: bool) -> bool:
     """Whether a following "they" means several vehicles: the last subject was all, a list, or nobody."""
     if _PRONOUN.match(text):
         return before
-    if re.search(_BOTH, text, re.I) or re.search(_LIST, text):
+    if rule("clauses.everybody").search(text) or rule("clauses.list").search(text):
         return True
     return before and not MENTION.search(text)
 
 
 def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
     """ "the other vehicle" as a number, where two vehicles leave no doubt."""
-    subject = next(iter(MENTION.findall(text)), None) or current
+    subject = next((v for v in MENTION.findall(text) if v in who.ids), None) or current
     other = who.other(subject) if subject else None
     if other:
-        text = re.sub(
-            r"\b(?:the|an) (?:other|oncoming|opposing|approaching) (?:vehicle|car|driver|truck)\b(?!s)",
-            other,
-            text,
-            flags=re.I,
-        )
+        text = rule("clauses.other_vehicle").sub(other, text)
     if current and role not in ("codes", "factors"):
-        pattern = r"\b(?:this vehicle|this driver)\b(?! (?:travel|turn|going|cross|over|off|driver))"
-        text = re.sub(pattern, current, text, flags=re.I)
+        text = rule("clauses.this_vehicle").sub(current, text)
     return text
 
 
-def _main_subject(text: str, current: str | None, role: Role) -> str | None:
-    """The vehicle that a pronoun in the next sentence means."""
+def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> str | None:
+    """The vehicle that a pronoun in the next sentence means; a number that is no vehicle's is nobody's."""
     if _PRONOUN.match(text) and current:
         return current
-    first = MENTION.search(text)
+    first = next((m for m in MENTION.finditer(text) if m[0] in who.ids), None)
     if not first:
         return current
     opening = text[: first.start()]
@@ -184,7 +120,7 @@ def subject_starts(told: Told, who: Roster) -> list[tuple[int, int, tuple[str, .
     starts: list[tuple[int, int, tuple[str, ...]]] = []
     pronoun = _PRONOUN.match(text)
     if pronoun and told.subject:
-        everyone = len(who.ids) == 2 and re.search(r"\bthey\b", pronoun.group(), re.I) and _means_all(told, pronoun)
+        everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
         starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
     for m in _SUBJECT.finditer(text):
         subjects = _whom(m, who)
@@ -194,7 +130,7 @@ def subject_starts(told: Told, who: Roster) -> list[tuple[int, int, tuple[str, .
 
 
 def _means_all(told: Told, pronoun: re.Match[str]) -> bool:
-    return told.several or bool(re.match(r" (?:were |are |had )?(?:both|each)\b", told.text[pronoun.end() :], re.I))
+    return told.several or bool(rule("clauses.both_behind").match(told.text[pronoun.end() :]))
 
 
 def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
@@ -211,7 +147,7 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
     if _DRIVER_OF.search(before):
         return bool(_VERB.match(behind))
     if _BESIDE.search(before):
-        return bool(re.match(r"\s*,?\s*(?:which|that|who)\b", behind))
+        return bool(rule("clauses.relative").match(behind))
     if _PREPOSITION.search(before):
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))

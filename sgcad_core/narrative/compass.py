@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import get_args
 
+from sgcad_core.language import rule, values
 from sgcad_core.specs import Compass
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
-WORDS: dict[str, Compass] = {
-    "north": "N", "northeast": "NE", "east": "E", "southeast": "SE", "south": "S", "southwest": "SW", "west": "W",
-    "northwest": "NW",
-}  # fmt: skip
-DIRECTION = r"(?:north|south)(?:east|west)?|east|west"
-"""Pattern of a direction word without its ending."""
+WORDS: dict[str, Compass] = values("compass")
+NAMES: dict[Compass, str] = {point: word for word, point in WORDS.items()}
+AXIS_NAMES: dict[Compass, str] = {axis: name for name, axis in values("axis").items()}
+"""Axis -> how a message calls it, its first end first."""
 
 
 def compass_of(word: str) -> Compass | None:
     """ "northbound", "north", "northerly" -> "N"; None if it is no direction."""
-    match = re.match(rf"({DIRECTION})(?:bound|erly|ern|ward)?s?$", word.lower())
+    match = rule("compass.direction").match(word.lower())
     return WORDS[match.group(1)] if match else None
 
 

@@ -10,12 +10,14 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Told, subject_starts
 from sgcad_core.narrative.contact_nouns import Touch, paired_areas, struck_pair, together, touches
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
-from sgcad_core.narrative.zones import AREA, Zone, area_of, plain
+from sgcad_core.narrative.zones import Zone, area_of, plain
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,13 @@ class Blow:
     words: str = ""
     mutual: bool = False
     """They collided: the text names no striker."""
+    noun: bool = False
+    """Told by nouns ("the impact was between ..."), not by a verb of hitting."""
+
+    @property
+    def cue(self) -> Cue:
+        """Where it was read."""
+        return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
 
 
 def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
@@ -71,8 +80,8 @@ def _sentence(told: Told, who: Roster) -> list[Blow]:
 
 def _touch(t: Touch, told: Told) -> Blow:
     if t.by:
-        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words)
-    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words)
+        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
+    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
 
 
 def _maybe(words: str | None) -> Zone | None:
@@ -83,7 +92,7 @@ def _blow(
     told: Told, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
 ) -> Blow | None:
     before, behind = text[: m.start()], text[m.end() :]
-    passive = bool(says.PASSIVE.search(before)) and not re.match(r"(?:made|making|came)", m.group(), re.I)
+    passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
     if (says.NEAR_MISS.search(before) and not says.TO_HIT.search(before)) or _is_noun(before, m.group(), behind):
         return None
     nxt = HIT.search(behind)
@@ -117,14 +126,7 @@ def _is_noun(before: str, word: str, behind: str) -> bool:
     nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
     if word.lower() not in nouns or says.CAUSED.search(before):
         return False
-    return bool(
-        re.search(
-            r"\b(?:the|an?|of|at|to|on|upon|after|first|second|this|initial|prior|no|from|point of|"
-            r"before|for|frontal|rear|side|secondary|minor)\s*$",
-            before,
-            re.I,
-        )
-    )
+    return bool(rule("contact.noun_before").search(before))
 
 
 def _subjects(
@@ -145,12 +147,8 @@ def _subjects(
 
 def _subject_area(before: str, subject: str) -> Zone | None:
     """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
-    found = list(re.finditer(rf"(?:\b(?P<area>{AREA})\s+(?:of|on)\s+(?:the )?)?\b{subject}\b", before, re.I))
-    if (
-        found
-        and found[-1]["area"]
-        and not re.search(r"\b(?:in|into|along|toward) the (?:\w+ )?$", before[: found[-1].start("area")])
-    ):
+    found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
+    if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
     return None
 
@@ -164,7 +162,7 @@ def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, wh
     other, other_area = _object(told, actor, rest, who)
     if other is None:
         return None
-    if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
+    if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "front", other_area or "back"
     if pair and area is None:
         area, other_area = pair
@@ -187,14 +185,14 @@ def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None
         return _not_itself(m["v"], actor, who), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
-    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or re.match(r"\W*$", scope):
+    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
         only = says.THE_AREA.match(scope)
         return _the_other(told, actor, who), _maybe(only["area"]) if only else _area_behind(scope) or _damaged(
             told, who
         )
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
-        named = re.search(rf"\b(?P<area>{AREA}) of (?:the )?{late.group()}", scope, re.I)
+        named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
     return None, None
 
@@ -217,26 +215,24 @@ def _not_itself(named: str, actor: str, who: Roster) -> str | None:
 
 def _area_behind(text: str) -> Zone | None:
     """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
-    near = re.split(r"\blane|\bof V\d", _clause(text)[:80])[0]
-    areas = [
-        area_of(m["area"]) for m in re.finditer(rf"\b(?:the |its |his |her |their )(?P<area>{AREA})\b", near, re.I)
-    ]
+    near = rule("contact.area_ends").split(_clause(text)[:80])[0]
+    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
     return next(filter(None, areas), None) if says.ON_THE.search(near) else None
 
 
 def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
     by = says.BY.search(scope)
-    where = says.ON_THE.search(scope[: by.start()] if by else scope) or re.match(rf"^\W*(?P<area>{AREA})\b", scope)
+    where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
     area = area or (area_of(where["area"]) if where else None)
-    if not by and re.search(r"\bby (?:an?|another|the)\b", scope) and who.other(actor) is None:
+    if not by and rule("contact.by_somebody").search(scope) and who.other(actor) is None:
         return None
     other = by["v"] if by else who.other(actor)
-    if by and re.search(r"\bby (?:an?|another) (?!V\d)", scope[: by.start()]):
+    if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
     other_area = _maybe(by["area"]) if by else _by_area(scope)
     own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
     other_area = other_area or (area_of(own["area"]) if own else None)
-    if re.match(r"rear-end", verb, re.I) or re.search(r"\bfrom (?:behind|the rear)\b", scope):
+    if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "back", other_area or "front"
     if other is None:
         return None
@@ -247,7 +243,7 @@ def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, w
 
 
 def _by_area(scope: str) -> Zone | None:
-    m = re.search(rf"\bby (?:the |its )?(?P<area>{AREA})\b", scope, re.I)
+    m = rule("contact.by_area").search(scope)
     return area_of(m["area"]) if m else None
 
 
@@ -263,7 +259,7 @@ def _mutual(told: Told, subjects: tuple[str, ...], verb: str, before: str, scope
     if not pair:
         both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
         first = second = area_of(both["area"]) if both else None
-    if re.search(r"\bhead-on\b", scope):
+    if rule("contact.head_on").search(scope):
         first = second = "front"
     return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
 

@@ -6,12 +6,12 @@ Also the area pairs that stand behind a verb ("front to left side"). Reads sente
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
-from sgcad_core.narrative.zones import AREA, Zone, area_of
+from sgcad_core.narrative.zones import Zone, area_of
 
 
 class Touch(NamedTuple):
@@ -25,28 +25,11 @@ class Touch(NamedTuple):
     by: bool = False
 
 
-_BLOW = r"(?:impacts?|contacts?|collisions?|crash|hits?|blows?)"
-
-
-def _ends(join: str) -> str:
-    """ "front of V1 <join> the left side of V2" as a pattern."""
-    return rf"(?P<a1>{AREA}) of (?P<v1>V\d+),? {join} (?:to )?(?:the )?(?P<a2>{AREA}) of (?P<v2>V\d+)"
-
-
-_NAMED = re.compile(
-    rf"\b{_BLOW}\b[^.;]{{0,40}}?\b(?:was|is|were|involv\w+|occurred|being)\W+(?:(?:made|from|to|with|by) )?(?:the )?"
-    + _ends("(?:and|to|with|against|into|striking|contacting|on)"), re.I)  # fmt: skip
-_TOOK = re.compile(
-    rf"\b(?P<v1>V\d+) (?:then |also )?(?:receiv\w+|sustain\w+|suffer\w+|absorb\w+|took an?) "
-    rf"(?:(?:an?|the) )?(?P<how>(?:[\w-]+ ){{0,3}}?){_BLOW}\b(?:,? (?:to|on|in|along|at) (?:the |its |his |her )?"
-    rf"(?P<a1>{AREA}))?(?: of V\d+)?,? (?:from|by) (?:the )?(?:(?P<a2>{AREA}) of (?:the )?)?(?P<v2>V\d+)",
-    re.I)  # fmt: skip
-_CAUSED = re.compile(
-    rf"\b(?:caus\w+|result\w+ in|allow\w+) (?:the )?(?P<a1>{AREA}) of (?P<v1>V\d+) to (?:contact|impact|hit|strike|"
-    rf"make contact with|collide with) (?:the )?(?P<a2>{AREA}) of (?P<v2>V\d+)", re.I)  # fmt: skip
-_TOGETHER = re.compile(
-    r"\b" + _ends("(?:was (?:driven |forced |pushed )?)?(?:to|against|into|in contact with)"), re.I)  # fmt: skip
-_NOTHING = re.compile(r"\b(?:no|not|never|without|avoid\w*|prevent\w*)\b[^,;.]{0,30}$", re.I)
+_NAMED = rule("contact_nouns.named")
+_TOOK = rule("contact_nouns.took")
+_CAUSED = rule("contact_nouns.caused")
+_TOGETHER = rule("contact_nouns.together")
+_NOTHING = rule("contact_nouns.nothing")
 
 
 def touches(text: str) -> Iterator[Touch]:
@@ -75,7 +58,7 @@ def _maybe(words: str | None) -> Zone | None:
 
 def paired_areas(scope: str) -> tuple[Zone | None, Zone | None] | None:
     """Both areas of "front to left side" and of "head-on", the subject's first."""
-    if re.match(r"[^,.;]{0,40}\bhead-on\b(?! lane)", scope):
+    if rule("contact_nouns.head_on").match(scope):
         return "front", "front"
     pair = says.PAIRED.search(scope)
     if not pair or pair.start() > 60 or "with" in pair.group():

@@ -11,85 +11,58 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
+from sgcad_core.language import Rule, rule
 from sgcad_core.narrative.clauses import Told
-from sgcad_core.narrative.compass import DIRECTION, compass_of, turned
+from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_in, axis_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
 
 Control = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 
-_SIGNAL = re.compile(
-    r"\btraffic[ -](?:control[ -])?(?:signal|light)s?\b|\bstop ?lights?\b|\bsignali[sz]ed\b|\bsignal(?:led|"
-    r"ed)? intersection|"
-    r"\b(?:signal|traffic light|light)[ -]controlled|\b(?:red|green|yellow|amber)(?: \w+){0,2} (?:light|signal|arrow|"
-    r"phase)\b(?! lines?)|"
-    r"\b(?:the|a|his|her|their|its|control) (?:light|signal) (?:was|is|turned|changed|had|at|ahead|to (?:turn|change))|"
-    r"\btri-?light|\bfor (?:the|a) (?:light|signal)\b|"
-    r"\b(?:ran|run|running|on|against|had|has|having) (?:the|a) (?:red|green|yellow)\b|\bred (?:light|signal)|"
-    r"\bcontrol signals?\b|"
-    r"\bsignals? controls?\b|\bpost \w* ?signal|"
-    r"\b(?:approach\w*|stop\w* (?:at|for)) (?:the|a) (?:light|signal)\b", re.I)  # fmt: skip
-_SIGNAL_OUT = re.compile(
-    r"\b(?:signal|light)s?\b[^.;]{0,40}\b(?:not (?:function\w*|work\w*|operat\w*)|inoperative|out of (?:order|"
-    r"service)|dark\b)",
-    re.I,
-)
-_NOT_SIGNAL = re.compile(
-    r"\b(?:no|without|nor|not (?:any|have)|uncontrolled|were no|was no)\b(?: \w+){0,6}? (?:signals?|lights?|"
-    r"controls?|devices?|signs?)\b(?:,? (?:or|and|nor)(?: \w+){0,3} (?:signals?|signs?|lights?|devices?))*|"
-    r"\b(?:brake|tail|head|street|turn|dome|overhead|flashing|emergency|artificial|natural|turn) ?-?(?:signal|"
-    r"light)s?|\bturn signal\w*|\bday ?light|"
-    r"\bsignals? (?:not|absent)|\bunsignali[sz]ed", re.I)  # fmt: skip
-_STOP = re.compile(
-    r"\bstop[ -]signs?\b|\bstop[ -](?:controlled|sign-controlled)|\ball-way stop|\b(?:four|three|two)-way stop", re.I
-)
-_ALL_STOP = re.compile(
-    r"\b(?:four|4|all|three|3)[ -]way stop|\bstop signs? (?:in|for|on|at) (?:all|each|every)|"
-    r"\ball(?: \w+)? (?:directions|approaches|traffic)[^.;]{0,30}stop sign",
-    re.I,
-)
-_YIELD = re.compile(r"\byield(?: right[ -]of[ -]way)? signs?\b", re.I)
-_FLASHING = re.compile(
-    r"\b(?:flashing|blinking)(?: \w+){0,3} (?:lights?|signals?|beacons?|yellow|red|amber)|\b(?:flashing|"
-    r"blinking) (?:red|yellow|amber)|\bbeacon\b",
-    re.I,
-)
-_NOT_CONTROL = re.compile(
-    r"\b(?:no|without|not|were no|lack\w*|absence)\b[^.;,]{0,40}?(?:stop signs?|signs?|yield)", re.I
-)
-_CONSTRUCTION = re.compile(
-    r"\bconstruction|\bwork zone|\bflag(?:ger|man)|school bus\b.{0,40}flashing|police (?:car|vehicle)|"
-    r"overhead lights",
-    re.I,
-)
+_SIGNAL = rule("control.signal")
+_SIGNAL_OUT = rule("control.signal_out")
+_NOT_SIGNAL = rule("control.not_signal")
+_STOP = rule("control.stop")
+_ALL_STOP = rule("control.all_stop")
+_YIELD = rule("control.yield")
+_FLASHING = rule("control.flashing")
+_NOT_CONTROL = rule("control.not_control")
+_CONSTRUCTION = rule("control.construction")
 
 
-def control_of(told: Sequence[Told]) -> Control:
-    """Signal, stop, yield or flashing: the crash's sentences first, then what drivers said."""
+_CONTROLS: tuple[tuple[Control, Rule], ...] = (
+    ("all_way_stop", _ALL_STOP), ("flashing", _FLASHING), ("signal", _SIGNAL), ("stop", _STOP), ("yield", _YIELD),
+)  # fmt: skip
+"""The first that any sentence tells stands."""
+_ANYWHERE = ("all_way_stop", "yield")
+"""Told of no works zone and no police car."""
+
+
+def control_of(told: Sequence[Told]) -> tuple[Control, Cue | None]:
+    """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
     said = [t for t in told if t.role not in ("codes", "factors")]
     for story in (True, False):
-        texts = [t.text for t in said if (t.role in CRASH_ROLES or t.role == "other") == story]
-        bare = [_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", text)) for text in texts]
-        found = _first_control(texts, bare)
-        if found != "none":
+        found = _first_control([t for t in said if (t.role in CRASH_ROLES or t.role == "other") == story])
+        if found:
             return found
-    return "none"
+    return "none", None
 
 
-def _first_control(texts: Sequence[str], bare: Sequence[str]) -> Control:
-    out = any(_SIGNAL_OUT.search(text) for text in texts)
-    if any(_ALL_STOP.search(text) for text in bare):
-        return "all_way_stop"
-    if any(_FLASHING.search(text) and not _CONSTRUCTION.search(text) for text in texts):
-        return "flashing"
-    if not out and any(_SIGNAL.search(text) and not _CONSTRUCTION.search(text) for text in bare):
-        return "signal"
-    if any(_STOP.search(text) and not _CONSTRUCTION.search(text) for text in bare):
-        return "stop"
-    return "yield" if any(_YIELD.search(text) for text in bare) else "none"
+def _first_control(said: Sequence[Told]) -> tuple[Control, Cue] | None:
+    out = any(_SIGNAL_OUT.search(t.text) for t in said)
+    bare = [t._replace(text=_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))) for t in said]
+    for control, by in _CONTROLS:
+        if control == "signal" and out:
+            continue
+        for t in said if control == "flashing" else bare:
+            match = by.search(t.text)
+            if match and (control in _ANYWHERE or not _CONSTRUCTION.search(t.text)):
+                return control, Cue(t.number, match[0], by.id)
+    return None
 
 
 def controlled(story: Sequence[Told]) -> bool:
@@ -102,20 +75,11 @@ def controlled(story: Sequence[Told]) -> bool:
 
 
 # ------------------------------------------------------------------ which legs
-_SIGN = re.compile(r"\bstop[ -]signs?|\byield signs?|\bstop[ -]controlled|\bflashing red", re.I)
-_WAY = re.compile(rf"\b(?P<way>(?:{DIRECTION})(?:bound)?)\b", re.I)
-_FOR = re.compile(
-    rf"^(?:[\w ]{{0,30}}?\b(?:for|on|facing|in|regulating|controlling|"
-    rf"controls?)\b)(?P<whom>[^.;]{{0,40}}?\b(?:{DIRECTION})(?:bound)?\b"
-    rf"(?:(?:[ ,/]|and|or|the)*(?:{DIRECTION})(?:bound)?\b)*)", re.I)  # fmt: skip
-_SUBJECT = re.compile(
-    rf"\b(?P<whom>(?:{DIRECTION})(?:bound)?(?:(?:[ ,/-]|and|or)*(?:{DIRECTION})(?:bound)?)?)\b"
-    r"(?=[^.;]{0,90}$)(?! (?:lanes? )?of (?:a|an|the)\b)", re.I)  # fmt: skip
-_SIDE_ROAD = re.compile(
-    r"\b(?:side|intersecting|minor|secondary|crossing|cross|one[ -]way|terminating|"
-    r"residential)[ -](?:\w+ )?(?:street|road\w*|traffic)",
-    re.I,
-)
+_SIGN = rule("control.sign")
+_WAY = rule("control.way")
+_FOR = rule("control.for")
+_SUBJECT = rule("control.subject")
+_SIDE_ROAD = rule("control.side_road")
 
 
 def signed_legs(
@@ -154,8 +118,8 @@ def _legs_of_sign(
     whom = _FOR.match(behind)
     if whom:
         return _legs_of_words(whom["whom"])
-    clause = re.split(r"[;:]|\b(?:while|however|but)\b", before)[-1]
-    owner = [m for v in vehicles for m in re.finditer(rf"\b{v.id}\b", clause)]
+    clause = rule("control.contrast").split(before)[-1]
+    owner = [m for v in vehicles for m in rule("common.named_vehicle").given(vehicle=v.id).finditer(clause)]
     subjects = list(_SUBJECT.finditer(clause))
     if subjects and told.role != "opening" and (not owner or _only_direction(clause, subjects[-1])):
         return _legs_of_words(subjects[-1]["whom"])
@@ -171,10 +135,7 @@ def _only_direction(clause: str, subject: re.Match[str]) -> bool:
     return bool(_ROAD_HAS.match(clause[subject.end() :]))
 
 
-_ROAD_HAS = re.compile(
-    r"[ -](?:\w+ )?(?:road\w*|street|approach|traffic|entrance|lanes?)\b(?! of)[^.;]*"
-    r"\b(?:control|regulat|had|has|with|by)",
-    re.I)  # fmt: skip
+_ROAD_HAS = rule("control.road_has")
 
 
 def _legs_of_words(words: str) -> list[Compass]:

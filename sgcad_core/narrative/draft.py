@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, get_args
 
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.motion import Cue, Motion
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area, Compass, Maneuver
@@ -59,6 +59,8 @@ class Settled:
     exits: dict[str, Compass] = field(default_factory=dict)
     maneuvers: dict[str, Maneuver] = field(default_factory=dict)
     told_maneuvers: set[str] = field(default_factory=set)
+    sources: dict[str, Cue] = field(default_factory=dict)
+    """Where "V1 heading", "V1 maneuver" and "V1 speed" were read, as far as they were."""
     speeds: dict[str, int] = field(default_factory=dict)
     contacts: list[Joined] = field(default_factory=list)
 

@@ -1,24 +1,19 @@
 """The facts of a crash as its narrative tells them: who moved how, who struck whom, in what conditions.
 
-`crash_facts` is the one entry. What the text leaves open is inferred from what it says (relation words,
-critical events, the sides that touched) and marked as such. Knows no road network.
+Records, and how they are put together from what was read and settled. What the text leaves open is inferred from
+what it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sgcad_core.narrative.clauses import segments, tell
-from sgcad_core.narrative.conditions import conditions
-from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
-from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
-from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.others import OtherFacts, others
-from sgcad_core.narrative.text import sentences
-from sgcad_core.narrative.vehicles import Identity, roster
+from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
 
 
@@ -101,13 +96,14 @@ _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet
 
 def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
     """One vehicle's facts put together."""
+    meant = meant_turn(motion)
     return VehicleFacts(
         id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
         heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
         maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
         lane=motion.lane, lane_word=motion.lane_word, speed_mph=settled.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
-        meant=meant_turn(motion), from_stop=started_from_stop(motion, settled.maneuvers[v.id]),
+        meant=meant.maneuver if meant else None, from_stop=started_from_stop(motion, settled.maneuvers[v.id]),
     )  # fmt: skip
 
 
@@ -124,17 +120,10 @@ def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[Cont
     return tuple(found.values())
 
 
-def crash_facts(narrative: str) -> CrashFacts:
-    """Read a report. Never raises; an empty or foreign text gives no vehicles."""
-    found = sentences(narrative)
-    who = roster(s.text for s in found)
-    told = tell(found, who)
-    cut = segments(told, who)
-    draft = Draft(who, motions(told, cut, who), blows(told, who))
-    settled = settle(draft)
-    sky = conditions(found)
-    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in who.vehicles)
-    beside = others(draft.blows, who.ids)
+def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
+    """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
+    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
+    beside = others(draft.blows, draft.who.ids)
     contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
     return CrashFacts(
         vehicles,

@@ -7,12 +7,13 @@ suggest. Angles here are clockwise degrees, as compass words turn. Knows no text
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
-from sgcad_core.narrative.maneuvers import changed_lanes_after_turn, decide
-from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.maneuvers import Decision, changed_lanes_after_turn, decide
+from sgcad_core.narrative.motion import Heard, Motion
 from sgcad_core.narrative.relative import contact_prefers, relative
 from sgcad_core.narrative.sides import join_contacts
 from sgcad_core.specs import Area, Compass, Maneuver
@@ -25,11 +26,9 @@ def settle(draft: Draft) -> Settled:
     _stated_headings(draft, out)
     for v in draft.who.ids:
         motion = draft.motions[v]
-        out.maneuvers[v], sure = decide(motion, _areas_hit(v, pairs), _same_way_turn(draft, out, v))
-        if sure:
-            out.told_maneuvers.add(v)
+        _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(draft, out, v)))
         if motion.speeds_mph:
-            out.speeds[v] = max(motion.speeds_mph, key=lambda s: s[0])[1]
+            out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
     _mend_headings(draft, out, pairs)
     _complete_headings(draft, out, pairs)
     out.exits = {v: e for v in draft.who.ids if (e := _exit(draft.motions[v], out, v)) is not None}
@@ -41,8 +40,25 @@ def _stated_headings(draft: Draft, out: Settled) -> None:
     for v, motion in draft.motions.items():
         turned_in = motion.exits and changed_lanes_after_turn(motion)
         if motion.headings or turned_in:
-            out.headings[v] = max(motion.headings, key=lambda h: h[0])[1] if motion.headings else motion.exits[0]
+            out.headings[v] = _take(out, f"{v} heading", motion.headings) if motion.headings else motion.exits[0]
+            if not motion.headings:
+                out.sources[f"{v} heading"] = motion.sources[f"exit {motion.exits[0]}"]
             out.stated.add(v)
+
+
+def _take(out: Settled, what: str, heard: list[Heard]) -> Any:
+    """What was told with most weight, first of all."""
+    best = max(heard, key=lambda h: h.weight)
+    out.sources[what] = best.cue
+    return best.value
+
+
+def _maneuver(out: Settled, vehicle: str, decision: Decision) -> None:
+    out.maneuvers[vehicle] = decision.maneuver
+    if decision.told:
+        out.told_maneuvers.add(vehicle)
+    if decision.deed:
+        out.sources[f"{vehicle} maneuver"] = decision.deed.cue
 
 
 def _same_way_turn(draft: Draft, out: Settled, vehicle: str) -> Maneuver:

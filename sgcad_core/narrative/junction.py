@@ -6,30 +6,30 @@ that heads north comes from the leg at S. Knows no lane count.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from sgcad_core.kinds import JUNCTIONS, JunctionKind
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
-from sgcad_core.narrative.compass import DIRECTION, between, compass_of, turned
+from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
-from sgcad_core.narrative.motion import DRIVES
+from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
-
-JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
 
 
 @dataclass(frozen=True)
 class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
     legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
-    the text says by compass where the stem lies."""
+    the text says by compass where the stem lies. `unsupported`: kinds of places at which the crash happened and which
+    cannot be drawn."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
@@ -37,25 +37,16 @@ class JunctionFacts:
     stopped: tuple[Compass, ...] = ()
     stated: bool = False
     stem_stated: bool = False
+    unsupported: tuple[str, ...] = ()
     notes: tuple[str, ...] = field(default=())
+    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    """Where kind, control and stem were read, as far as they were."""
 
 
-_T = re.compile(
-    r"\b[TY]-intersection|\bT[- ]junction|\b[TY](?:\"|')?[- ]?(?:type|shaped?|style)[- ](?:\w+ )?(?:intersection|"
-    r"junction)|\btee[- ](?:intersection|junction)|"
-    r"\b(?:three|3)[- ](?:leg\w*|way)\b(?! (?:stop|crash|car|collision))|\btype (?:of )?\"?T\"? (?:intersection|"
-    r"junction)",
-    re.I,
-)
-_FOUR = re.compile(
-    r"\bfour-leg intersection|\b(?:four|4)[- ](?:leg\w*|way)\b|\bcross(?:ing)? intersection|\bcrossroads?\b", re.I
-)
-_JUNCTION = re.compile(r"\bintersections?\b|\bjunction\b|\bcrossroads?\b|\bcrossover\b|\broundabout\b", re.I)
-_NO_JUNCTION = re.compile(
-    r"\b(?:no|non|not (?:at|in|near)(?: an?)?|without an?|away from (?:the|any|an)|far from (?:the|any|an)|"
-    r"(?:next|previous|nearby|nearest|another|last|distant|upcoming|following)(?: \w+)?)[ -](?:\w+ )?(?:intersection|"
-    r"junction)s?\b|"
-    r"\bnon-?(?:intersection|junction)|\bmid-?block", re.I)  # fmt: skip
+_NUMBERED = rule("common.vehicle_begins")
+_NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
+_JUNCTION = rule("junction.junction")
+_NO_JUNCTION = rule("junction.no_junction")
 
 
 def junction_of(told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> JunctionFacts:
@@ -64,27 +55,33 @@ def junction_of(told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: S
     kind, stated = _kind(story, told, vehicles, roads)
     if kind == "none":
         return JunctionFacts(stated=stated)
-    control = control_of(told)
+    control, control_at = control_of(told)
+    where = _where(kind=_named(story)[1] if kind in ("t", "four_leg") else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
     halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
     if kind == "four_leg":
-        return JunctionFacts(kind, None, control, halted, stated)
+        return JunctionFacts(kind, None, control, halted, stated, where=where)
     lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
-    said = _stem_told(story, vehicles, lead, only_compass=True)
+    said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
     said = None if said and _contradicted(said, vehicles) else said
     stem = said or _stem(kind, story, vehicles, roads, halted, lead)
-    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated, said is not None)
+    where |= _where(stem=stem_at if said else None)
+    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated, said is not None, where=where)
+
+
+def _where(**cues: Cue | None) -> dict[str, Cue]:
+    return {name: cue for name, cue in cues.items() if cue}
 
 
 # ------------------------------------------------------------------ kind
 def _kind(
     story: Sequence[Told], told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> tuple[JunctionKind, bool]:
-    named = _named(story)
+    named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
         return "ramp", True
-    if named in ("t", "four_leg"):
+    if named != "none" and named != "some":
         return named, True
     if access and not (named == "some" and controlled(story)):
         return "driveway", True
@@ -97,18 +94,18 @@ def _kind(
     return "none", False
 
 
-def _named(story: Sequence[Told]) -> JunctionKind | Literal["some"]:
-    """The first junction kind that the story names; "some" if it only says intersection."""
-    some = False
+def _named(story: Sequence[Told]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
+    """The first junction kind that the story names, and where; "some" if it only says intersection."""
+    some: Cue | None = None
     for t in story:
         text = _NO_JUNCTION.sub(" ", t.text)
-        shape, cross = _T.search(text), _FOUR.search(text)
-        if shape and (not cross or shape.start() < cross.start()):
-            return "t"
-        if cross:
-            return "four_leg"
-        some = some or bool(_JUNCTION.search(text))
-    return "some" if some else "none"
+        found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
+        if found:
+            first, words, record = min(found, key=lambda place: place[0].start())
+            return record.kind, Cue(t.number, first[0], words.id)
+        plain = _JUNCTION.search(text)
+        some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
+    return "some" if some else "none", some
 
 
 def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
@@ -118,31 +115,13 @@ def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) 
 
 def _merging(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
     text = " ".join(t.text for t in story)
-    return bool(re.search(r"\bmerg\w+|\bentrance ramp|\bon-?ramp|\bacceleration lane|\bexit ramp", text, re.I)) or any(
-        r.kind == "freeway" for r in roads
-    )
+    return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
 
-_SIDE_ROAD = re.compile(
-    rf"\b(?:side|intersecting|secondary|minor|entrance|access|cross(?:ing)?|private|"
-    rf"residential)[ -](?:\w+ )?(?:street|road\w*|lane)\b"
-    rf"[^.;]{{0,30}}?\b(?:on|to|from|off) (?:the|its|his|her|their) (?:\w+ )?(?P<side>left|right|{DIRECTION})\b"
-    rf"(?!bound|-|/| ?lane| turn)|"
-    rf"\broad\w* (?:to|on) the (?P<to>{DIRECTION})(?! side of)\b|"
-    rf"\b(?:intersects?|branches|branching|joins?|meets?|enters)\b[^.;]{{0,40}}?\b(?:from|on|"
-    rf"to) the (?P<from>{DIRECTION})\b(?!bound|-|/)|"
-    rf"\b(?P<sided>{DIRECTION}) side (?:entrance|street|road|business|driveway)", re.I)  # fmt: skip
-_SIDE_STREET = re.compile(
-    r"\b(?:(?:left|right)(?:[ -]hand)?[ -]turn|turn\w* (?:left|right))\b[^.;]{0,20}? (?:on|in)to (?:an?|the) "
-    r"(?:\w+ )?(?:side|intersecting|cross|adjoining|residential|secondary|minor)[ -](?:\w+ )?(?:road\w*|street)",
-    re.I,
-)
+_SIDE_ROAD = rule("junction.side_road")
+_SIDE_STREET = rule("junction.side_street")
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
-_ENDS = re.compile(
-    rf"\b(?P<dir>(?:{DIRECTION})bound)?[^.;]{{0,60}}?\b(?:dead[- ]?end\w*|terminat\w+|ends?|ended)\b (?:at|with|into|"
-    rf"in|here)",
-    re.I,
-)
+_ENDS = rule("junction.ends")
 
 
 def _one_sided(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
@@ -180,7 +159,7 @@ def _stem(
         return from_paths
     said = _stem_told(story, vehicles, lead)
     if said:
-        return said
+        return said[0]
     meant = _stem_meant(story, vehicles)
     if meant:
         return meant
@@ -207,11 +186,7 @@ def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], 
     return None
 
 
-_TURN_SIDE = re.compile(
-    r"\bturn(?:ed|ing|s)?(?: to the)? (?P<a>left|right)\b(?! lane)|\b(?P<b>left|"
-    r"right)(?:[ -]hand)?[ -]turn\b(?! lane|-lane| signal|ing lane)",
-    re.I,
-)
+_TURN_SIDE = rule("junction.turn_side")
 
 
 def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Compass | None:
@@ -219,8 +194,8 @@ def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Comp
     for v in sorted(vehicles, key=lambda v: v.target is None):
         for t in story:
             turn = _TURN_SIDE.search(t.text)
-            mine = v.id in re.findall(r"\bV\d+\b", t.text[: turn.start()])[-1:] if turn else False
-            if turn and v.heading and (mine or (t.subject == v.id and not re.search(r"\bV\d", t.text[: turn.start()]))):
+            mine = v.id in rule("common.vehicle").findall(t.text[: turn.start()])[-1:] if turn else False
+            if turn and v.heading and (mine or (t.subject == v.id and not _NUMBERED.search(t.text[: turn.start()]))):
                 return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
     return None
 
@@ -249,25 +224,22 @@ def _contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
 
 def _stem_told(
     story: Sequence[Told], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
-) -> Compass | None:
+) -> tuple[Compass, Cue] | None:
     for t in story:
         ends = _ENDS.search(t.text)
         way = compass_of(ends["dir"]) if ends and ends["dir"] and _JUNCTION.search(t.text) else None
-        if way:
-            return turned(way, 180)
+        if ends and way:
+            return turned(way, 180), Cue(t.number, ends["dir"], _ENDS.id)
         place = _SIDE_ROAD.search(t.text) or _DRIVE_SIDE.search(t.text)
         if place:
             word = next(filter(None, place.groups()))
             found = _bearing(word, t, vehicles, lead)
             if found and not (only_compass and word.lower() in ("left", "right")):
-                return found
+                return found, Cue(t.number, word, "junction.side_road")
     return None
 
 
-_DRIVE_SIDE = re.compile(
-    rf"\b(?:driveway|parking lot|entrance|alley|gas station|access road)\b[^.;]{{0,40}}?\b(?:on|to|off|from) (?:the|"
-    rf"its|his|her|their|V\d's) "
-    rf"(?:\w+ )?(?P<side>left|right|{DIRECTION})\b(?!bound|-|/| ?lane| turn)(?: side)?", re.I)  # fmt: skip
+_DRIVE_SIDE = rule("junction.drive_side")
 
 
 def _bearing(word: str, told: Told, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:

@@ -7,27 +7,24 @@ lanes only; which road the piece describes is the caller's business.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from sgcad_core.language import rule, values
+from sgcad_core.narrative.compass import WORDS
 from sgcad_core.narrative.median import divided_and_median
-from sgcad_core.narrative.text import NUM, NUMBERS
+from sgcad_core.narrative.motion import Cue
+from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.narrative.turn_lanes import spelled_out
 from sgcad_core.specs import Compass, Median
 
 Side = Literal["left", "right"]
-DIRECTIONS: dict[str, Compass] = {
-    "north": "N", "south": "S", "east": "E", "west": "W",
-    "northeast": "NE", "northwest": "NW", "southeast": "SE", "southwest": "SW",
-}  # fmt: skip
-DIR = r"(?:north|south)(?:east|west)?(?:bound|erly|ern)?|(?:east|west)(?:bound|erly|ern)?"
-BOUND = r"(?:north|south)(?:east|west)?bound|(?:east|west)bound"
 
 
 def compass(word: str) -> Compass:
     """The compass point of "north", "northbound", "northerly" or "Northern"."""
-    return DIRECTIONS[re.sub(r"(?:bound|erly|ern)$", "", word.lower())]
+    return WORDS[rule("lanes.heading_end").sub("", word.lower())]
 
 
 def number(word: str) -> int:
@@ -58,6 +55,8 @@ class LaneFacts:
     """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
+    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    """Where each of them was read, by the names of `sgcad_core.narrative.lane_sources.stated`."""
 
     @property
     def empty(self) -> bool:
@@ -66,80 +65,25 @@ class LaneFacts:
 
 
 # ------------------------------------------------------------------ whole-road words
-_TOTAL = re.compile(rf"(?<![#\w])({NUM})-lane(?:d|s)?\b(?! lines?\b)", re.I)
-_EACH = re.compile(
-    rf"\b({NUM})[ -]+(?:(?:through|travel|traffic|driving|main|marked|general|regular|full|standard)[ -]+)*"
-    r"(?:lanes? )?(?:of (?:travel|traffic) )?(?:traveling |running |going )?"
-    r"(?:in|for|on|per|to) (?:each|either|both|every)(?: (?:direction|side|way|approach)s?(?: of travel)?)"
-    rf"|\b({NUM})[ -]+(?:(?:through|travel|traffic)[ -]+)*lanes? (?:each way|per direction|each direction)",
-    re.I)  # fmt: skip
-_OWN = re.compile(
-    rf"\b(?:lane (?:\w+|#\d)|first|second|third|fourth|fifth|left|right|middle|center|\w+ lane|\dst|\dnd|\drd|"
-    rf"\dth)(?: lane)? of (?:the )?({NUM})"
-    rf"(?: (?:through|travel|traffic))? lanes?\b(?! (?:each|in each|{BOUND}))", re.I)  # fmt: skip
-_ONE_WAY = re.compile(r"\bone[ -]way\b", re.I)
-_TWO_WAY = re.compile(r"\btwo[ -]way\b(?![ -](?:left|turn|center|stop|radio|bi|traffic sig))|\bbi-?directional\b", re.I)
-_CENTER_TURN = re.compile(
-    r"\b(?:cent(?:er|re)|middle|shared)[ -]+(?:two[ -]way[ -]+)?(?:left[ -]?)?(?:hand[ -])?turn(?:ing)?(?:[ -]lane|"
-    r"(?! ?-?only))\b|"
-    r"\b(?:cent(?:er|re)|middle)[ -]+left[ -](?:turn )?lane|"
-    r"\btwo[ -]way[ -]+(?:center[ -]+)?(?:left[ -]+)?(?:hand )?turn(?:ing)?[ -]lane|\bTWLTL\b|"
-    r"\bturn lane (?:in|down|running down) the (?:center|middle)|\b(?:continuous|"
-    r"dual) left[ -]turn lane", re.I)  # fmt: skip
+_TOTAL = rule("lanes.total")
+_EACH = rule("lanes.each")
+_OWN = rule("lanes.own")
+_ONE_WAY = rule("lanes.one_way")
+_TWO_WAY = rule("lanes.two_way")
+_CENTER_TURN = rule("lanes.center_turn")
 
 # ------------------------------------------------------------------ lane items
-_MOD = (
-    rf"(?:{BOUND}|through|thru|travel|traffic|driving|traveling|passing|curb|left|right|turn(?:ing)?|only|center|"
-    r"designated|dedicated|separate|exclusive|additional|general|marked|main|inside|outside|merging|merge|exit|"
-    r"standard|full|short|straight|hand|total|and|or|lane|bound)"
-)
-_DIR_BEHIND = (
-    rf"(?:(?:,? (?:of (?:travel|traffic) )?(?:in|for|on|to|heading|going|traveling|running|serving|designated)"
-    rf"(?: (?:the|a|for))?)? (?P<BEHIND>{DIR})\b(?! of\b)"
-    r"(?:[ -](?:direction|traffic|side|lanes?|travel|approach|road(?:way)?))?)"
-)
 
 
-def _behind(group: int) -> str:
-    return _DIR_BEHIND.replace("BEHIND", f"behind{group}")
+_ITEM = rule("lanes.item")
+_SUBJECT = rule("lanes.subject")
+_WITHIN = rule("lanes.within")
+_EACH_TURN = rule("lanes.each_turn")
 
-
-_ACTS = ("make", "making", "made", "makes", "began", "begin", "initiated", "attempting", "negotiating")
-_NO_ACT = "".join(f"(?<!{act} )" for act in _ACTS)
-"""A left turn that somebody makes is no lane."""
-_ITEM = re.compile(
-    rf"\b(?P<count>{NUM}|an?|the)[ -]+(?P<mods>(?:{_MOD}(?:[ ,/-]+|"
-    rf"\b(?= ))){{0,6}}?)lanes?\b(?! lines?\b){_behind(1)}?|"
-    rf"{_NO_ACT}\b(?P<turncount>{NUM}|an?|the)[ -](?P<turn>left|right)[ -]turn(?! (?:at|in|into|on|onto|to|was|"
-    rf"from))"
-    rf"(?=[ ,);.](?!lane)){_behind(2)}?|"
-    rf"\b(?P<barecount>{NUM})[ -](?P<bare>{BOUND})\b(?! (?:lane|road|street|vehicle|car|truck|V\d))",
-    re.I)  # fmt: skip
-_SUBJECT = re.compile(
-    rf"\b(?P<dir>{BOUND}|(?:north|south|east|west)(?=[ -]side))(?:[ -](?:side|lanes?|road(?:way)?|approach|traffic|"
-    r"direction|leg|travel|portion|section|trafficway|highway|street|carriageway|through lanes?))*"
-    r"(?: of (?:the |this )?[\w /-]{1,40}?)?,? (?:(?:which|that) )?(?:had|has|have|having|consist(?:ed|s|ing)? of|"
-    r"contain(?:ed|s)|"
-    r"(?:is|was|are|were) (?:comprised|composed|made up) of|comprised|included|includes|was|is|were|are|with|"
-    r"there (?:were|are|is|was))\b",
-    re.I)  # fmt: skip
-_WITHIN = re.compile(r"(?:includ\w+|one (?:of which|being)|counting|, the \w+ being|which (?:was|is)|with one being|"
-                     r"consisting of|comprised of|:|—)[\w ]{0,14}$", re.I)  # fmt: skip
-_EACH_TURN = re.compile(
-    r"\b(left|right)[ -]turn lanes? (?:in|for|on) (?:(?:each|both|either|all|opposite|opposing) "
-    r"(?:direction|side|way|approach|of)|"
-    rf"(?:the )?(?:{BOUND}) and (?:the )?(?:{BOUND}))", re.I)  # fmt: skip
-_ORDINALS = {"second": 2, "third": 3, "fourth": 4, "fifth": 5}
-_NUMBERED_TURN = re.compile(
-    rf"\bthe ({'|'.join(_ORDINALS)}) ({BOUND}) lane,? (?:which|that) (?:was|is) an? (left|right)[ -]turn(?:[ -]only)?"
-    r"[ -]lane", re.I)  # fmt: skip
-_ONE_LANE = re.compile(
-    r"\b(?:with|ha[ds]|have|consist\w* of|carr(?:y|ie[ds])) (?:only )?(?:one|1|a single) "
-    rf"(?:travel )?lane of (?:travel|traffic)\b(?! (?:in|for|per|on|to|each|either|{BOUND}))",
-    re.I,
-)
-_OFF_ROAD = re.compile(r"\b(?:parking|bicycle|bike|emergency|breakdown)\b", re.I)
-_CROSSED = re.compile(r"\b(?:across|cross\w*|over|through|into|all) (?:the |all |all of the |of the )?$", re.I)
+_NUMBERED_TURN = rule("lanes.numbered_turn")
+_ONE_LANE = rule("lanes.one_lane")
+_OFF_ROAD = rule("lanes.off_road")
+_CROSSED = rule("lanes.crossed")
 
 
 @dataclass(frozen=True)
@@ -183,7 +127,7 @@ def _numbered_turns(text: str, toward: dict[str, int], turns: dict[str, tuple[Si
     """ "the third northbound lane, which was a left-turn lane": there are three at least, and that is one of them."""
     for m in _NUMBERED_TURN.finditer(text):
         way = compass(m[2])
-        toward[way] = max(toward.get(way, 0), _ORDINALS[m[1].lower()])
+        toward[way] = max(toward.get(way, 0), values("later_ordinal")[m[1].lower()])
         turns.setdefault(way, ("left" if m[3].lower() == "left" else "right",))
 
 
@@ -199,9 +143,7 @@ def _total(text: str, counted: str, items: list[_Item], known: list[Compass | No
     return loose[0] if len(loose) == 1 else None
 
 
-_FLOW = re.compile(
-    rf"\b({DIR})[ ,-]+(?:[\w-]+[ ,]+){{0,3}}one[ -]way|"
-    rf"one[ -]way[ ,-]+(?:[\w-]+[ ,]+){{0,5}}?({DIR})\b", re.I)  # fmt: skip
+_FLOW = rule("lanes.flow")
 
 
 def _one_way_toward(text: str) -> Compass | None:
@@ -215,13 +157,13 @@ def _items(text: str) -> Iterator[_Item]:
         mods, count = (match["mods"] or "").lower(), match["count"] or match["turncount"] or match["barecount"]
         if _OFF_ROAD.search(mods):
             continue
-        word = re.search(BOUND, mods, re.I)
+        word = rule("common.bound").search(mods)
         behind = match["behind1"] or match["behind2"] or match["bare"] or (word[0] if word else None)
         turn = _turn(mods, match["turn"])
         sure = count.lower() not in ("a", "an", "the")
         if not sure and not turn:
             continue
-        plain = not turn and not re.search(r"through|thru|merg", mods)
+        plain = not turn and not rule("lanes.no_plain_lane").search(mods)
         if count.lower() == "the" and not match["turn"] and not behind:
             continue
         yield _Item(number(count), compass(behind) if behind else None, turn, plain,
@@ -238,7 +180,7 @@ def _counts(items: list[_Item], total: re.Match[str] | None) -> list[_Item]:
 def _turn(mods: str, bare: str | None) -> tuple[Side, ...]:
     if bare:
         return ("left",) if bare.lower() == "left" else ("right",)
-    if not re.search(r"\bturn", mods):
+    if not rule("lanes.turn").search(mods):
         return ()
     sides: tuple[Side, ...] = ("left", "right")
     return tuple(side for side in sides if side in mods)
@@ -267,14 +209,14 @@ def _headline(known: list[Compass | None], items: list[_Item]) -> int | None:
 
 def _subject(text: str, place: int) -> Compass | None:
     """ "The southbound side had ..." in the clause before the item."""
-    clause = re.split(r"[;.]", text[:place])[-1]
+    clause = rule("lanes.clause_end").split(text[:place])[-1]
     found = list(_SUBJECT.finditer(clause))
     return compass(found[-1]["dir"]) if found else None
 
 
 def _same_clause(text: str, first: _Item, second: _Item) -> bool:
     between = text[first.place : second.place]
-    return ". " not in between and not re.search(r"\bV\d", between)
+    return ". " not in between and not rule("common.vehicle_begins").search(between)
 
 
 def _sums(items: list[_Item], known: list[Compass | None]) -> tuple[dict[str, int], dict[str, tuple[Side, ...]]]:

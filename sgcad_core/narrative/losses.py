@@ -5,12 +5,9 @@ One answer for the whole text: who it was is often left to the reader.
 
 from __future__ import annotations
 
-import re
+from sgcad_core.language import rule
 
-_LOST = re.compile(
-    r"\b(?:los[et]|losing|loss of|regain\w*) (?:\w+ ){0,3}(?:control|traction)|(?<!no )\bskid(?! mark)|"
-    r"\bslid(?:e|ing)?\b(?! door)|\bfishtail|\byaw|\bhydroplan|\bout of control|\bovercorrect|\bjackknif|"
-    r"\bspun out", re.I)  # fmt: skip
+_LOST = rule("meeting.lost")
 
 
 def tells_lost_control(narrative: str) -> bool:

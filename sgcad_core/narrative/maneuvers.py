@@ -5,8 +5,21 @@ A turn that is told as an act beats a plan to turn; a standing vehicle stays sta
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from sgcad_core.narrative.motion import Deed, Motion
 from sgcad_core.specs import Area, Maneuver
+
+_SURE: tuple[Maneuver, ...] = ("parked", "backing", "u_turn")
+
+
+class Decision(NamedTuple):
+    """A maneuver, whether the text tells it, and the deed that decided."""
+
+    maneuver: Maneuver
+    told: bool = True
+    deed: Deed | None = None
+
 
 _PLAIN: tuple[Maneuver, ...] = (
     "crossing_centerline", "lane_change_left", "lane_change_right", "overtaking", "merge", "departing_road_right",
@@ -14,23 +27,22 @@ _PLAIN: tuple[Maneuver, ...] = (
 )  # fmt: skip
 
 
-def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "turn_right") -> tuple[Maneuver, bool]:
-    """The maneuver and whether the text tells it.
+def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "turn_right") -> Decision:
+    """The maneuver of a vehicle.
 
     `hit`: sides of the vehicle that were struck, in order. `same_way`: the turn that a critical event
     "turning into same direction" means.
     """
-    if motion.did("parked", 3):
-        return "parked", True
-    if motion.did("backing", 3):
-        return "backing", True
-    if motion.did("u_turn", 3) or motion.did("code:u_turn"):
-        return "u_turn", True
+    for sure in _SURE:
+        if deed := motion.deed(sure, 3):
+            return Decision(sure, deed=deed)
+    if deed := motion.deed("code:u_turn"):
+        return Decision("u_turn", deed=deed)
     turn = None if changed_lanes_after_turn(motion) else _turn(motion, hit, same_way)
     if turn:
-        return turn, True
+        return turn
     if _standing(motion, hit):
-        return "stopped", True
+        return Decision("stopped", deed=motion.deed("stopped") or motion.deed("code:stopped"))
     return _moving(motion, 2 if hit[:1] == ("back",) else 3)
 
 
@@ -41,23 +53,31 @@ def changed_lanes_after_turn(motion: Motion) -> bool:
     return bool(turns and changes) and min(changes) > max(turns)
 
 
-def _turn(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver) -> Maneuver | None:
+_TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right")
+
+
+def _turn(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver) -> Decision | None:
     """A turn that was made or begun."""
     from_behind = bool(hit) and hit[0] == "back"
-    for side in ("left", "right"):
-        if motion.did(f"code:turn_{side}") and not (from_behind and _standing(motion, hit)):
-            return "turn_left" if side == "left" else "turn_right"
-    acts = [d for d in motion.deeds if d.kind in ("turn_left", "turn_right") and d.weight >= 2]
+    for turn in _TURNS:
+        if (deed := motion.deed(f"code:{turn}")) and not (from_behind and _standing(motion, hit)):
+            return Decision(turn, deed=deed)
+    acts = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 2]
     if acts and not (from_behind and motion.did("stopped", 2)):
-        return "turn_left" if max(acts, key=lambda d: d.weight).kind == "turn_left" else "turn_right"
-    if motion.did("code:into_opposite"):
-        return "turn_left"
+        return _as_told(max(acts, key=lambda d: d.weight))
+    if deed := motion.deed("code:into_opposite"):
+        return Decision("turn_left", deed=deed)
     wants = [d for d in motion.deeds if d.kind.startswith("want_turn_") and d.weight >= 2]
     if motion.did("code:over_left") or motion.did("crossing_centerline", 3):
         wants = []
     if wants and not from_behind and (_moved_on(motion, wants[0]) or not motion.did("stopped", 2)):
-        return "turn_left" if wants[0].kind == "want_turn_left" else "turn_right"
-    return same_way if motion.did("code:into_same") else None
+        return _as_told(wants[0])
+    return Decision(same_way, deed=deed) if (deed := motion.deed("code:into_same")) else None
+
+
+def _as_told(deed: Deed) -> Decision:
+    """The turn that a deed tells or wants."""
+    return Decision("turn_left" if deed.kind.endswith("turn_left") else "turn_right", deed=deed)
 
 
 def _moved_on(motion: Motion, since: Deed) -> bool:
@@ -78,12 +98,10 @@ def _standing(motion: Motion, hit: tuple[Area | None, ...]) -> bool:
     return from_behind or not _moved_on(motion, stops[0])
 
 
-def meant_turn(motion: Motion) -> Maneuver | None:
+def meant_turn(motion: Motion) -> Decision | None:
     """The turn that a vehicle waited, slowed or wanted to make."""
     wants = [d for d in motion.deeds if d.kind.startswith("want_turn_")]
-    if not wants:
-        return None
-    return "turn_left" if max(wants, key=lambda d: d.weight).kind == "want_turn_left" else "turn_right"
+    return _as_told(max(wants, key=lambda d: d.weight)) if wants else None
 
 
 def started_from_stop(motion: Motion, maneuver: Maneuver) -> bool:
@@ -98,24 +116,26 @@ def _moved_behind(stop: Deed, onward: list[Deed]) -> bool:
     return any(stop.number <= d.number <= stop.number + 1 for d in onward)
 
 
-def _over_the_line(motion: Motion, side: str) -> tuple[Maneuver, bool]:
+def _over_the_line(motion: Motion, deed: Deed) -> Decision:
     """Over a lane line: beside a vehicle that drives the same way it is a change of lane."""
+    left = deed.kind == "code:over_left"
     if any(kin == "same" and word == "code" for _, kin, _, word in motion.kin):
-        return ("lane_change_left" if side == "left" else "lane_change_right"), True
-    return ("crossing_centerline", True) if side == "left" else ("departing_road_right", True)
+        return Decision("lane_change_left" if left else "lane_change_right", deed=deed)
+    return Decision("crossing_centerline" if left else "departing_road_right", deed=deed)
 
 
-def _moving(motion: Motion, least: int) -> tuple[Maneuver, bool]:
+def _moving(motion: Motion, least: int) -> Decision:
     for kind in _PLAIN:
-        if motion.did(kind, 3):
-            return kind, True
-    for side, over in (("left", "code:over_left"), ("right", "code:over_right")):
-        if motion.did(over) and not motion.did("code:straight"):
-            return _over_the_line(motion, side)
-    if motion.did("lane_change", 3):
-        return "lane_change_left", False
-    if motion.did("negotiating_curve", 3):
-        return "negotiating_curve", True
-    if motion.did("slowing", least):
-        return "slowing", True
-    return "straight", motion.did("straight") or motion.did("code:straight")
+        if deed := motion.deed(kind, 3):
+            return Decision(kind, deed=deed)
+    for over in ("code:over_left", "code:over_right"):
+        if (deed := motion.deed(over)) and not motion.did("code:straight"):
+            return _over_the_line(motion, deed)
+    if deed := motion.deed("lane_change", 3):
+        return Decision("lane_change_left", False, deed)
+    if deed := motion.deed("negotiating_curve", 3):
+        return Decision("negotiating_curve", deed=deed)
+    if deed := motion.deed("slowing", least):
+        return Decision("slowing", deed=deed)
+    deed = motion.deed("straight") or motion.deed("code:straight")
+    return Decision("straight", deed is not None, deed)

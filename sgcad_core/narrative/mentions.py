@@ -11,9 +11,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import COMPASS, compass_of
-from sgcad_core.narrative.lanes import BOUND, DIR, LaneFacts, lane_facts
+from sgcad_core.narrative.lane_sources import heard
+from sgcad_core.narrative.lanes import LaneFacts, lane_facts
 from sgcad_core.narrative.road_phrases import noun_phrases
 from sgcad_core.specs import Compass
 
@@ -56,41 +58,16 @@ def axis_in(text: str) -> Compass | None:
     return axis_of(first) if first and second and first != second and axis_of(first) == axis_of(second) else None
 
 
-_PAIR = re.compile(rf"\b({DIR})[ -]*(?:/|-|\band\b|\bto\b|\bor\b|&|,)[ -]*({DIR})\b", re.I)
-_RELATIONS: tuple[tuple[Relation, str], ...] = (
-    ("both", r"^(?:both|all|each|either|these)\b|"
-             r"\btwo (?!-|lane|way)(?:[\w/-]+,? ){0,6}(?:roads|roadways|streets|highways|avenues)$"),
-    ("same", r"\b(?:same|aforementioned)\b"),
-    ("other", r"\b(?:intersecting|crossing|cross|side|secondary|minor|other|another|second|adjoining|terminating|"
-              r"perpendicular|connecting)\b"),
-    ("main", r"\b(?:main|primary|major|through|first)\b"),
-)  # fmt: skip
-_RELATION = tuple((name, re.compile(pattern, re.I)) for name, pattern in _RELATIONS)
-_RUNS = re.compile(
-    r"^[\w ,()-]{0,60}?\b(?:r[au]n(?:s|ning)?|go(?:es|ing)|went|oriented|travels?|traveling|extend(?:s|ed|ing)|lie|"
-    r"lies|is|was|"
-    r"that is|aligned)(?: (?:in )?(?:an?|the|generally|primarily|in))* (?=(?:north|south|east|"
-    r"west))", re.I)  # fmt: skip
-_ON = re.compile(
-    r"\b(?:travel\w*|driving|drove|stopped|head(?:ed|ing)|proceeding|proceeded|going|moving|facing|parked|disabled|"
-    r"backing|slowing|"
-    r"decelerating|merging|waiting|was|were|been|negotiating|lane|lanes|(?:north|south|east|west)\w*bound|north|"
-    r"south|east|west)\b"
-    r"(?P<rest>[^.;]*?)\b(?:on|of|in|along|down|upon|up|over)(?: (?:the|a|an|this|same|that|its|his|her|their|"
-    r"their))*\s*$", re.I)  # fmt: skip
-_LEFT_IT = re.compile(
-    r"\b(?:approach\w*|onto|into|toward\w*|from|exit\w*|turn\w*|cross\w*|enter\w*|merg\w+|intersect\w*|junction|"
-                      r"struck|off|before|edge|side of|shoulder|middle)\b", re.I)  # fmt: skip
-_FROM = re.compile(
-    r"\b(?:from|exit(?:ed|ing)|leav(?:e|ing)|left|out of|departing)(?: (?:of|off|the|a|an|its|this|that))*\s*$", re.I
-)
-_ONTO = re.compile(r"\b(?:onto|into|enter(?:ed|ing)?|join(?:ed|ing)?|to)(?: (?:the|a|an|this|that|same))*\s*$", re.I)
-_RELATIVE = re.compile(
-    r"^[\w ,]{0,12}?(?:(?:from|on|along|off) which |that |which |where )?(?:(?:the )?driver of )?(V\d+) (?:was|had|"
-    r"is|were|originally|"
-    r"came|exited|traveled|approached)\b", re.I)  # fmt: skip
-_VEHICLE = re.compile(r"\bV\d+\b")
-_BOTH_VEHICLES = re.compile(r"\bboth (?:vehicles|drivers)\b", re.I)
+_PAIR = rule("mentions.pair")
+
+_RUNS = rule("mentions.runs")
+_ON = rule("mentions.on")
+_LEFT_IT = rule("mentions.left_it")
+_FROM = rule("mentions.from")
+_ONTO = rule("mentions.onto")
+_RELATIVE = rule("mentions.relative")
+_VEHICLE = rule("mentions.vehicle")
+_BOTH_VEHICLES = rule("mentions.both_vehicles")
 
 
 def road_mentions(told: Iterable[Told], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
@@ -102,7 +79,7 @@ def _sentence(told: Told, ids: tuple[str, ...]) -> Iterator[RoadMention]:
     text = told.text
     spans = list(noun_phrases(text))
     if not spans:
-        facts = lane_facts(text)
+        facts = heard(lane_facts(text), told.number, text)
         if not facts.empty:
             yield from _by_axis(_bare(told, facts))
         return
@@ -121,7 +98,7 @@ def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
     for axis in sorted(ways):
         toward = {way: n for way, n in mention.lanes.toward.items() if axis_of(_compass(way)) == axis}
         turns = {way: t for way, t in mention.lanes.turns.items() if way in _NO_WAY or axis_of(_compass(way)) == axis}
-        lanes = LaneFacts(toward=toward, turns=turns)
+        lanes = LaneFacts(toward=toward, turns=turns, where=mention.lanes.where)
         yield RoadMention(mention.text, "road", axis, None, None, True, (), None, lanes, mention.sentence)
 
 
@@ -148,7 +125,7 @@ def _mention(told: Told, parts: tuple[str, str, str], head: str, place: tuple[bo
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind
-    facts = lane_facts(said)
+    facts = heard(lane_facts(said), told.number, said)
     vehicles, how = _drivers(lead, behind, ids)
     toward = _toward(phrase)
     axis = axis_in(phrase) or (axis_of(toward) if toward else None) or _running(behind) or _lane_direction(lead)
@@ -156,7 +133,7 @@ def _mention(told: Told, parts: tuple[str, str, str], head: str, place: tuple[bo
         axis = _travel_axis(lead)
     return RoadMention(
         said, _kind(phrase, head), axis or _axis_of_lanes(facts), toward, _relation(phrase, lead),
-        bool(re.match(r"(?:the|this|that|its|his|her|their|these|both|each|all)\b", phrase, re.I)),
+        bool(rule("mentions.definite").match(phrase)),
         vehicles, how, facts, told.number,
     )  # fmt: skip
 
@@ -171,7 +148,7 @@ def _toward(phrase: str) -> Compass | None:
     """The one direction in a noun phrase ("the westbound road"); None where a pair or nothing is named."""
     if _PAIR.search(phrase):
         return None
-    words = re.findall(rf"\b({BOUND}|north|south|east|west)\b(?! side)", phrase, re.I)
+    words = rule("mentions.direction").findall(phrase)
     return compass_of(words[-1]) if words else None
 
 
@@ -181,8 +158,7 @@ def _running(behind: str) -> Compass | None:
     return axis_in(behind[runs.end() : runs.end() + 40]) if runs else None
 
 
-_LANE_OF = re.compile(
-    rf"\b({BOUND})(?: (?:[\w-]+ ){{0,4}}| )(?:lanes?|side|direction|portion) (?:of|on) (?:\w+ )?$", re.I)  # fmt: skip
+_LANE_OF = rule("mentions.lane_of")
 
 
 def _lane_direction(lead: str) -> Compass | None:
@@ -194,26 +170,24 @@ def _lane_direction(lead: str) -> Compass | None:
 
 def _travel_axis(lead: str) -> Compass | None:
     """The last direction of travel before the noun phrase."""
-    words = re.findall(rf"\b({BOUND}|north|south|east|west|(?:north|south|east|west)\w*erly)\b", lead, re.I)
+    words = rule("mentions.travel_direction").findall(lead)
     way = compass_of(words[-1]) if words else None
     return axis_of(way) if way else None
 
 
-_MEETS = re.compile(
-    r"\b(?:intersect(?:s|ed)?|cross(?:es|ed)|meets?|joins?)(?: with)?(?: the| an?)?\s*$|"
-    r"\b(?:intersection|connection|junction)\b[^.;]{0,30}\bwith\s*$", re.I)  # fmt: skip
+_MEETS = rule("mentions.meets")
 
 
 def _relation(phrase: str, lead: str) -> Relation | None:
     """As the phrase says, else "other" behind "intersects", "intersection with"."""
-    found = next((name for name, pattern in _RELATION if pattern.search(phrase)), None)
+    found = next((told.yields["relation"] for told in of_role("relation") if told.search(phrase)), None)
     return found or ("other" if _MEETS.search(lead) and not _VEHICLE.search(lead[-40:]) else None)
 
 
 def _drivers(lead: str, behind: str, ids: tuple[str, ...]) -> tuple[tuple[str, ...], How | None]:
     """Who drives on the road mentioned, told by the verb before or the relative clause behind."""
     relative = _RELATIVE.match(behind)
-    if relative and re.match(r"\s*(?:from|on|along|off|that|which|where|V)", behind):
+    if relative and rule("mentions.relative_begins").match(behind):
         return (relative[1],), "on"
     vehicles = [m for m in _VEHICLE.finditer(lead) if m[0] in ids]
     everyone = list(_BOTH_VEHICLES.finditer(lead))
@@ -230,7 +204,7 @@ def _joined(lead: str, vehicles: list[re.Match[str]]) -> tuple[str, ...]:
     """The last vehicle named, with those joined to it by "and"."""
     who = [vehicles[-1][0]]
     for first, second in zip(reversed(vehicles[:-1]), reversed(vehicles[1:]), strict=True):
-        if not re.fullmatch(r",? (?:and )?", lead[first.end() : second.start()]):
+        if not rule("mentions.joined").fullmatch(lead[first.end() : second.start()]):
             break
         who.append(first[0])
     return tuple(who)
@@ -249,8 +223,8 @@ def _kind(phrase: str, head: str) -> Kind:
     word = head.lower()
     if "ramp" in word:
         return "ramp"
-    if re.search(r"driveway|alley", word) or re.search(r"\bprivate (?:drive|access)", phrase, re.I):
+    if rule("mentions.driveway").search(word) or rule("mentions.private").search(phrase):
         return "driveway"
-    if re.search(r"freeway|interstate|expressway|turnpike|limited[ -]access", phrase, re.I):
+    if rule("mentions.freeway").search(phrase):
         return "freeway"
     return "crossroads" if "intersection" in word else "road"

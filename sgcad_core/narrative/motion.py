@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from sgcad_core.specs import Compass
 
@@ -13,20 +13,45 @@ DRIVES: tuple[Access, ...] = ("driveway", "parking_lot")
 Kin = Literal["same", "opposite", "crossing"]
 
 
+class Cue(NamedTuple):
+    """Where something was read: a sentence's number (from 0), the words, as in the resolved sentence, and the rule."""
+
+    number: int
+    words: str = ""
+    rule: str = ""
+
+
 class Deed(NamedTuple):
     """One thing a vehicle did or was doing; `weight` 4 where the approach says so, 1 in an interview."""
 
     kind: str
     weight: int
     number: int
+    words: str = ""
+    rule: str = ""
+
+    @property
+    def cue(self) -> Cue:
+        """Where it was read."""
+        return Cue(self.number, self.words, self.rule)
+
+
+class Heard(NamedTuple):
+    """A heading or a speed (mph) that is told, and with what weight."""
+
+    weight: int
+    value: Any
+    cue: Cue
 
 
 @dataclass
 class Motion:
     """What the text says of one vehicle's motion; empty where it says nothing."""
 
-    headings: list[tuple[int, Compass]] = field(default_factory=list)
-    """(weight, heading) in the order of the text."""
+    at: int = 0
+    """The sentence that is being read."""
+    headings: list[Heard] = field(default_factory=list)
+    """In the order of the text."""
     exits: list[Compass] = field(default_factory=list)
     """Headings that it turned to or meant to turn to."""
     deeds: list[Deed] = field(default_factory=list)
@@ -34,12 +59,26 @@ class Motion:
     """(weight, relation, other vehicle if named, word: ahead, behind, ...)."""
     lane: int | None = None
     lane_word: str | None = None
-    speeds_mph: list[tuple[int, int]] = field(default_factory=list)
+    speeds_mph: list[Heard] = field(default_factory=list)
     origin: Access | None = None
     target: Access | None = None
     axes: list[str] = field(default_factory=list)
     from_side: Literal["left", "right"] | None = None
+    sources: dict[str, Cue] = field(default_factory=dict)
+    """Where lane, origin, target and each exit ("exit W") were first read."""
 
     def did(self, kind: str, least: int = 1) -> bool:
         """Whether a deed is told with at least that weight."""
-        return any(d.kind == kind and d.weight >= least for d in self.deeds)
+        return self.deed(kind, least) is not None
+
+    def deed(self, kind: str, least: int = 1) -> Deed | None:
+        """The first deed of that kind that is told with at least that weight."""
+        return next((d for d in self.deeds if d.kind == kind and d.weight >= least), None)
+
+    def read(self, what: str, words: str, rule: str) -> None:
+        """Note where something was read and by which rule, if it is the first time."""
+        self.sources.setdefault(what, Cue(self.at, words, rule))
+
+    def heard(self, into: list[Heard], weight: int, value: Any, words: str, rule: str) -> None:
+        """Note a heading or a speed."""
+        into.append(Heard(weight, value, Cue(self.at, words, rule)))

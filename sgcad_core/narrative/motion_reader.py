@@ -6,9 +6,9 @@ interview says counts only where nothing else does. Knows no contact and infers 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Told
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
@@ -22,15 +22,9 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
                           "rest": 2}  # fmt: skip
 
 
-_STOPPED_AT_LAST = re.compile(
-    r"\b(?:and|then|until it|before it|before they)\s+(?:\w+ly |then |both )?stopped\b"
-    r"(?! (?:for|at|behind|because|due|to let|to allow|waiting|and|in traffic))", re.I
-)  # fmt: skip
-_STOPPED_THERE = re.compile(r"\bstopped (?:facing|headed|heading|pointing|together|almost|short|\d)", re.I)
-_THROWN = re.compile(
-    r"\b(?:spun|spinning|rolled|rotated|deflected|recoil\w*|rebound\w*|bounced|shoved|pushed|knocked|thrown|"
-    r"separate ways|ran into|over the curb|off the (?:road\w*|pavement))\b", re.I
-)  # fmt: skip
+_STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
+_STOPPED_THERE = rule("motion_reader.stopped_there")
+_THROWN = rule("motion_reader.thrown")
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
 
 
@@ -43,10 +37,13 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
             continue
         for vehicle in segment.subjects:
             motion = found[vehicle]
+            motion.at = segment.number
             after = segment.number > impact
             late = after and bool(motion.headings or motion.deeds)
             _read(motion, segment, vehicle, who, 2 if late else 4, after)
     for t in told:
+        for motion in found.values():
+            motion.at = t.number
         if t.role not in _UNREAD:
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))
         if t.role in ("codes", "factors"):
@@ -56,7 +53,7 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
 
 def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:
     """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
-    text = _until_stopped(re.sub(r"\([^()]*\)", " ", segment.text), after)
+    text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
@@ -77,17 +74,11 @@ def _until_stopped(text: str, after: bool) -> str:
 def _until_hit(text: str) -> str:
     """The part before the blow: what follows it is the effect, not the approach."""
     for m in HIT.finditer(text):
-        if not re.search(
-            r"\b(?:avoid\w*|prior to|before|to|without|about|of|prevent\w*)\s+(?:\w+ )?$", text[: m.start()]
-        ):
+        if not rule("motion_reader.no_hit").search(text[: m.start()]):
             return text[: m.start()]
     return text
 
 
 def _until_rest(text: str) -> str:
-    cut = re.search(
-        r"\b(?:cam?e to|final|rotat|after|following|spun|spin|impact|facing|rest\b|pushed|continued|"
-        r"rolled|roll)",
-        text,
-    )
+    cut = rule("motion_reader.rest").search(text)
     return text[: cut.start()] if cut else text

@@ -5,10 +5,10 @@ Only what a vehicle of the report hits becomes an actor; non-contact cars, buses
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from sgcad_core.language import of_role
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.specs import ActorKind
 
@@ -20,12 +20,6 @@ class OtherFacts:
     id: str
     kind: ActorKind
     word: str
-
-
-_KINDS: tuple[tuple[str, ActorKind, re.Pattern[str]], ...] = (
-    ("P", "pedestrian", re.compile(r"pedestrian|walker|jogger", re.I)),
-    ("B", "bicycle", re.compile(r"bicycl|cyclist|bike", re.I)),
-)
 
 
 def others(blows: Iterable[Blow], vehicles: tuple[str, ...]) -> tuple[OtherFacts, ...]:
@@ -43,4 +37,7 @@ def others(blows: Iterable[Blow], vehicles: tuple[str, ...]) -> tuple[OtherFacts
 
 
 def _kind(word: str) -> tuple[str, ActorKind]:
-    return next(((letter, kind) for letter, kind, pattern in _KINDS if pattern.search(word)), ("O", "object"))
+    for road_user in of_role("road_user"):
+        if road_user.search(word):
+            return road_user.yields["letter"], road_user.yields["kind"]
+    return "O", "object"

@@ -6,103 +6,71 @@ Motion is never touched: a sentence goes only if it tells of persons alone. Know
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
-_NUMBER = r"(?:\d{1,3}|[a-z]+(?:[- ](?:one|two|three|four|five|six|seven|eight|nine))?)"
-_ROLE = "driver|passenger|occupant|pedestrian|rider|operator|bicyclist|person"
-_HELD = r"(?:un)?(?:belted|restrained|helmeted)"
-_AGE = re.compile(
-    rf"\b(?:(?P<the>the )|an? )?(?:{_HELD}[ ,]+)?{_NUMBER}[- ]?(?:year|yr)s?[- ]?(?:old|of[- ]age)\b"
-    rf"(?:[, ]+(?:white|black|hispanic|asian)\b)?(?:[, ]+{_HELD}\b)?"
-    r"(?:[, ]+(?:male|female|man|woman|boy|girl|gentleman|lady)\b)?"
-    rf"(?:[, ]+(?={_ROLE}))?",
-    re.IGNORECASE,
-)
-_SEX = re.compile(rf"\b(?:an? )?(?:male|female)\b ?({_ROLE})?", re.IGNORECASE)
-_NAME = re.compile(r"\b(?:Mr|Mrs|Ms|Miss|Dr)\.? [A-Z][a-z]+(?: [A-Z][a-z]+)?")
-_PERSON_ONLY = re.compile(
-    r"\b(?:(?:un)?injur\w*|hospital\w*|trauma|helicopter|fatal\w*"
-    r"|deceased|pronounced|died|sustained|fractur\w*"
-    r"|lacerat\w*|contusion\w*|abrasion\w*|concussion|complain\w* of|medical\w*|medicat\w*"
-    r"|prescri\w+|surgery|diabet\w*|asthma"
-    r"|blood pressure|health\w*|eyeglass\w*|glasses|contact lens\w*|myopi\w*|near[- ]?sighted|far[- ]?sighted"
-    r"|seat ?belts?|safety belts?|shoulder belts?|lap belt|three-point|restrain\w*|air ?bags?|pre-?tensioner"
-    r"|licen[sc]e\w*"
-    r"|alcohol\w*|intoxicat\w*|blood alcohol|drugs?|pregnan\w*|fatigu\w*|slept"
-    r"|apnea|drows\w*|belted|sleep\w* hours|case occupant|ambulance|transported|treated|released)\b",
-    re.IGNORECASE,
-)
-_CRASH = re.compile(
-    r"\b(?:struck|impact\w*|hit|collid\w*|contacted|rear-?ended|sideswip\w*|travel+ing|travel+ed|turn\w*|lanes?"
-    r"|intersection|road\w*|street|highway|north\w*|south\w*|east\w*|west\w*|stopped|stop sign|signal\w*|driveway"
-    r"|crossed|crossing|entered|drifted|ran off|swerv\w*|steer\w*|brak\w*|speed|mph|kmph|kph|curve\w*"
-    r"|driven by|operated by|drove"
-    r"|rotat\w*|front|rear|towed|came to rest|final rest|passing|merg\w*|backing|parked)\b",
-    re.IGNORECASE,
-)
-_PRONOUNS = (
-    (re.compile(r"\b(?:he|she)\b"), "they"), (re.compile(r"\b(?:He|She)\b"), "They"),
-    (re.compile(r"\bhis or her\b|\bhis/her\b", re.IGNORECASE), "their"),
-    (re.compile(r"\b(?:himself|herself)\b", re.IGNORECASE), "themself"),
-    (re.compile(r"\bhis\b"), "their"), (re.compile(r"\bHis\b"), "Their"),
-    (re.compile(r"\bher\b(?= (?:and|or|but|to|when|as|because|by|in|on|at|from|with|was|were|who)\b)"), "them"),
-    (re.compile(r"\bher\b(?= [a-z])"), "their"), (re.compile(r"\bHer\b"), "Their"),
-    (re.compile(r"\b(?:him|her)\b"), "them"),
-)  # fmt: skip
+from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.traced import Traced, joined
+
+_AGE = rule("privacy.age")
+_SEX = rule("privacy.sex")
+_NAME = rule("privacy.name")
+_PERSON_ONLY = rule("privacy.person_only")
+_CRASH = rule("privacy.crash")
 _PLURAL = {"was": "were", "is": "are", "has": "have", "does": "do", "wasn't": "weren't"}
-_AGREEMENT = re.compile(r"\b([Tt]hey )(was|is|has|does|wasn't)\b")
-_CONNECTOR = re.compile(r"^(?:and|but|who|with)\b,? ?")
-_CLAUSE = re.compile(r"(?=,? (?:who|and|but|with)\b)|(?=[,;] )")
-_MENTION = re.compile(
-    r"\b(?:vehicle|veh|unit|V)\b\.? ?#? ?(?:\d{1,2}|one|two|three|four)\b|\bV\d{1,2}\b", re.IGNORECASE
-)
-_PERSON = re.compile(r"(\s*)(?:He|She|(?:The|This) driver)\b(?! of)")
-_UNHURT = re.compile(r",? who (?:did not sustain any injur\w+|(?:was|were) (?:not|un)\s?injured)\b,?", re.IGNORECASE)
-_SENTENCE_END = re.compile(r"(?<=[.!?])(?=\s+[A-Z(\"'])|(?<=\n)")
+_AGREEMENT = rule("privacy.agreement")
+_CONNECTOR = rule("privacy.connector")
+_CLAUSE = rule("privacy.clause")
+_MENTION = rule("privacy.mention")
+_PERSON = rule("privacy.person")
+_UNHURT = rule("privacy.unhurt")
+_SENTENCE_END = rule("privacy.sentence_end")
 
 
 def redact(text: str) -> str:
     """The narrative without persons: sentences about people alone dropped, ages, sexes and names replaced."""
-    out = "".join(_parts_without_persons(_SENTENCE_END.split(text)))
-    out = _AGE.sub(lambda m: f"{m.group('the') or 'a '}person ", out)
-    out = _NAME.sub("a person", out)
-    out = _SEX.sub(lambda m: _person(m.group(0), m.group(1)), out)
-    out = re.sub(r"\bperson (driver|passenger|occupant|pedestrian|rider|operator|bicyclist)\b", r"\1", out)
-    for pattern, neutral in _PRONOUNS:
-        out = pattern.sub(neutral, out)
-    out = _AGREEMENT.sub(lambda m: m.group(1) + _PLURAL[m.group(2)], out)
-    out = re.sub(r"(^|[.!?]\s+)a person\b", r"\1A person", out)
-    return re.sub(r" +([.,;])", r"\1", re.sub(r"[ \t]{2,}", " ", out)).strip()
+    return redacted(Traced.of(text)).text
 
 
-def _parts_without_persons(sentences: Iterable[str]) -> Iterator[str]:
+def redacted(text: Traced) -> Traced:
+    """`redact` of a text whose characters know their places."""
+    out = joined(list(_parts_without_persons(text.split(_SENTENCE_END))))
+    out = out.sub(_AGE, lambda m: f"{m.group('the') or 'a '}person ").sub(_NAME, "a person")
+    out = out.sub(_SEX, lambda m: _person(m.group(0), m.group(1))).sub(rule("privacy.person_before_role"), r"\1")
+    for pronoun in of_role("personal_pronoun"):
+        out = out.sub(pronoun, pronoun.yields["to"])
+    out = out.sub(_AGREEMENT, lambda m: m.group(1) + _PLURAL[m.group(2)])
+    out = out.sub(rule("privacy.sentence_begins"), r"\1A person").sub(rule("privacy.spaces"), " ")
+    return out.sub(rule("privacy.space_before_mark"), r"\1").strip()
+
+
+def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
     """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it."""
     named: str | None = None
     for sentence in sentences:
         kept = _without_persons(sentence)
-        mention = _MENTION.search(sentence)
-        if not kept.strip(" .!?"):
+        mention = _MENTION.search(sentence.text)
+        if not kept.text.strip(" .!?"):
             named = mention.group(0) if mention else named
-        elif _PERSON.match(kept) and named:
-            kept, named = _PERSON.sub(rf"\1The driver of {named}", kept, count=1), None
-        elif _MENTION.search(kept):
+        elif _PERSON.match(kept.text) and named:
+            kept, named = kept.sub(_PERSON, rf"\1The driver of {named}", 1), None
+        elif _MENTION.search(kept.text):
             named = None
         yield kept
 
 
-def _without_persons(sentence: str) -> str:
+def _without_persons(sentence: Traced) -> Traced:
     """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
-    if not _PERSON_ONLY.search(sentence):
+    if not _PERSON_ONLY.search(sentence.text):
         return sentence
-    body, end = re.fullmatch(r"(.*?)([.!?]*\s*)", sentence, re.DOTALL).groups()  # type: ignore[union-attr]
-    clauses = _CLAUSE.split(_UNHURT.sub("", body))
-    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause)]
-    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(kept))):
+    ends = rule("privacy.body_and_end").fullmatch(sentence.text).start(2)  # type: ignore[union-attr]
+    body, end = sentence.cut(0, ends), sentence.cut(ends, len(sentence.text))
+    clauses = body.sub(_UNHURT, "").split(_CLAUSE)
+    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause.text)]
+    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(k.text for k in kept))):
         kept = []  # what is left has lost its subject and tells of no motion
-    text = _CONNECTOR.sub("", "".join(kept).strip(" ,;"))
-    space = re.match(r"\s*", body).group(0)  # type: ignore[union-attr]
-    return space + text + end if text else end.strip(".!? ")
+    text = joined(kept).strip(" ,;").sub(_CONNECTOR, "")
+    space = body.cut(0, rule("privacy.leading_space").match(body.text).end())  # type: ignore[union-attr]
+    return joined([space, text, end]) if text.text else end.strip(".!? ")
 
 
 def _tells_of_persons_alone(clause: str) -> bool:

@@ -5,13 +5,14 @@ Reads resolved sentences. Knows no junction and no lane.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
-from sgcad_core.narrative.compass import DIRECTION, compass_of
+from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
 
@@ -24,6 +25,7 @@ class SpeedLimit(NamedTuple):
     mph: int
     axis: Compass | None
     cross: bool
+    cue: Cue
 
 
 class Curve(NamedTuple):
@@ -31,26 +33,24 @@ class Curve(NamedTuple):
 
     side: Literal["left", "right"]
     toward: Compass | None
+    cue: Cue
 
 
-_LIMIT = re.compile(
-    r"\bspeed[ -]?limit\w*|\bposted\b|\bspeed zone\b|\blimit (?:is|was|of)\b|\bspeed (?:for|on) the\b", re.I
-)
-_VALUE = re.compile(r"(?<![\d.])(\d{1,3})\s*(mph|kmph)\b", re.I)
-_ADVISED = re.compile(r"\b(?:advisory|suggested|recommended|warning|caution)\b[^.;]{0,40}$", re.I)
-_SIDE_WORD = re.compile(
-    r"\b(?:side|intersecting|secondary|minor|crossing|cross|other|ramp)\b[ -]?(?:street|road\w*|ramp)?", re.I
-)
-_WAY = re.compile(rf"\b((?:{DIRECTION})(?:bound)?)\b", re.I)
+_LIMIT = rule("road_details.limit")
+_VALUE = rule("road_details.value")
+_ADVISED = rule("road_details.advised")
+_SIDE_WORD = rule("road_details.side_word")
+_WAY = rule("road_details.way")
 
 
 def speed_limits(told: Iterable[Told], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
     """Every posted limit in order, mph (a limit in km/h only is converted to the nearest 5 mph)."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
-    return tuple(limit for t in story for limit in _limits(t.text, headings))
+    return tuple(limit for t in story for limit in _limits(t, headings))
 
 
-def _limits(text: str, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
+def _limits(told: Told, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
+    text = told.text
     start = _LIMIT.search(text)
     if not start:
         return
@@ -62,14 +62,14 @@ def _limits(text: str, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
         behind = text[m.end() : stated[index + 1].start() if index + 1 < len(stated) else len(text)]
         if 5 <= mph <= 85:
             axis, cross = _whose(before, behind, headings)
-            yield SpeedLimit(mph, axis, cross)
+            yield SpeedLimit(mph, axis, cross, Cue(told.number, m[0], _LIMIT.id))
 
 
 def _whose(before: str, behind: str, headings: Mapping[str, Compass]) -> tuple[Compass | None, bool]:
     """ "... for the westbound lane" behind the value, else the subject before it."""
-    tail = re.match(r"[\s),.]*(?:for|on|in)\b([^.;]{0,60})", behind)
+    tail = rule("road_details.for_whom").match(behind)
     for part in ([tail[1]] if tail else []) + [before]:
-        if re.search(r"\b(?:both|all|each|area|either)\b", part, re.I):
+        if rule("road_details.everywhere").search(part):
             return None, False
         axis = axis_in(part) or _axis_of(part, headings)
         if axis or _SIDE_WORD.search(part):
@@ -79,33 +79,22 @@ def _whose(before: str, behind: str, headings: Mapping[str, Compass]) -> tuple[C
 
 def _axis_of(part: str, headings: Mapping[str, Compass]) -> Compass | None:
     ways = [compass_of(m[1]) for m in _WAY.finditer(part)]
-    named = [headings[v] for v in re.findall(r"\bV\d+\b", part) if v in headings]
+    named = [headings[v] for v in rule("common.vehicle").findall(part) if v in headings]
     axes = {axis_of(w) for w in ways if w} or {axis_of(h) for h in named}
     return next(iter(axes)) if len(axes) == 1 else None
 
 
-_CURVE = re.compile(
-    r"\bcurv(?:e|es|ed|ing)\b,? ?(?:slightly |sharply |gently )?(?:(?:to|toward)s? the |to |-)?(?P<after>left|"
-    r"right)\b(?! (?:turn|lane|side))|"
-    r"\b(?P<before>left|right)[ -](?:hand )?(?:\w+ )?curv(?:e|ing)\b|\bbend(?:s|ing)? to the (?P<bend>left|right)\b|"
-    r"\bcurve (?:in the (?:road\w*|highway) )?to (?:the |his |her |its )?(?P<to>left|right)\b", re.I)  # fmt: skip
-_NEARBY = re.compile(
-    r"\b(?:prior to|before|after|past|beyond|feet|meters|away from|m (?:north|south|east|west))\b[^.;]{0,30}$", re.I
-)
-_BARE_CURVE = re.compile(
-    r"\b(?:is|was|a|slightly|sharply|the) curved\b|\bnegotiat\w+ (?:a|the|an) (?:\w+ ){0,2}curve\b|"
-    r"\bon a (?:\w+ )?curve\b|\bcurved,",
-    re.I,
-)
+_CURVE = rule("road_details.curve")
+_NEARBY = rule("road_details.nearby")
+_BARE_CURVE = rule("road_details.bare_curve")
 
 
 def curves(told: Sequence[Told], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
     """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     found = tuple(c for t in story for c in _curves(t, headings))
-    if not found and any(_BARE_CURVE.search(t.text) for t in story):
-        return (Curve("left", None),)
-    return found
+    bare = [Cue(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
+    return found or tuple(Curve("left", None, cue) for cue in bare[:1])
 
 
 def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
@@ -113,13 +102,14 @@ def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
         side = next(filter(None, m.groups())).lower()
         if _NEARBY.search(told.text[: m.start()]):
             continue
-        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings))
+        cue = Cue(told.number, m[0], _CURVE.id)
+        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
 
 
 def _driven(told: Told, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:
     """The direction of travel in which the curve has that side."""
-    before = [v for v in re.findall(r"\bV\d+\b", told.text[:start]) if v in headings]
-    behind = re.match(r"[^.;]{0,90}?\bfor (V\d+)\b", told.text[end:])
+    before = [v for v in rule("common.vehicle").findall(told.text[:start]) if v in headings]
+    behind = rule("road_details.for_vehicle").match(told.text[end:])
     if behind and behind[1] in headings:
         return headings[behind[1]]
     if before:

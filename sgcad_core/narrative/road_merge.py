@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.lane_sources import also, both
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of
 from sgcad_core.specs import Compass
@@ -25,10 +26,14 @@ class GatheredRoad:
     vehicles: list[str] = field(default_factory=list)
     cross: bool = False
     sentences: list[int] = field(default_factory=list)
+    axis_at: int | None = None
+    """The sentence that names the axis; None: it follows from the vehicles."""
 
     def take(self, mention: RoadMention) -> None:
         """Add what a mention says; what was said first stays."""
         self.axis = self.axis or mention.axis
+        if self.axis_at is None and mention.axis and mention.axis == self.axis:
+            self.axis_at = mention.sentence
         self.lanes = merged(self.lanes, mention.lanes)
         self.vehicles += [v for v in mention.vehicles if v not in self.vehicles and mention.how == "on"]
         self.sentences.append(mention.sentence)
@@ -42,7 +47,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
     for way, count in more.toward.items():
         turn_only = first.toward.get(way) == len(first.turns.get(way, ()))
         toward[way] = count if turn_only and count > toward[way] else toward[way]
-    return replace(
+    found = replace(
         first, total=first.total or more.total, each_way=first.each_way or more.each_way, toward=toward,
         turns={**more.turns, **first.turns} if len(more.turns) <= len(first.turns) else {**first.turns, **more.turns},
         one_way=more.one_way if first.one_way is None else first.one_way,
@@ -50,6 +55,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
         divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
     )  # fmt: skip
+    return both(found, first, more)
 
 
 def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> list[GatheredRoad]:
@@ -77,7 +83,7 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
                 road.lanes = replace(road.lanes, one_lane=True)
     for road in roads:
         if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
-            road.lanes = replace(road.lanes, total=1)
+            road.lanes = replace(road.lanes, total=1, where=also(road.lanes, "total", "one_way"))
     return roads
 
 
@@ -86,7 +92,8 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
     way = next((headings[v] for v in m.vehicles if v in headings), None)
     if not m.lanes.own or not way or way in m.lanes.toward:
         return m
-    return replace(m, lanes=replace(m.lanes, toward={**m.lanes.toward, way: m.lanes.own}))
+    where = also(m.lanes, f"toward {way}", "own")
+    return replace(m, lanes=replace(m.lanes, toward={**m.lanes.toward, way: m.lanes.own}, where=where))
 
 
 def _informative(m: RoadMention) -> bool:

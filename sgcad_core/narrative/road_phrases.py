@@ -5,21 +5,11 @@ Knows where such phrases begin and end, not what they mean.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
-from sgcad_core.narrative.lanes import DIR
+from sgcad_core.language import rule
 
-_HEAD = re.compile(
-    r"\b(?:(?:side|main|through|cross|public|private|city|state|county|service|frontage|access|residential|entrance|"
-    r"exit|on|off)[ -])?"
-    r"(?:road(?:way)?s?|streets?|avenues?|highways?|freeways?|interstates?|expressways?|boulevards?|trafficways?|"
-    r"turnpikes?|"
-    r"parkways?|bridges?|overpass|ramps?|arterials?|thoroughfares?|routes?|alleys?|driveways?|carriageways?|"
-    r"T-intersection|intersections?|"
-    r"crossover)\b(?![ -](?:surface|sign|edge|work|construction|department|side\b(?! street)|conditions?|rage|test|"
-    r"report|crew|level)s?)",
-    re.I)  # fmt: skip
+_HEAD = rule("road_phrases.head")
 _STOP = frozenset({
     "a", "an", "the", "this", "that", "these", "another", "each", "both", "all", "of", "on", "in", "at", "into",
     "onto", "from", "to", "along", "near", "by", "for", "was", "is", "were", "are", "had", "has", "with", "where",
@@ -53,9 +43,9 @@ def _in_brackets(between: str) -> bool:
 def _phrase_start(text: str, at: int) -> int:
     """Back over the modifiers to the determiner, or to the word that cannot stand in a noun phrase."""
     start = at
-    for word in reversed(list(re.finditer(r"[^\s]+", text[:at]))[-16:]):
+    for word in reversed(list(rule("road_phrases.word").finditer(text[:at]))[-16:]):
         token = word[0].strip(",()\"'").lower()
-        if word[0][-1] in ".;:)" or re.fullmatch(r"V\d+", token):
+        if word[0][-1] in ".;:)" or rule("road_phrases.vehicle").fullmatch(token):
             break
         if token in _STOP and not _within_pair(text, word.start(), token):
             return word.start() if token in _DETERMINERS else start
@@ -65,5 +55,5 @@ def _phrase_start(text: str, at: int) -> int:
 
 def _within_pair(text: str, at: int, token: str) -> bool:
     """The "to" of "east to west"."""
-    before = re.search(rf"({DIR})\s*$", text[:at], re.I)
-    return token in ("to", "/") and bool(before and re.match(rf"to ({DIR})\b", text[at:], re.I))
+    before = rule("road_phrases.direction_before").search(text[:at])
+    return token in ("to", "/") and bool(before and rule("road_phrases.direction_behind").match(text[at:]))

@@ -1,4 +1,4 @@
-"""The roads of a crash as its narrative tells them: `road_facts` is the one entry.
+"""The roads of a crash as its narrative tells them.
 
 Roads with lanes as stated, their junction, limits and curves, and who is on them. What the text leaves open
 stays None here; `sgcad_core.narrative.layout_facts` fills it. Knows no road network format.
@@ -6,22 +6,23 @@ stays None here; `sgcad_core.narrative.layout_facts` fills it. Knows no road net
 
 from __future__ import annotations
 
-import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.narrative.clauses import Told, tell
-from sgcad_core.narrative.compass import COMPASS, between, compass_of, turned
-from sgcad_core.narrative.facts import CrashFacts, VehicleFacts, crash_facts
+from sgcad_core.language import rule
+from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
+from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts, junction_of
-from sgcad_core.narrative.lanes import BOUND, LaneFacts
+from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
-from sgcad_core.narrative.motion import DRIVES
+from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
-from sgcad_core.narrative.text import sentences
-from sgcad_core.narrative.vehicles import roster
+from sgcad_core.narrative.unsupported import unsupported_places
+from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Compass
 
 
@@ -38,6 +39,8 @@ class RoadFact:
     curve: tuple[tuple[Compass, Literal["left", "right"]], ...] = ()
     """(travel direction, side) of each bend told."""
     rural: bool = False
+    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    """Where axis, limit, each curve ("curve N") and "rural" were read; lanes know their own."""
 
     @property
     def ways(self) -> tuple[tuple[Compass, int], ...]:
@@ -49,8 +52,8 @@ class RoadFact:
 class RoadFacts:
     """All roads of a crash, the streets first; `crash`: the vehicles that the roads must carry.
 
-    Where no heading is told, the headings in `crash` are turned to fit the roads (`crash_facts` alone cannot);
-    a told lane ("in the eastbound lanes") then makes them `oriented`.
+    Where no heading is told, the headings in `crash` are turned to fit the roads; a told lane ("in the eastbound
+    lanes") then makes them `oriented`.
     """
 
     roads: tuple[RoadFact, ...]
@@ -66,23 +69,29 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
 
 
-def road_facts(narrative: str, crash: CrashFacts | None = None) -> RoadFacts:
-    """Read the roads off a report. Never raises; a text without roads gives none. `crash` saves reading twice."""
-    crash = crash or crash_facts(narrative)
-    found = sentences(narrative)
-    who = roster(s.text for s in found)
-    told = tell(found, who)
+def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+    """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions = road_mentions(_telling(told), who.ids)
     crash = _oriented(crash, mentions, told)
     headings = {v.id: v.heading for v in crash.vehicles if v.heading}
     gathered = gather(mentions, headings)
-    junction = junction_of(told, crash.vehicles, gathered)
+    junction = replace(junction_of(told, crash.vehicles, gathered), unsupported=unsupported_places(told))
     limits, bends = speed_limits(told, headings), curves(told, headings)
-    rural = any(t.role in CRASH_ROLES and _RURAL.search(t.text) for t in told)
-    roads = tuple(replace(_road(r, gathered, limits, bends, headings), rural=rural) for r in gathered)
+    rural = _rural(told)
+    roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
     return RoadFacts(roads, junction, crash, _open_ends(roads, junction, crash), merge_lane)
+
+
+def _rural(told: tuple[Told, ...]) -> Cue | None:
+    """Where the text says that the crash was in the country."""
+    story = (t for t in told if t.role in CRASH_ROLES)
+    return next((Cue(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
+
+
+def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
+    return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
 
 
 def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
@@ -93,9 +102,9 @@ def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadF
     return replace(road, lanes=replace(road.lanes, center_turn_lane=False))
 
 
-_MERGE_LANE = re.compile(r"\b(?:merg(?:e|ing)|acceleration|auxiliary)(?: \w+)? lane\b", re.I)
-_RURAL = re.compile(r"\brural\b|\bcountry (?:road|highway|lane)", re.I)
-_PLACE = re.compile(rf"\b(?:in|into|on) (?:the )?(?:\w+ )?({BOUND})(?: \w+)? lanes?\b", re.I)
+_MERGE_LANE = rule("roads.merge_lane")
+_RURAL = rule("roads.rural")
+_PLACE = rule("roads.place")
 
 
 def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Told, ...]) -> CrashFacts:
@@ -135,39 +144,39 @@ def _road(
     streets = [r for r in all_roads if r.kind not in ("driveway", "ramp")]
     along = [h for h in headings.values() if axis_of(h) == road.axis]
     lead = (along[0] if along else road.axis) if streets and road is streets[0] else None
+    limit = _limit(road, limits) if road.kind != "driveway" else None
+    curves = _bends(road, lead, bends)
+    where = {f"curve {way}": bend.cue for way, bend in curves.items()}
+    where |= {"axis": Cue(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
+    where |= {"speed_limit": limit.cue} if limit else {}
     return RoadFact(
         road.axis, road.kind, road.lanes, tuple(road.vehicles), road.cross,
-        _limit(road, limits) if road.kind != "driveway" else None, _bends(road, lead, bends),
+        limit.mph if limit else None, tuple((way, bend.side) for way, bend in curves.items()), where=where,
     )  # fmt: skip
 
 
-def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> int | None:
+def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | None:
     """The road's own limit, else one that holds for all."""
-    own = [limit.mph for limit in limits if limit.axis and limit.axis == road.axis]
-    cross = [limit.mph for limit in limits if limit.cross and not limit.axis and road.cross]
-    everywhere = [limit.mph for limit in limits if not limit.axis and not limit.cross]
+    own = [limit for limit in limits if limit.axis and limit.axis == road.axis]
+    cross = [limit for limit in limits if limit.cross and not limit.axis and road.cross]
+    everywhere = [limit for limit in limits if not limit.axis and not limit.cross]
     return next(iter(own + cross + everywhere), None)
 
 
-def _bends(
-    road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]
-) -> tuple[tuple[Compass, Literal["left", "right"]], ...]:
+def _bends(road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]) -> dict[Compass, Curve]:
     """Bends of the road's own directions; one without belongs to the main road as its first vehicle drives (`lead`)."""
-    found: dict[Compass, Literal["left", "right"]] = {}
+    found: dict[Compass, Curve] = {}
     for bend in bends:
         if bend.toward and road.axis and axis_of(bend.toward) == road.axis:
-            found.setdefault(bend.toward, bend.side)
-    return tuple(found.items()) or tuple((lead, bend.side) for bend in bends[:1] if lead and bend.toward is None)
-
-
-_AXIS_WORDS = {"N": "north-south", "NE": "northeast-southwest", "E": "east-west", "SE": "southeast-northwest"}
+            found.setdefault(bend.toward, bend)
+    return found or ({lead: bends[0]} if lead and bends and bends[0].toward is None else {})
 
 
 def _open_ends(roads: tuple[RoadFact, ...], junction: JunctionFacts, crash: CrashFacts) -> tuple[str, ...]:
     """What a layout has to assume because the text does not say it."""
     streets = [r for r in roads if r.kind not in ("driveway", "ramp")]
     notes = [
-        f"the {_AXIS_WORDS[r.axis or 'N']} road's lanes are not stated"
+        f"the {AXIS_NAMES[r.axis or 'N']} road's lanes are not stated"
         for r in streets
         if not (r.lanes.total or r.lanes.each_way or r.lanes.toward or r.lanes.one_way)
     ]

@@ -1,7 +1,7 @@
 """The text of a crash report made uniform: one spelling per mention, unit and direction; sentences.
 
-`normalize` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
-"V 1" all become "V1". Knows no facts.
+`normalised` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
+"V 1" all become "V1". Every character keeps its place in the text that was given. Knows no facts.
 """
 
 from __future__ import annotations
@@ -9,30 +9,35 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
+from sgcad_core.narrative.traced import Traced, joined
 from sgcad_core.narrative.unnumbered import number_vehicles
 
-__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalize", "sentences"]
+__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 
-NUMBERS = {
-    "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
-}  # fmt: skip
+NUMBERS: dict[str, int] = values("number_word")
+MOST_READ = 16_000
+"""Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
+_TAIL = 12
+"""Characters at the end of a piece in which an abbreviation can stand."""
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
-_NUMBER = rf"(?:\d{{1,2}}|{'|'.join(NUMBERS)})"
-NUM = rf"(?:{_NUMBER}|a single|single)"
-"""A count of lanes."""
-_COMPASS = r"(?:north|south)(?:[ -]?(?:east|west))?|east|west"
 
 
 class Sentence(NamedTuple):
-    """One normalized sentence, what it is for, and where it stands (both counted from 0)."""
+    """One normalized sentence, what it is for, and where it stands (all counted from 0).
+
+    [start, end): its characters in the text as it was given, white space around left out.
+    """
 
     text: str
     role: Role
     number: int
     paragraph: int
+    start: int = 0
+    end: int = 0
 
 
 # ------------------------------------------------------------------ characters
@@ -42,77 +47,15 @@ _CHARACTERS = str.maketrans({
     "\x0c": "\n", "\u2028": "\n", "\u2029": "\n", "\x85": "\n",
 })  # fmt: skip
 
-_TYPOS = {
-    "easr": "east", "raod": "road", "raodway": "roadway", "roaday": "roadway", "roadwy": "roadway", "waitng": "waiting",
-    "becuase": "because", "becasue": "because", "hosptial": "hospital", "precrsh": "precrash", "drdiver": "driver",
-    "dirver": "driver", "approxiamtely": "approximately", "approximatley": "approximately", "assosiative": "associated",
-    "associative": "associated", "thru": "through", "loosing": "losing", "waived": "waved",
-    "intesection": "intersection",
-    "intersecton": "intersection", "interesection": "intersection", "vehcile": "vehicle", "vehicel": "vehicle",
-    "vechicle": "vehicle", "vehilce": "vehicle", "veihcle": "vehicle", "vehice": "vehicle",
-    "travelling": "traveling", "traveing": "traveling", "travling": "traveling", "negoatiating": "negotiating",
-    "negotating": "negotiating", "negociating": "negotiating", "manuever": "maneuver", "manuver": "maneuver",
-    "manoeuvre": "maneuver", "centreline": "centerline", "lefthand": "left", "righthand": "right",
-    "struct": "struck", "strcuk": "struck", "sturck": "struck", "collied": "collided",
-    "contacetd": "contacted", "conctacted": "contacted", "imapcted": "impacted", "imapct": "impact",
-    "lighed": "lighted", "daylite": "daylight", "daylght": "daylight", "striaght": "straight", "staight": "straight",
-    "signalled": "signaled", "unsignalled": "unsignaled", "sideswipped": "sideswiped", "teh": "the", "adn": "and",
-    "infront": "in front", "inthe": "in the", "onthe": "on the", "ofthe": "of the",
-    "alot": "a lot", "oppostie": "opposite", "opposit": "opposite",
-    "northound": "northbound", "southound": "southbound", "eastound": "eastbound", "westound": "westbound",
-    "nortbound": "northbound", "soutbound": "southbound", "eastboud": "eastbound", "westboud": "westbound",
-}  # fmt: skip
-_TYPO = re.compile(rf"\b({'|'.join(map(re.escape, _TYPOS))})\b", re.I)
+_TYPO = rule("text.typo")
 
-_COUNTED = (
-    "lanes?|years?|quarters?|points?|doors?|ways?|vehicles?|wheels?|times|occupants?|people|feet|meters?|cars?|legs?"
-)
+
 # ------------------------------------------------------------------ mentions, units, directions
-_SPELLINGS: tuple[tuple[str, str], ...] = (
-    (r"(?-i:\b([a-z]{2,})(V\d{1,2})\b)", r"\1 \2"),
-    # a vehicle's number
-    (rf"\b(?:vehicle|veh)s?\b\.?\s*(?:#|no\.?|number|num\.?|"
-     rf"-)?\s*\.?\s*#?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"V\1"),
-    (rf"\bV\s*(?:#|-)?\s*({_NUMBER})\b", r"V\1"),
-    (rf"\b(?:traffic )?unit\s*(?:#|no\.?|number)?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"V\1"),
-    (r"\bD(\d)\b(?!-)", r"the driver of V\1"),
-    (rf"\bdriver\s*(?:#|no\.?|number)?\s*({_NUMBER})\b(?!\s*[-/]?\s*(?:{_COUNTED})\b)", r"the driver of V\1"),
-    # "V1 (V1 - case vehicle)", "V1 (case vehicle)"
-    (r"\bV(\d+)\s*,?\s*\(\s*V\1\b[^()]{0,40}\)", r"V\1"),
-    (r"\bV(\d+)\s*\(\s*(?:the )?case vehicle\s*\)", r"V\1"),
-    (r"\(\s*V(\d+)\s*\)", r"(V\1)"),
-    (r"\(\s*V(\d+)\s*[-,:;]\s*", r"(V\1, "),
-    (r"\(([^()]{1,60}?)\s*[-,:;]\s*V(\d+)\s*\)", r"(V\2, \1)"),
-    (r"\bV(\d+)\s*,\s*(?=\S)", r"V\1, "),
-    (r"\bV(\d+)(?=(?:19|20)\d\d\b)", r"V\1 "),
-    # units
-    (r"(?<=\d)\s*(?:kmph|kmp|kpmh|kphm|kph|km/h|km/hr|kmh|kilomet(?:er|re)s (?:per|an) hour)\b\.?", " kmph"),
-    (r"(?<=\d)\s*(?:mph|m\.p\.h\.|mi/h|mhp|miles (?:per|an) hour)(?![a-z])", " mph"),
-    # directions
-    (rf"\b({_COMPASS})[ -]+bound(?:ed)?\b", r"\1bound"),
-    (r"\b(north|south)[ -](east|west)(?=\b|bound|erly|ern)", r"\1\2"),
-    (r"\bN\s?/?\s?B\b", "northbound"), (r"\bS\s?/?\s?B\b", "southbound"),
-    (r"\bE\s?/?\s?B\b", "eastbound"), (r"\bW\s?/?\s?B\b", "westbound"),
-    (r"\b(north|south|east|west)ward(?:s|ly)?\b", r"\1"),
-    # roads
-    (r"(?<![\w-])(?:type )?[\"']?T[\"']?[ -]*(?:type |style )?(?:legged )?intersection", "T-intersection"),
-    (r"\b(?:three|3)[ -]?(?:legged|leg|way)[ -]intersection", "T-intersection"),
-    (r"\b(?:four|4)[ -]?(?:legged|leg|way)[ -]intersection", "four-leg intersection"),
-    (r"\bcent(?:er|re)[ -]line\b", "centerline"),
-    (r"\btraffic way", "trafficway"), (r"\bu[ -]turn", "u-turn"),
-    (r"\btractor[ -]trailer", "tractor-trailer"), (r"\bpick[ -]up\b(?=(?: truck)?\b)", "pickup"),
-    (r"\brear[ -]end(ed|ing|s)?\b", r"rear-end\1"), (r"\bside[ -]swip", "sideswip"), (r"\bhead[ -]on\b", "head-on"),
-    (r"\bit's (?=(?:front|rear|back|left|right|side|lane|own|path|top|trailer|driver|final|bumper|brakes|"
-     r"passenger)\b)", "its "),
-    (r"\bpre[ -]crash\b", "precrash"), (r"\bcounter[ -]clockwise\b", "counterclockwise"),
-)  # fmt: skip
-_PATTERNS = tuple((re.compile(pattern, re.I), to) for pattern, to in _SPELLINGS)
-_LETTERED = re.compile(r"\b[Vv]ehicle ([A-D])\b(?!-| ?pillar)")
-_VEHICLE_WORD = re.compile(rf"\bV({'|'.join(NUMBERS)})\b", re.I)
-_VEHICLE_CASE = re.compile(r"\bv0*(\d+)\b", re.I)
-_COUNTED_LANE = re.compile(
-    rf"(?<!#)(?<!# )(?<!number )\b({'|'.join(_WORDS)}|{'|'.join(NUMBERS)})[ -]+lane\b(?!s)", re.I
-)
+
+_LETTERED = rule("text.lettered")
+_VEHICLE_WORD = rule("text.vehicle_word")
+_VEHICLE_CASE = rule("text.vehicle_case")
+_COUNTED_LANE = rule("text.counted_lane")
 
 
 def normalize(text: str) -> str:
@@ -120,52 +63,52 @@ def normalize(text: str) -> str:
 
     Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
     """
-    return "\n\n".join(filter(None, (_paragraph(block) for block in _blocks(text))))
+    return normalised(Traced.of(text)).text
 
 
-def _blocks(text: str) -> list[str]:
+def normalised(text: Traced) -> Traced:
+    """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
+    return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
+
+
+def _blocks(text: Traced) -> list[Traced]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
-    text = re.sub(r"[ ]+\n", "\n", text.translate(_CHARACTERS))
-    return re.split(r"\n\s*\n|(?<=[.!?\"):])\n(?=\s*[A-Z\"])", text)
+    plain = text.translate(_CHARACTERS)
+    return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
 
 
-def _paragraph(block: str) -> str:
+def _paragraph(block: Traced) -> Traced:
     once = _spell(block)
     for _ in range(4):
         again = _spell(once)
-        if again == once:
+        if again.text == once.text:
             break
         once = again
     return once
 
 
-def _spell(text: str) -> str:
-    text = _spaces(text)
-    text = _TYPO.sub(_mend_typo, text)
-    for pattern, to in _PATTERNS:
-        text = pattern.sub(to, text)
-    text = re.sub(r"\bV[iIl]\b", "V1", text)
-    text = _LETTERED.sub(lambda m: f"V{ord(m.group(1)) - ord('A') + 1}", text)
-    text = _VEHICLE_WORD.sub(lambda m: f"V{NUMBERS[m.group(1).lower()]}", text)
-    text = _VEHICLE_CASE.sub(r"V\1", text)
-    text = _COUNTED_LANE.sub(_mend_lanes, text)
+def _spell(text: Traced) -> Traced:
+    text = _spaces(text).sub(_TYPO, _mend_typo)
+    for spelling in of_role("spelling"):
+        text = text.sub(spelling, spelling.yields["to"])
+    text = text.sub(rule("text.first_vehicle"), "V1")
+    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
     return _spaces(text)
 
 
-def _spaces(text: str) -> str:
+def _spaces(text: Traced) -> Traced:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
-    text = re.sub(r"\s*\.(?:\s*\.)+", ".", re.sub(r"\s+", " ", text))
-    text = re.sub(r"\s+([,;.])(?=\s|$)", r"\1", text)
-    text = re.sub(r"(?<=[a-z\d)%\"])\.(?=[A-Z\"])|(?<=mph)\.(?=[A-Z])|(?<=MPH)\.(?=[A-Z])", ". ", text)
-    text = re.sub(r"(?<=[A-Za-z)]),(?=[A-Za-z\d])", ", ", text)
-    text = re.sub(r"(?<=[a-z\d)])\((?=\w)", " (", text)
-    text = re.sub(r"(?<=[\w)])\)(?=[A-Za-z\d])", ") ", text)
-    return re.sub(r" +", " ", text).strip()
+    text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
+    text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
+    text = text.sub(rule("text.glued_comma"), ", ").sub(rule("text.glued_bracket"), " (")
+    return text.sub(rule("text.glued_behind_bracket"), ") ").sub(rule("text.spaces"), " ").strip()
 
 
 def _mend_typo(match: re.Match[str]) -> str:
     word = match.group(0)
-    to = _TYPOS[word.lower()]
+    to: str = values("typo")[word.lower()]
     return to.capitalize() if word[0].isupper() else to
 
 
@@ -176,35 +119,39 @@ def _mend_lanes(match: re.Match[str]) -> str:
 
 
 # ------------------------------------------------------------------ sentences
-_ABBREVIATION = re.compile(
-    r"\b(?:approx|no|st|ave|rd|rt|rte|hwy|blvd|dr|mr|mrs|ms|jr|vs|etc|e\.g|i\.e|u\.s|a\.m|p\.m|lbs?|ft|min|hrs?|"
-    r"yrs?|inc|co|"
-    r"[A-Z])\.$", re.I)  # fmt: skip
-_END = re.compile(r"(?<=[.!?])[\"')]*\s+(?=[\"'(]*[A-Z\d])")
+_ABBREVIATION = rule("text.abbreviation")
+_END = rule("text.end")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
-    """The report's sentences in order, normalized, with roles; vehicles without numbers get some."""
+    """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
+    return split_sentences(normalised(Traced.of(text)))
+
+
+def split_sentences(text: Traced) -> tuple[Sentence, ...]:
+    """The sentences of a normalized text."""
     found: list[Sentence] = []
-    for number, block in enumerate(filter(None, number_vehicles(normalize(text)).split("\n\n"))):
+    blocks = [block for block in number_vehicles(text).split_at("\n\n") if block.text]
+    for number, block in enumerate(blocks):
         for piece in _split(block):
-            found.append(Sentence(piece, role_of(piece), len(found), number))
+            found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))
     return tuple(found)
 
 
-def _split(block: str) -> list[str]:
-    pieces: list[str] = []
-    for part in _END.split(block):
-        joins = pieces and _ABBREVIATION.search(pieces[-1]) and not pieces[-1].lower().endswith((" dr.", " st."))
+def _split(block: Traced) -> list[Traced]:
+    pieces: list[Traced] = []
+    for part in block.split(_END):
+        last = pieces[-1].text[-_TAIL:] if pieces else ""
+        joins = pieces and _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
         if pieces and joins:
-            pieces[-1] += " " + part
+            pieces[-1] = joined([pieces[-1], part], " ")
         else:
             pieces.append(part)
-    return [cut.strip() for piece in pieces for cut in _cut(piece) if cut.strip()]
+    return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
 
 
-def _cut(sentence: str) -> list[str]:
+def _cut(sentence: Traced) -> list[Traced]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
-    if len(sentence) <= LONGEST:
+    if len(sentence.text) <= LONGEST:
         return [sentence]
-    return re.findall(rf"(?s).{{1,{LONGEST}}}(?:\s|$)|.{{1,{LONGEST}}}", sentence)
+    return [sentence.cut(m.start(), m.end()) for m in rule("text.piece").finditer(sentence.text)]

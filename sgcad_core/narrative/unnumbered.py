@@ -8,35 +8,28 @@ from __future__ import annotations
 
 import re
 
-from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES
+from sgcad_core.language import rule
+from sgcad_core.narrative.traced import Traced
 
-_YEAR = r"(?:19|20)\d\d"
-_MAKE = "|".join(sorted(map(re.escape, MAKES), key=len, reverse=True))
-_BODY = "|".join(sorted((re.escape(b) for b in BODY_WORDS), key=len, reverse=True))
-_COLOR = "|".join(COLORS)
-_STOP = r"(?:was|were|is|are|had|has|that|which|who|when|and|pulled|turned|struck|hit|traveling|driven|"
-_STOP += r"in|on|at|with|from|made|failed)"
-_DESCRIBED = re.compile(
-    rf"\b(?:an?|another)\s+(?P<what>(?:(?:{_COLOR}|{_YEAR}|small|large|full-size|compact|loaded|second|two-door|"
-    rf"four-door)[ ,]+)*"
-    rf"(?:(?P<make>{_MAKE})(?: (?!{_STOP}\b)[A-Z0-9][\w.-]*){{0,3}}(?: (?:{_BODY}))*|(?P<body>{_BODY})))\b(?! "
-    rf"(?:stop|lane|dealer|driver|in front))",
-    re.I)  # fmt: skip
-_STRANGER = re.compile(r"\b(?:non-?contact|unknown|uninvolved|parked cars?|unidentified)\s*$", re.I)
+_DESCRIBED = rule("unnumbered.described")
+_STRANGER = rule("unnumbered.stranger")
 _MOST = 6
+_NEAR = 40
+"""Characters before a description in which a word may say that it is of a stranger."""
 
 
-def number_vehicles(text: str) -> str:
+def number_vehicles(text: Traced) -> Traced:
     """The normalized text with a number behind each first description; unchanged if there is any number."""
-    if re.search(r"\bV\d+\b", text):
+    if rule("common.vehicle").search(text.text):
         return text
     seen: dict[str, int] = {}
 
     def numbered(match: re.Match[str]) -> str:
         key = (match["make"] or match["body"]).lower()
-        if key in seen or len(seen) == _MOST or _STRANGER.search(text[: match.start()]):
+        near = match.string[max(0, match.start() - _NEAR) : match.start()]
+        if key in seen or len(seen) == _MOST or _STRANGER.search(near):
             return match.group()
         seen[key] = len(seen) + 1
         return f"{match.group()} (V{seen[key]})"
 
-    return _DESCRIBED.sub(numbered, text)
+    return text.sub(_DESCRIBED, numbered)

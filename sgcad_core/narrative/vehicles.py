@@ -11,30 +11,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
 
-MENTION = re.compile(r"\bV\d+\b")
-_NO_MODEL = re.compile(r"(?<!Volvo )\bV\d+\b")
-_YEAR = r"(?:19|20)\d\d"
-_COLOR = "|".join(COLORS)
-_MAKE = "|".join(sorted(map(re.escape, MAKES), key=len, reverse=True))
-_BODY = "|".join(sorted(map(re.escape, BODY_WORDS), key=len, reverse=True))
-_STOP = re.compile(
-    r"(?:was|were|is|are|had|has|that|which|who|while|when|as|traveling|stopped|driven|operated|occupied|pulling|"
-    r"towing|proceeding|"
-    r"heading|headed|approaching|exiting|entering|entered|facing|parked|turning|making|attempting|attempted|went|"
-    r"going|struck|"
-    r"impacted|contacted|slowed|began|pulled|driving|moving|waiting|hauling|carrying|in|on|at|with|behind|ahead|"
-    r"directly|by|from|"
-    r"initially|also|intending|negotiating|and|but|did|came|to|into|(?:north|south|east|west)(?:east|"
-    r"west)?(?:bound)?|"
-    r"crossed|crossing|turned|made|drifted|lost|collided|hit|slowing|merging|starting|failed|steered|braked|"
-    r"departed|continued|"
-    r"following|being|ran|left the|coming|backing|passing|then|just|sideswiped|rear-ended|changed|changing|"
-    r"swerved|veered|"
-    r"equipped|decelerating|accelerating|preparing|returning|belonging|registered|loaded|registered|first|for|of|"
-    r"who's|whose)\b", re.I)  # fmt: skip
+MENTION = rule("vehicles.mention")
+_YEAR = rule("vehicles.whole_year")
+_NO_MODEL = rule("vehicles.no_model")
+
+
+_STOP = rule("vehicles.stop")
 
 
 @dataclass(frozen=True)
@@ -49,6 +36,8 @@ class Identity:
     kind: ActorKind = "car"
     kind_stated: bool = False
     trailer: bool = False
+    described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
+    """Every description of it, in order."""
 
 
 @dataclass(frozen=True)
@@ -73,36 +62,23 @@ class Roster:
         """The sentence with every description or name of a vehicle replaced by its number."""
         text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), sentence)
         text = self._named.sub(self._number, text) if self._named else text
-        text = re.sub(r"\s*\((V\d+)[^()]*\)(?=\s|,|\.|'|$)", r" \1", text)
-        text = re.sub(r"\b(V\d+)((?:,? )\1\b)+", r"\1", text)
+        text = rule("vehicles.number_in_brackets").sub(r" \1", text)
+        text = rule("vehicles.repeated_number").sub(r"\1", text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
-        return re.sub(r"\s+", " ", text).strip()
+        return rule("common.space").sub(" ", text).strip()
 
     @cached_property
     def _named(self) -> re.Pattern[str] | None:
         if not self.aliases:
             return None
-        names = "|".join(sorted(map(re.escape, self.aliases), key=len, reverse=True))
-        return re.compile(
-            rf"\b(?:the|this)\s+(?:(?:{_COLOR}|case|struck|striking)\s+)?(?:{_YEAR}\s+)?(?:(?:{_MAKE})\s+)?({names})"
-            rf"(?:[ -](?:{_BODY}|{names}))*(?:\s*\((V\d+)[^()]*\))?(?![\w-])(?!\s+(?:lane|lanes|dealer\w*|stop|"
-            rf"station))",
-            re.I,
-        )
+        return rule("vehicles.alias").given(names=tuple(sorted(self.aliases, key=len, reverse=True)))
 
     def _number(self, match: re.Match[str]) -> str:
         return match.group(2) or self.aliases[match.group(1).lower()]
 
 
-_OCCUPIED = re.compile(
-    r"\b(V\d+)(?:,? (?:with|carrying|containing|occupied by) (?:\w+ ){1,3}?(?:occupants?|passengers?|person|people|"
-    r"children)\b(?: \w+board)?,?)+\s",
-    re.I,
-)
-_BRACKETED = re.compile(
-    r"\b(?:the|an?|this)\s+((?:(?!(?:of|driver|operator|passenger|was|were|is|that|which|front|rear|left|right|"
-    r"side|in|on|by|to)\b)"
-    r"[\w/.'&-]+,?\s+){1,8}?)\((V\d+)(?:,[^()]*)?\)", re.I)  # fmt: skip
+_OCCUPIED = rule("vehicles.occupied")
+_BRACKETED = rule("vehicles.bracketed")
 
 
 def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
@@ -116,54 +92,58 @@ def roster(sentences: Iterable[str]) -> Roster:
     return Roster(found, _aliases(found))
 
 
+_NO_NUMBER = rule("vehicles.no_number")
+
+
 def _numbers(told: list[str]) -> list[str]:
-    """The ids in order; a number far beyond the others is a model (Volvo V70), not a vehicle."""
+    """The ids in order, the first one whatever it is; one far beyond the others is a model (Volvo V70), no vehicle."""
+    named = (m for text in told for m in _NO_MODEL.finditer(text) if not _NO_NUMBER.match(text, m.start()))
     kept: list[int] = []
-    for n in sorted({int(m[1:]) for text in told for m in _NO_MODEL.findall(text) if int(m[1:]) < 100}):
-        if 1 <= n <= (kept[-1] if kept else 1) + 2:
+    for n in sorted({int(m[0][1:]) for m in named if len(m[0]) <= _LONGEST_ID}):
+        if n and (not kept or n <= kept[-1] + 2):
             kept.append(n)
     return [f"V{n}" for n in kept]
 
 
+_LONGEST_ID = 3
+"""Characters: V1 to V99, as specs have them."""
+
+
 def _identity(vehicle: str, told: list[str]) -> Identity:
-    words = " ".join(d for text in told for d in descriptions(text, vehicle))
-    year = re.search(rf"\b{_YEAR}\b", words)
-    make = re.search(rf"\b(?:{_MAKE})\b", words, re.I)
-    color = re.search(rf"\b(?:{_COLOR})\b", words, re.I)
+    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in descriptions(text, vehicle))
+    words = " ".join(cue.words for cue in described)
+    year = rule("vehicles.year").search(words)
+    make = rule("vehicles.make").search(words)
+    color = rule("vehicles.color").search(words)
     model = _model(words, make.end()) if make else None
     kind, stated = kind_of(words, model)
-    trailer = bool(re.search(r"\b(?:semi-?trailer|trailer|tractor-trailer)\b", words, re.I)) or _tows(vehicle, told)
+    trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer,
+        color.group().lower() if color else None, kind, stated, trailer, described,
     )  # fmt: skip
 
 
 def _model(words: str, start: int) -> str | None:
     """The one or two words behind the make that are neither body nor verb."""
     found: list[str] = []
-    for word in re.findall(r"[\w.'/-]+|[,;()]", words[start:])[:3]:
-        if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or re.fullmatch(_YEAR, word):
+    for word in rule("vehicles.word").findall(words[start:])[:3]:
+        if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or _YEAR.fullmatch(word):
             break
-        if re.match(r"\d-door", word) or word.lower() in COLORS or word.lower() in MAKES:
+        if rule("vehicles.doors").match(word) or word.lower() in COLORS or word.lower() in MAKES:
             break
         found.append(word.rstrip(".,"))
     return " ".join(found[:2]) or None
 
 
 def _tows(vehicle: str, told: list[str]) -> bool:
-    pattern = (
-        rf"\b{vehicle}\b[^.;]{{0,120}}?\b(?:pulling|towing|hauling)\b|\b{vehicle}'s (?:\w+ )?trailer|"
-        rf"trailer of {vehicle}\b"
-    )
-    return any(re.search(pattern, text) and _tow_owner(text) == vehicle for text in told)
+    tows = rule("vehicles.tows").given(vehicle=vehicle)
+    return any(tows.search(text) and _tow_owner(text) == vehicle for text in told)
 
 
 def _tow_owner(text: str) -> str | None:
     """The vehicle named last before (or in) the words that tell of the trailer."""
-    verb = re.search(
-        r"\b(?:pulling|towing|hauling) (?:an?|one|two|its|the)\b|(?<='s )(?:\w+ )?trailer|trailer of (?=V\d)", text
-    )
+    verb = rule("vehicles.tow_verb").search(text)
     if not verb:
         return None
     before = MENTION.findall(text[: verb.start()]) or MENTION.findall(text)
@@ -174,18 +154,14 @@ def _tow_owner(text: str) -> str | None:
 def descriptions(text: str, vehicle: str) -> list[str]:
     """Noun phrases that describe a vehicle: behind "V1," or "V1 was a", or before "(V1)"."""
     found = [m.group(1) for m in _BRACKETED.finditer(text) if m.group(2) == vehicle]
-    for mention in re.finditer(rf"\b{vehicle}\b", text):
+    for mention in rule("common.named_vehicle").given(vehicle=vehicle).finditer(text):
         end = _description_end(text, mention.end())
         if end > mention.end():
             found.append(text[mention.end() : end])
     return found
 
 
-_LEAD = re.compile(
-    rf"\s*(?:,|\(|-|:)?\s*(?:(?:was|is|were)\s+)?(?:an?\s+|the\s+)?(?:(?:driven|operated)\s+)?"
-    rf"(?=(?:[\w-]+,?\s+){{0,3}}?(?:{_YEAR}\b|(?:{_MAKE})\b)|(?<=an )(?:[\w-]+\s){{0,2}}?(?:{_BODY})\b|"
-    rf"(?<=a )(?:[\w-]+\s){{0,2}}?"
-    rf"(?:{_BODY})\b)", re.I)  # fmt: skip
+_LEAD = rule("vehicles.lead")
 
 
 def _description_end(text: str, start: int) -> int:
@@ -195,7 +171,7 @@ def _description_end(text: str, start: int) -> int:
         return start
     at = lead.end()
     for _ in range(16):
-        token = re.compile(r"[\s,()]*([^\s,;()]+)").match(text, at)
+        token = rule("vehicles.token").match(text, at)
         if not token or _STOP.match(text, token.start(1)) or MENTION.match(text, token.start(1)):
             break
         at = token.end()
@@ -221,11 +197,11 @@ def _drop_descriptions(text: str) -> str:
 def _join(out: str, text: str, start: int, end: int) -> tuple[str, int]:
     """Glue what follows a dropped description to its mention."""
     dropped = text[start:end]
-    was = re.match(r"\s*(was|is|were)\b", dropped)
-    tail = re.match(r"[\s,)]*(?:(?:that|which|who)\s+)?", text[end:])
+    was = rule("vehicles.was").match(dropped)
+    tail = rule("vehicles.relative").match(text[end:])
     skip = tail.end() if tail else 0
     rest = text[end + skip :]
-    if was and re.match(r"(?:\w+ing|stopped|parked|driven|facing|northbound|southbound|eastbound|westbound)\b", rest):
+    if was and rule("vehicles.verb").match(rest):
         return f"{out} {was.group(1)} ", end + skip
     if dropped.endswith("."):
         return f"{out}.", end

@@ -172,7 +172,9 @@ def _made_up(before: Floats, turn_rad: float) -> Floats:
     return np.vstack((arc, arc[-1] + _MADE_UP_RUN_M * np.array([math.cos(away), math.sin(away)])))
 
 
-def _measured(graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], more: tuple[tuple[str, ...], float]) -> Course:
+def _measured(
+    graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], more: tuple[tuple[str, ...], float]
+) -> Course:
     """`more`: notes, and the speed for which the line is smooth."""
     notes, speed_mps = more
     stations = np.concatenate(([0.0], np.cumsum([arc_lengths(p.points)[-1] for p in pieces])))

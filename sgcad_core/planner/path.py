@@ -18,7 +18,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 
 STEP_M = 0.5
 TURN_BACK_M = 5.6
-"""Of the rear axle in a turn back: a car's turning circle of 11 m (SAE J695 figures of 1990-2007 cars: 10.5 to 12 m)."""
+"""Of the rear axle in a turn back: what a car with a turning circle of about 11 m between curbs can do."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
 _EXTENSION_STEP_M = 4.0
@@ -134,7 +134,8 @@ def draw(points: Floats, smooth_m: float = 3.0, speed_mps: float = 0.0) -> Path:
 def _spread(points: Floats, speed_mps: float, least_m: float) -> Floats:
     """(n,) half windows, in points, that turn a shift of a lane into a gentle one: narrow at turns, wide elsewhere.
 
-    A moving mean over 2 h, taken twice, bends a step of width d by d / (4 h^2): 3.6 m at 3 m/s2 need h = 0.55 s * speed.
+    A moving mean over 2 h, taken more than once, bends a step of width d by d / (4 h^2) at most: 3.6 m at 3 m/s2 need
+    h = 0.55 s * speed.
     """
     turning = np.abs(swing(_tangents(points), arc_lengths(points))) >= _TURN_RAD
     free_m = _steps_to(turning) * STEP_M
@@ -180,7 +181,8 @@ def _steps_to(marked: NDArray[np.bool_]) -> Floats:
     right = np.searchsorted(at, index)
     after = np.abs(at[np.minimum(right, len(at) - 1)] - index)
     before = np.abs(index - at[np.maximum(right - 1, 0)])
-    return np.minimum(after, before).astype(np.float64)
+    nearest: Floats = np.minimum(after, before).astype(np.float64)
+    return nearest
 
 
 def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch: float = 0.42) -> Floats:

@@ -162,7 +162,12 @@ class _Cast:
         places = self._places(a, b)
         pair = [
             Role(
-                actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                actor,
+                self.courses[actor.id],
+                size_m(actor),
+                place,
+                side,
+                surface=self.behavior.surface,
                 may_skid=self.may_skid,
             )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))

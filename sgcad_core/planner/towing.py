@@ -42,18 +42,21 @@ def spacing_m(first: Size, second: Size) -> float:
 
 
 def ahead_of(motion: Motion, by_m: float, size: Size) -> Motion:
-    """The same motion on the same path with its box further ahead (behind where negative)."""
+    """The same motion on the same line with its box further ahead (behind where negative)."""
     if motion.standing:
         return replace(motion, path=_slid(motion, by_m), size=size, penalty=np.zeros_like(motion.penalty))
     if motion.axle is None:
         return replace(motion, station_m=motion.station_m + by_m, size=size)
-    return _rolling(motion, by_m, size)
+    return _rolling(motion, motion.axle, by_m, size)
 
 
-def _rolling(motion: Motion, by_m: float, size: Size) -> Motion:
+def _slid(motion: Motion, by_m: float) -> Path:
+    poses = motion.path.poses(motion.path.s_m + by_m)
+    return replace(motion.path, points=poses[:, :2], heading_rad=poses[:, 2])
+
+
+def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
     """The other box with its own rear axle on the same line."""
-    axle = motion.axle
-    assert axle is not None
     backing = math.cos(float(motion.path.heading_rad[0] - axle.heading_rad[0])) < 0
     path = rolled(axle, size[0], backing=backing)
     own, other = (float(np.hypot(*(p.points[0] - axle.points[0]))) for p in (motion.path, path))

@@ -9,7 +9,7 @@ B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import NamedTuple
@@ -18,7 +18,8 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
-from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, hold, solve
+from sgcad_core.planner.hitch import Hitch, draw_together, pull
+from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
 
 SEEN_M = 0.015
@@ -60,15 +61,6 @@ class Mover:
     def fixed(self) -> bool:
         """Whether nothing moves it."""
         return self.body.inverse_mass == 0.0
-
-
-class Hitch(NamedTuple):
-    """A joint of two movers: the same place in the frame of either box."""
-
-    first: str
-    second: str
-    on_first: Point
-    on_second: Point
 
 
 class Touch(NamedTuple):
@@ -172,13 +164,18 @@ class Wreck:
                 for (a, b, seen), points in zip(touching, corners, strict=True)
                 for at in points
             ]
-            if not any([*moved, *(self._pull(hitch) for hitch in self.hitches)]):
+            if not any([*moved, *(self._joined(hitch, pull) for hitch in self.hitches)]):
                 break
         for (a, b, seen), points in zip(touching, corners, strict=True):
             self._keep_seen(a, b, seen, mean(points), sample)
             self._part(a, b, seen)
         for hitch in self.hitches:
-            self._draw_together(hitch)
+            self._joined(hitch, draw_together)
+
+    def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
+        """What a hitch does to its two bodies, once both are free."""
+        a, b = self.named[hitch.first], self.named[hitch.second]
+        return a.free and b.free and act(hitch, a.body, b.body)
 
     def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
@@ -233,47 +230,6 @@ class Wreck:
             share = sign * by * one.inverse_mass / total
             one.x += share * seen.normal[0]
             one.y += share * seen.normal[1]
-
-    # -------------------------------------------------------------- hitches
-    def _pull(self, hitch: Hitch) -> bool:
-        """An impulse after which both ends of a hitch move alike."""
-        a, b = self.named[hitch.first], self.named[hitch.second]
-        if not a.free or not b.free:
-            return False
-        at = _place(a.body, hitch.on_first)
-        (ax, ay), (bx, by) = a.body.velocity_at(*at), b.body.velocity_at(*at)
-        if math.hypot(ax - bx, ay - by) < 1e-4:
-            return False
-        jx, jy = solve(compliance(a.body, b.body, at), (ax - bx, ay - by))
-        a.body.push(-jx, -jy, *at)
-        b.body.push(jx, jy, *at)
-        return True
-
-    def _draw_together(self, hitch: Hitch) -> None:
-        """Take out what a hitch has come apart by, from its trailer's place."""
-        a, b = self.named[hitch.first], self.named[hitch.second]
-        if not a.free or not b.free:
-            return
-        (ax, ay), (bx, by) = _place(a.body, hitch.on_first), _place(b.body, hitch.on_second)
-        b.body.x += 0.2 * (ax - bx)
-        b.body.y += 0.2 * (ay - by)
-
-
-def hitch_of(first: Mover, second: Mover, k: int, behind_m: float) -> Hitch:
-    """The joint `behind_m` behind the first mover's center, as both stand at sample k."""
-    x, y, heading = first.script[k]
-    at = (float(x) - behind_m * math.cos(heading), float(y) - behind_m * math.sin(heading))
-    return Hitch(first.name, second.name, (-behind_m, 0.0), _local(second.script[k], at))
-
-
-def _local(pose: Floats, at: Point) -> Point:
-    c, s, dx, dy = math.cos(pose[2]), math.sin(pose[2]), at[0] - float(pose[0]), at[1] - float(pose[1])
-    return dx * c + dy * s, dy * c - dx * s
-
-
-def _place(one: Body, local: Point) -> Point:
-    c, s = math.cos(one.heading), math.sin(one.heading)
-    return one.x + local[0] * c - local[1] * s, one.y + local[0] * s + local[1] * c
 
 
 def _key(a: Mover, b: Mover) -> tuple[str, str]:

@@ -63,6 +63,15 @@ def test_a_faulty_config_starts_nothing(reports, config_file, tmp_path, changes,
     assert not (tmp_path / "out").exists()
 
 
+def test_a_judge_whose_program_is_missing_starts_nothing(reports, config_file, tmp_path):
+    out = tmp_path / "out"
+    command = ["evaluate", reports(a=""), "--config", config_file(), "--judge", "esmini", "--out", out]
+    ended = sgcad(*command, ESMINI="/no/such/esmini")
+    assert ended.returncode == 2
+    assert "'/no/such/esmini' is no program that can be run: name the esmini binary by `path`" in ended.stderr
+    assert not out.exists()
+
+
 def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
     (tmp_path / "bad.yaml").write_text("a: [1, 2")
     ended = sgcad("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")

@@ -1,21 +1,27 @@
 """Shared stages: the same is computed once, another is never taken for it, and the folder is only a cache."""
 
+import hashlib
+import pickle
 import signal
 import subprocess
 import sys
 import threading
+import zlib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from flows.batch import Crew, batch_of
 from flows.cases import cases_in
+from flows.packing import pack
 from flows.sharing import Shelf, content_of, keys_of
 from sgcad_core.config import load
 from sgcad_core.records import CrashReport, Diagram, Trajectory
 
 ANSWERS = [{"attempt": 1, "answer": "no"}, {"attempt": 2, "answer": "no"}, {"attempt": 3, "answer": "ok"}]
+REPORT = CrashReport(case="c", narrative="V1 struck V2.")
 ASKING = {"road_writer": "testkit_asking", "decoder": "greedy", "backbone": {"name": "scripted", "answers": ANSWERS}}
 
 
@@ -154,11 +160,11 @@ def test_two_who_want_the_same_compute_it_once(tmp_path):
 
     def compute():
         computed.append(threading.get_ident())
-        return "value"
+        return REPORT, 1.5
 
     def want(into):
         meet.wait(60)
-        into.append(shelf.once("abc", compute))
+        into.append(shelf.timed("abc", compute))
 
     found = []
     threads = [threading.Thread(target=want, args=(found,)) for _ in range(4)]
@@ -167,13 +173,15 @@ def test_two_who_want_the_same_compute_it_once(tmp_path):
     for thread in threads:
         thread.join(120)
     assert len(computed) == 1
-    assert sorted(found) == [("value", False)] + [("value", True)] * 3
+    assert sorted(known for *_, known in found) == [False, True, True, True]
+    assert [(value, seconds) for value, seconds, _ in found] == [(REPORT, 1.5)] * 4
 
 
 def test_who_is_killed_holds_nobody_up(tmp_path):
     code = f"""
 import sys, time
 from pathlib import Path
+from flows.packing import pack
 from flows.sharing import Shelf
 with Shelf(Path({str(tmp_path)!r})).alone("abc"):
     print("held", flush=True)
@@ -184,11 +192,30 @@ with Shelf(Path({str(tmp_path)!r})).alone("abc"):
     holder.send_signal(signal.SIGKILL)
     holder.wait(60)
     holder.stdout.close()
-    assert Shelf(tmp_path).once("abc", lambda: 1) == (1, False)
-    assert Shelf(tmp_path).once("abc", lambda: 2) == (1, True)
+    assert Shelf(tmp_path).timed("abc", lambda: (REPORT, 1.0)) == (REPORT, 1.0, False)
+    assert Shelf(tmp_path).timed("abc", lambda: (REPORT, 2.0)) == (REPORT, 1.0, True)
     assert not list(tmp_path.rglob("*.lock"))
 
 
 def test_a_folder_that_cannot_be_written_costs_the_sharing_only(tmp_path):
     (tmp_path / "file").write_text("")
-    assert Shelf(tmp_path / "file").once("abc", lambda: 1) == (1, False)
+    assert Shelf(tmp_path / "file").timed("abc", lambda: (REPORT, 1.0)) == (REPORT, 1.0, False)
+
+
+class Planted:
+    """Makes a file when it is unpickled."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def __reduce__(self):
+        return Path.touch, (self.file,)
+
+
+def test_a_planted_entry_runs_nothing_and_is_computed_again(tmp_path):
+    shelf, canary = Shelf(tmp_path / "shelf"), tmp_path / "canary"
+    shelf.put("abc", (REPORT, 1.0))
+    for packed in (pickle.dumps(Planted(canary)), zlib.compress(pickle.dumps(Planted(canary))), pack("a text")):
+        shelf._file("abc").write_bytes(hashlib.sha256(packed).hexdigest().encode() + b"\n" + packed)
+        assert shelf.timed("abc", lambda: (REPORT, 2.0)) == (REPORT, 2.0, False)
+    assert not canary.exists()

@@ -31,6 +31,9 @@ class Noting(Tracker):
     def log_case(self, config_name, params, case_dir, result):
         self._note(f"case {case_dir.name}")
 
+    def identity(self, out):
+        return str(self.file.parent.joinpath("place").exists())
+
     def end(self, arm, finished):
         if self.fails:
             raise OSError("the database is locked")
@@ -73,6 +76,19 @@ def test_begin_and_end_enclose_the_cases_and_a_second_batch_tells_nothing(plan, 
     with tracking.following(plan):
         tracking.track(plan[0], Ending(RESULT))
     assert told() == []
+
+
+def test_cases_are_logged_again_where_the_place_of_the_log_was_made_anew(plan, told, tmp_path):
+    with tracking.following(plan):
+        for job in plan:
+            tracking.track(job, Ending(RESULT))
+    told()
+    (tmp_path / "place").touch()
+    assert not any(tracking.tracked(job) for job in plan)
+    with tracking.following(plan):
+        for job in plan:
+            tracking.track(job, Ending(RESULT))
+    assert told() == ["begin kit 2", "case c1", "case c2", "end kit True"]
 
 
 def test_a_batch_that_is_interrupted_says_so_and_the_next_one_ends_it(plan, told):

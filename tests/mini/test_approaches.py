@@ -7,6 +7,7 @@ import pytest
 
 from mini.generator import approaches, clauses_motion, words, writer
 from mini.generator.crash import sample_crash
+from mini.generator.records import group
 from mini.generator.report import make_report
 from mini.generator.settled import STEM
 from mini.generator.world import Leg
@@ -18,8 +19,10 @@ LISTS = ("APPROACH", "APPROACH_STOPPED", "APPROACH_SLOWING", "APPROACH_WAITING")
 @pytest.mark.parametrize("held_out", [False, True])
 def test_what_a_clause_has_no_place_for_is_not_told(held_out: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in LISTS:
-        monkeypatch.setattr(clauses_motion, name, ["{V} came {dir} QQ", "~{V} came {dir} QQ"])
-    monkeypatch.setattr(clauses_motion, "PRESENTED", {key: ["{Vi} came {dir} QQ"] for key in clauses_motion.PRESENTED})
+        monkeypatch.setattr(clauses_motion, name, group("{V} came {dir} QQ", "~{V} came {dir} QQ"))
+    monkeypatch.setattr(
+        clauses_motion, "PRESENTED", {key: group("{Vi} came {dir} QQ") for key in clauses_motion.PRESENTED}
+    )
     seen = 0
     for seed in range(300):
         report = make_report(seed, held_out, 0.0, {"text": 1.0})
@@ -34,8 +37,8 @@ def test_what_a_clause_has_no_place_for_is_not_told(held_out: bool, monkeypatch:
 
 
 def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_motion, "APPROACH", ["{V} came {dir} QQ{appr}"])
-    monkeypatch.setattr(clauses_motion, "INTENT", {key: ["RR"] for key in clauses_motion.INTENT})
+    monkeypatch.setattr(clauses_motion, "APPROACH", group("{V} came {dir} QQ{appr}"))
+    monkeypatch.setattr(clauses_motion, "INTENT", {key: group("RR") for key in clauses_motion.INTENT})
     told = plain = 0
     for seed in range(300):
         report = make_report(seed, False, 0.0, {"text": 1.0})
@@ -59,7 +62,7 @@ def test_the_same_intersection_is_one_that_was_named() -> None:
 
 
 def test_who_came_up_the_leg_that_ends_came_from_where_that_lies(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_motion, "FROM_STEM", {"t": ["QQ {V}"], "driveway": ["QQ {V}"]})
+    monkeypatch.setattr(clauses_motion, "FROM_STEM", {"t": group("QQ {V}"), "driveway": group("QQ {V}")})
     monkeypatch.setattr(approaches, "UNSAID", 1.0)
     known = open_ = 0
     for seed in range(1500):
@@ -80,14 +83,16 @@ def test_the_only_lane_may_be_called_the_first_but_not_on_the_held_out_side() ->
     leg = Leg(0, 1, 1)
     counted = r"(first|right|one|1)\b"
     found = [
-        words.lane(Random(seed), leg, 1, "southbound", held_out)[0] for held_out in (False, True) for seed in range(400)
+        words.lane(Random(seed), leg, 1, "southbound", held_out).text
+        for held_out in (False, True)
+        for seed in range(400)
     ]
     assert 60 < sum(bool(re.search(counted, name)) for name in found[:400]) < 220
     assert not [name for name in found[400:] if re.search(counted, name)]
 
 
 def test_a_lane_that_is_named_by_its_direction_tells_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_motion, "APPROACH", ["QQ {V} in the {lane}"])
+    monkeypatch.setattr(clauses_motion, "APPROACH", group("QQ {V} in the {lane}"))
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     named = other = 0
     for seed in range(300):

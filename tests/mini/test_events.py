@@ -5,43 +5,12 @@ from collections import Counter
 
 import pytest
 
-from mini.generator import clauses_contact, clauses_motion, events, writer
-from mini.generator.events import DRIFTS
+from mini.generator import clauses_contact, clauses_motion, clauses_turning, events, writer
+from mini.generator.records import group
 from mini.generator.report import make_report
 from mini.generator.settled import VAGUE
 from mini.generator.world import WORDS
 from tests.mini.reports import sentences
-
-
-@pytest.mark.parametrize(
-    "clause",
-    [
-        "{V} drifted to the right",
-        "Easing to the right, {V} headed toward {W}",
-        "A deviation to the right brought {V} toward {W}",
-        "The course of {V} bent to the right",
-        "{V} got over against the line of parked cars",
-        "{V} was guided too far right by its driver",
-        "Over to the right went {V}, where {W} was parked",
-        "The driver of {V} let the wheel slip rightward",
-    ],
-)
-def test_clauses_of_one_that_leaves_its_lane_are_known(clause: str) -> None:
-    assert DRIFTS.search(clause)
-
-
-@pytest.mark.parametrize(
-    "clause",
-    [
-        "The driver of {V} did not see {W} parked ahead",
-        "{V} was too far to the right",
-        "{V} did not leave enough room to pass {W}",
-        "The driver of {V} was attending to a child and did not see the parked {W}",
-        "On a slippery road {V} passed too close to {W}",
-    ],
-)
-def test_clauses_of_one_that_may_have_kept_its_lane_are_not_taken_for_a_drift(clause: str) -> None:
-    assert not DRIFTS.search(clause)
 
 
 def test_one_that_keeps_its_lane_is_not_said_to_drift_into_a_parked_vehicle() -> None:
@@ -59,7 +28,7 @@ def test_one_that_keeps_its_lane_is_not_said_to_drift_into_a_parked_vehicle() ->
 
 @pytest.mark.parametrize("slot", ["outdir", "outxb"])
 def test_where_one_that_turns_goes_tells_where_it_came_from(slot: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(events, "ONWARD", [f"QQ {{V}} {{turn}} {{{slot}}}"])
+    monkeypatch.setattr(clauses_turning, "ONWARD", group(f"QQ {{V}} {{turn}} {{{slot}}}"))
     monkeypatch.setattr(events, "BOUND", 1.0)
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     seen = 0
@@ -77,7 +46,7 @@ def test_where_one_that_turns_goes_tells_where_it_came_from(slot: str, monkeypat
 
 
 def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(events, "STRAYS", ["QQ {turn} from {aside}"])
+    monkeypatch.setattr(clauses_turning, "STRAYS", group("QQ {turn} from {aside}"))
     monkeypatch.setattr(events, "STRAYING", 1.0)
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     told = [
@@ -94,8 +63,8 @@ def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monke
 
 
 def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(clauses_motion.WHY, "light", ["QLIGHT"])
-    monkeypatch.setitem(clauses_motion.WHY, "sign", ["QSIGN"])
+    monkeypatch.setitem(clauses_motion.WHY, "light", group("QLIGHT<signal>"))
+    monkeypatch.setitem(clauses_motion.WHY, "sign", group("QSIGN<sign>"))
     lights = signs = 0
     for seed in range(1200):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
@@ -111,7 +80,8 @@ def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.Monkey
 
 
 def test_the_one_that_is_pushed_is_the_one_that_was_struck(monkeypatch: pytest.MonkeyPatch) -> None:
-    clauses = ["QQ {V} was pushed aside", "QQ the impact [pushed|moved] {W} back", "RR {V} stopped", "~SS {V} rolled"]
+    moved = ["QQ {V} was pushed aside<moved_v>", "QQ the impact [pushed|moved] {W} back<moved_w>"]
+    clauses = group(*moved, "RR {V} stopped", "~SS {V} rolled")
     monkeypatch.setattr(clauses_contact, "REST", clauses)
     said = Counter[str]()
     for seed in range(400):

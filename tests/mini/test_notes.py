@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from mini import answers
 from mini.batch import Taggers
 from mini.generator import notes
-from mini.generator.grammar import MARK, SLOTS, unmark
+from mini.generator.grammar import MARK, unmark
 from mini.generator.noise import slips
 from mini.generator.notes import MARKS, NOTES, Slots, noted, placed
+from mini.generator.records import slots_of
 from mini.generator.report import Report, make_report
 from mini.generator.words import NUMBERS
 from mini.generator.world import WORDS, Actor
@@ -153,7 +154,7 @@ def asked(clause: str, areas: dict[str, str], given: tuple[str, ...] = ()) -> li
         Actor(id=name, kind="car", leg=leg, out=leg + 4, maneuver="straight") for name, leg in (("V1", 4), ("V2", 2))
     )
     slots = Slots(clause, one, other, areas, given)
-    return [slots.next(slot) for slot in SLOTS.findall(clause)]
+    return [slots.next(slot) for slot in slots_of(clause)]
 
 
 TOUCHING = {"sa": "front", "ta": "left"}

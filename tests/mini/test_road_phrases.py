@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from mini.generator import clauses_road, clauses_scene, lane_lists, words, writer
 from mini.generator.grammar import unmark
+from mini.generator.records import group
 from mini.generator.report import make_report
 from mini.generator.settled import AXIS, ROAD
 from mini.generator.world import WORDS, Crash, Leg
@@ -60,7 +61,7 @@ def test_a_lane_is_named_for_where_it_lies(held_out: bool, turns: list[str]) -> 
     leg = Leg(0, 3, 1, turns)
     for number in (1, 2, 3):
         told = [words.lane(Random(i), leg, number, "northbound", held_out) for i in range(400)]
-        for name, from_left in told:
+        for name, from_left in ((lane.text, lane.from_left) for lane in told):
             assert not re.match(r"(middle|center)\b", name) or number == 2, name
             assert not re.search(r"^(left|passing|inside|dedicated left)\b", name) or (number == 3 and from_left), name
             assert not re.search(r"^(right|curb)\b", name) or (number == 1 and not from_left), name
@@ -116,7 +117,7 @@ def test_roads_that_are_told_are_noted_and_axes_where_a_direction_stands() -> No
 def test_names_of_junctions_tell_how_many_legs(layout: str) -> None:
     words_of = {"t": r"\bthree|\b3|\btee\b|\bT\b|no fourth", "four": r"\bfour\b|\b4|cross"}
     other = words_of["four" if layout == "t" else "t"]
-    names = [name for name in clauses_road.JUNCTION[layout] if not re.search(words_of[layout], name)]
+    names = [name for name in clauses_road.JUNCTION[layout].side(False) if not re.search(words_of[layout], name)]
     assert not [name for name in names if re.search(other, name)]
 
 
@@ -127,7 +128,7 @@ def _sentences(seeds: range) -> Iterator[tuple[str, frozenset[str], Crash]]:
 
 
 def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "LIMITS", ["Everywhere {lim}"])
+    monkeypatch.setattr(clauses_road, "LIMITS", group("Everywhere {lim}"))
     found = 0
     for text, facts, crash in _sentences(range(2500)):
         if "Everywhere" in text:
@@ -138,7 +139,7 @@ def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch
 
 
 def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "ALIKE", {"two_way": ["Twice {each}"], "one_way": ["Once {each}"]})
+    monkeypatch.setattr(clauses_road, "ALIKE", {"two_way": group("Twice {each}"), "one_way": group("Once {each}")})
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
     found = set()
     for text, facts, crash in _sentences(range(3000)):
@@ -155,9 +156,11 @@ def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monke
 
 
 def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "PAIR", ["QQ {a1}={one}; RR {a2}={other}"])
-    monkeypatch.setattr(clauses_road, "ONE_WAY", ["a one-way {xb} {noun} with {lanes}"])  # else in words without "way"
-    monkeypatch.setattr(clauses_road, "UNCOUNTED", ["a one-way {noun}"])
+    monkeypatch.setattr(clauses_road, "PAIR", group("QQ {a1}={one}; RR {a2}={other}"))
+    monkeypatch.setattr(
+        clauses_road, "ONE_WAY", group("a one-way {xb} {noun} with {lanes}")
+    )  # else in words without "way"
+    monkeypatch.setattr(clauses_road, "UNCOUNTED", group("a one-way {noun}"))
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
     found = 0
     for text, _, crash in _sentences(range(1500)):
@@ -192,7 +195,7 @@ def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -
 
 
 def test_the_limit_of_the_other_road_is_laid_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_scene, "ROAD2", ["QQ the side street has {lim2}"])
+    monkeypatch.setattr(clauses_scene, "ROAD2", group("QQ the side street has {lim2}"))
     told = 0
     for seed in range(900):
         for text, facts in sentences(make_report(seed, length=0.0, modes={"text": 1.0})):

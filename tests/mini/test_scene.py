@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from mini.generator import clauses_scene
 from mini.generator.crash import sample_crash
+from mini.generator.labels import has, plain
+from mini.generator.records import group
 from mini.generator.report import Report, make_report
 from mini.generator.scene import TIMES
 from mini.generator.settled import AXIS
@@ -28,8 +30,8 @@ def _said(word: str, count: int, held_out: bool = False) -> list[tuple[str, froz
 
 
 def test_the_direction_of_a_roads_traffic_is_no_vehicles_heading(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_scene, "ROAD", ["QQ for {xb} traffic"])
-    monkeypatch.setattr(clauses_scene, "CURVE", ["QQ {curve} for those who drive {dir}"])
+    monkeypatch.setattr(clauses_scene, "ROAD", group("QQ for {xb} traffic"))
+    monkeypatch.setattr(clauses_scene, "CURVE", group("QQ {curve} for those who drive {dir}"))
     found = _said("QQ", 120)
     assert len(found) > 60
     for _, facts, _ in found:
@@ -40,7 +42,7 @@ def test_the_direction_of_a_roads_traffic_is_no_vehicles_heading(monkeypatch: py
 @pytest.mark.parametrize("slot", ["lim", "lim2"])
 def test_no_limit_is_told_of_a_road_without_one(slot: str, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("ROAD", "ROAD2"):
-        monkeypatch.setattr(clauses_scene, name, [f"QQ {{{slot}}}", "RR"])
+        monkeypatch.setattr(clauses_scene, name, group(f"QQ {{{slot}}}", "RR"))
     found = _said("QQ", 300)
     assert len(found) > 40
     assert all(any(fact.startswith("limit.") for fact in facts) for _, facts, _ in found)
@@ -50,8 +52,10 @@ def test_no_limit_is_told_of_a_road_without_one(slot: str, monkeypatch: pytest.M
 def test_roads_that_bend_are_not_called_straight(seed: int) -> None:
     writer = Writer(Random(seed), sample_crash(Random(seed)), False, 1.0)
     bends = any(leg.curve != "none" for leg in writer.crash.legs)
-    assert writer._true("The road was straight and level") != bends
-    assert writer._true("The road, straight until here, bent to the {curve}")
+    assert ("unbent" in writer._untrue()) == bends
+    straight = [clause for clause in clauses_scene.ROAD.side(False) if has(clause, "unbent")]
+    assert straight
+    assert not any("{curve}" in clause for clause in straight)
 
 
 def test_openings_speak_of_two_vehicles_where_there_are_two() -> None:
@@ -69,14 +73,17 @@ def test_no_lane_is_named_for_a_crash_on_the_wrong_side_of_the_road() -> None:
         crash = sample_crash(Random(seed))
         if crash.config in ("head_on", "overtaking"):
             seen += 1
-            assert not Writer(Random(seed), crash, False, 1.0)._true("This crash occurred in the {xb} lanes of {road}")
+            assert "own_lanes" in Writer(Random(seed), crash, False, 1.0)._untrue()
     assert seen > 100
+    lanes = "The crash [occurred|took place] in the {xb} lane[s|] of {road} [at|near] {jn}"
+    (clause,) = {one for one in clauses_scene.OPENING_JUNCTION.side(False) if plain(one) == lanes}
+    assert has(clause, "own_lanes")
 
 
 @pytest.mark.parametrize("held_out", [False, True])
 def test_times_of_day_agree_with_the_light(held_out: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [key for key in vars(clauses_scene) if key.startswith("OPENING")]:
-        monkeypatch.setattr(clauses_scene, name, ["QQ {tod} RR {jn}", "~QQ {tod} RR {jn}"])
+        monkeypatch.setattr(clauses_scene, name, group("QQ {tod} RR {jn}", "~QQ {tod} RR {jn}"))
     monkeypatch.setattr("mini.generator.writer.slips", lambda rng, text, rate: text)
     found = _said("QQ", 150, held_out)
     assert len(found) > 40
@@ -111,9 +118,11 @@ def test_the_sun_does_not_shine_at_night() -> None:
 
 
 def test_sun_tells_daylight_and_a_clear_sky(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_scene, "CONDITIONS", ["QQ {wx}", "RR {light}"])
+    monkeypatch.setattr(clauses_scene, "CONDITIONS", group("QQ {wx}", "RR {light}"))
     for name, key in (("LIGHT", "day"), ("WEATHER", "clear")):
-        monkeypatch.setitem(getattr(clauses_scene, name), key, ["in bright sunshine", "plain"])
+        monkeypatch.setitem(
+            getattr(clauses_scene, name), key, group("in bright sunshine<sunny><bright><sunlit>", "plain")
+        )
     sunny = 0
     for text, facts, report in [*_said("QQ", 300), *_said("RR", 300)]:
         assert ("sunshine" in text) == ({"light", "weather"} <= facts)

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from sgcad_core.execution.contact import realised
 from sgcad_core.records import (
     ActorInfo,
     Attempt,
@@ -20,12 +21,12 @@ from sgcad_core.records import (
     StageOutcome,
     Trajectory,
 )
-from sgcad_core.result import CaseRecord, realised, result_of
+from sgcad_core.result import CaseRecord, result_of
 from sgcad_core.specs import Contact
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",
-    "seconds", "notes",
+    "seconds", "notes", "facts", "sentences",
 }  # fmt: skip
 AREAS = st.sampled_from(["front", "back", "left", "right"])
 DECLARED = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")

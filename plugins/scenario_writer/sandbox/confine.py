@@ -13,7 +13,7 @@ import resource
 import signal
 import struct
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 NEW_NS, NEW_UTS, NEW_IPC, NEW_USER, NEW_PID, NEW_NET = (
     0x20000, 0x4000000, 0x8000000, 0x10000000, 0x20000000, 0x40000000,
@@ -35,11 +35,12 @@ _ARCHITECTURES: Mapping[str, tuple[int, frozenset[int]]] = {
 }  # fmt: skip
 
 
-def isolate() -> bool:
+def isolate(channels: Sequence[int]) -> bool:
     """Go on in fresh namespaces, without network; False where the system does not let us.
 
-    The caller's process stays behind and ends as its child ends: by exit code, 128 + signal for a death. So
-    does process 1, whose end takes all others of its namespace along (and which no limit's signal would end).
+    The caller's process stays behind without the `channels` (descriptors) and ends as its child ends: by exit code,
+    128 + signal for a death. So does process 1, whose end takes all others of its namespace along (and which no
+    limit's signal would end).
     """
     if not sys.platform.startswith("linux"):
         return False
@@ -49,14 +50,14 @@ def isolate() -> bool:
         return False
     for _ in ("process 1", "the script's"):
         if child := os.fork():
-            _end_like(child)
+            _end_like(child, channels)
         libc.prctl(_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     return True
 
 
-def _end_like(child: int) -> None:
-    for stream in (1, 2):
-        os.close(stream)
+def _end_like(child: int, channels: Sequence[int]) -> None:
+    for channel in channels:
+        os.close(channel)
     status = os.waitpid(child, 0)[1]
     os._exit(128 + os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status))
 

@@ -1,4 +1,4 @@
-"""The far end: puts up the walls, reads the rules, runs one script, answers one JSON object on its output.
+"""The far end: puts up the walls and says so, reads the rules, runs one script, answers one JSON object.
 
 The script must leave an `xosc.Scenario` in its variable `scenario`. Nothing of the script is even parsed before
 the walls stand. Runs once and ends; knows nothing of the project.
@@ -13,37 +13,44 @@ import sys
 import traceback
 import xml.etree.ElementTree as ET
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import Any
 
 from plugins.scenario_writer.sandbox import confine
 from plugins.scenario_writer.sandbox.modules import fronts, script_builtins
 from plugins.scenario_writer.sandbox.rules import breaches, parsed
 
 Json = dict[str, Any]
-STARTED = b"."
 MAX_XML = 5_000_000
 RECURSION = 400
 
 
-def main(site: str) -> None:
-    """Serve the job on standard input, then end."""
+def main(site: str, status: int) -> None:
+    """Serve the job on standard input, then end. `status` is the descriptor on which the walls are told."""
     job: Json = json.loads(sys.stdin.buffer.read())
     os.close(0)
-    own = confine.isolate()
+    own = confine.isolate((1, 2, status))
     if not own and not job["allow_without_namespace"]:
-        os.write(1, STARTED)
-        _end({"ok": False, "layer": "isolation", "message": "the system allows no own network namespace"})
+        _tell(status, isolated=False)
+        os._exit(0)
     modules = fronts(site)
     walls = {"namespaces": own, "root": own and confine.shut_in(job["folder"])}
     confine.limit(job["cpu_s"], job["memory_mb"])
     walls["calls"] = confine.filter_calls()
+    _tell(status, isolated=True, walls=[name for name, up in walls.items() if up])
     printed: list[str] = []
-    os.write(1, STARTED)
+    secret = job.pop("secret").encode()
     try:
         answer = _unchecked(job["source"]) if job["unchecked"] else _run(job["source"], modules, printed)
     except BaseException as fault:  # noqa: BLE001 - whatever a script raises is its answer
         answer = _fault(fault)
-    _end({**answer, "printed": _short("".join(printed), 2000), "walls": [name for name, up in walls.items() if up]})
+    _write(1, secret + json.dumps({**answer, "printed": _short("".join(printed), 2000)}).encode())
+    os._exit(0)  # at once: no finalizer of the script runs
+
+
+def _tell(status: int, **what: object) -> None:
+    """Say what stands and close the channel: nothing that runs later can say it again."""
+    _write(status, json.dumps(what).encode())
+    os.close(status)
 
 
 def _run(source: str, modules: dict[str, ModuleType] | Any, printed: list[str]) -> Json:
@@ -52,10 +59,11 @@ def _run(source: str, modules: dict[str, ModuleType] | Any, printed: list[str]) 
         tree = parsed(source)
     except (SyntaxError, MemoryError, RecursionError, ValueError) as fault:
         line = getattr(fault, "lineno", None)
-        message = fault.msg if isinstance(fault, SyntaxError) else str(fault) or "nested too deeply"
+        message = _short(fault.msg if isinstance(fault, SyntaxError) else str(fault) or "nested too deeply", 600)
         return {"ok": False, "layer": "parse", "kind": type(fault).__name__, "message": message, "line": line}
     if found := breaches(tree):
-        return {"ok": False, "layer": "rules", "breaches": [list(b) for b in found[:12]]}
+        told = [[line, *(_short(words, 600) for words in about)] for line, *about in found[:12]]
+        return {"ok": False, "layer": "rules", "breaches": told}
     space: Json = {"__builtins__": script_builtins(modules, printed), "__name__": "__main__"}
     exec(compile(tree, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
     return _result(space, modules["scenariogeneration.xosc"])
@@ -77,6 +85,7 @@ def _result(space: Json, xosc: ModuleType) -> Json:
     root = scenario.get_element()
     ET.indent(root)
     text = '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    text = _sendable(text)
     if len(text) > MAX_XML:
         message = f"the scenario has {len(text)} characters, at most {MAX_XML} are taken"
         return {"ok": False, "layer": "execution", "kind": "TooLarge", "message": message}
@@ -97,13 +106,17 @@ def _fault(fault: BaseException) -> Json:
     }  # fmt: skip
 
 
+def _sendable(text: str) -> str:
+    """The text with its lone surrogates, which no UTF-8 can carry, as question marks."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
 def _short(text: str, limit: int) -> str:
+    text = _sendable(text)
     return text if len(text) <= limit else f"{text[: limit - 3]}..."
 
 
-def _end(answer: Json) -> NoReturn:
-    """Answer and end at once: no finalizer of the script runs."""
-    data = memoryview(json.dumps(answer).encode())
+def _write(channel: int, text: bytes) -> None:
+    data = memoryview(text)
     while data:
-        data = data[os.write(1, data) :]
-    os._exit(0)
+        data = data[os.write(channel, data) :]

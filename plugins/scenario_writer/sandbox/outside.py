@@ -1,7 +1,10 @@
 """The near end: a script goes over to a fresh interpreter and comes back as a scenario file or as one fault.
 
 The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its
-own that is killed as a whole. Its answer is as untrusted as the script: it is bounded, and it is only text.
+own that is killed as a whole. Two channels come back. *Status* says which walls stand: it is written before a line
+of the script is read and closed then, so a script cannot forge it. The *answer* is as untrusted as the script that
+may have written it: it is bounded, it opens with a secret of this run, and it is read by a strict model; one that
+does not fit is a fault of that script and of nothing else.
 """
 
 from __future__ import annotations
@@ -9,16 +12,19 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import secrets
 import selectors
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
@@ -26,11 +32,11 @@ from sgcad_core.errors import ConfigError, MissingTool
 Layer = Literal["parse", "rules", "execution", "limit"]
 MAX_ANSWER = 16_000_000
 MAX_ERRORS = 100_000
-STARTED = b"."
-"""The first byte of an answer: the walls stand. What goes wrong before it is not the script's fault."""
+MAX_STATUS = 1_000
+Wall = Literal["namespaces", "root", "calls"]
 _BOOT = (
-    "import sys; root, site = sys.argv[1:]; sys.path.append(root); "
-    "from plugins.scenario_writer.sandbox.inside import main; sys.path.append(site); main(site)"
+    "import sys; root, site, status = sys.argv[1:]; sys.path.append(root); "
+    "from plugins.scenario_writer.sandbox.inside import main; sys.path.append(site); main(site, int(status))"
 )
 
 
@@ -61,8 +67,49 @@ class Ran:
     xosc: str | None = None
     fault: Fault | None = None
     printed: str = ""
-    walls: tuple[str, ...] = ()
+    walls: tuple[Wall, ...] = ()
     seconds: float = 0.0
+
+
+class _Strict(BaseModel):
+    """Read from bytes that anybody may have written."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class _Status(_Strict):
+    """What stands before the script is read; `isolated` is False where it must not run."""
+
+    isolated: bool
+    walls: tuple[Wall, ...] = ()
+
+
+_Line = Annotated[int, Field(ge=0, le=10_000_000)]
+_Printed = Annotated[str, Field(max_length=2_000)]
+_Words = Annotated[str, Field(max_length=4_000)]
+
+
+class _Written(_Strict):
+    """The answer of a script that left a scenario."""
+
+    ok: Literal[True]
+    xosc: Annotated[str, Field(max_length=5_000_000)]
+    printed: _Printed = ""
+
+
+class _Failed(_Strict):
+    """The answer of a script that did not."""
+
+    ok: Literal[False]
+    layer: Literal["parse", "rules", "execution"]
+    kind: _Words = ""
+    message: _Words = ""
+    line: _Line | None = None
+    breaches: Annotated[tuple[tuple[_Line, _Words, _Words, _Words], ...], Field(max_length=12)] = ()
+    printed: _Printed = ""
+
+
+_ANSWER: TypeAdapter[_Written | _Failed] = TypeAdapter(Annotated[_Written | _Failed, Field(discriminator="ok")])
 
 
 def run_script(
@@ -75,20 +122,22 @@ def run_script(
     """
     limits = limits or Limits()
     started = time.monotonic()
+    secret = secrets.token_hex(16)
     with tempfile.TemporaryDirectory(prefix="sgcad-script-") as folder:
         job = {
             "source": source, "folder": folder, "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
-            "allow_without_namespace": allow_without_namespace, "unchecked": unchecked,
+            "allow_without_namespace": allow_without_namespace, "unchecked": unchecked, "secret": secret,
         }  # fmt: skip
         heard, ended = _serve(job, folder, limits.wall_s)
-    ran = _read(heard, ended, limits)
-    if ran is None:
+    status = _status(heard, ended)
+    if not status.isolated:
         raise ConfigError(
             "the sandbox needs a network namespace of its own and the system gives none; allow user namespaces "
             "(sysctl user.max_user_namespaces, a container's seccomp profile), or set "
             "scenario_writer.allow_without_namespace: true to rely on its other walls"
         )
-    return Ran(ran.xosc, ran.fault, ran.printed, ran.walls, time.monotonic() - started)
+    ran = _read(heard, ended, limits, secret.encode())
+    return replace(ran, walls=status.walls, seconds=time.monotonic() - started)
 
 
 @cache
@@ -102,8 +151,9 @@ def _site() -> str:
 # ------------------------------------------------------------------ the process
 @dataclass
 class _Heard:
-    """What the process wrote; `cut` is why we stopped listening."""
+    """What the process wrote on each channel; `cut` is why we stopped listening."""
 
+    status: bytearray = field(default_factory=bytearray)
     said: bytearray = field(default_factory=bytearray)
     errors: bytearray = field(default_factory=bytearray)
     cut: Literal["", "time", "flood"] = ""
@@ -111,25 +161,35 @@ class _Heard:
 
 def _serve(job: dict[str, Any], folder: str, wall_s: float) -> tuple[_Heard, int]:
     """What it wrote and its exit code."""
-    command = [sys.executable, "-I", "-S", "-B", "-c", _BOOT, str(settings.ROOT), _site()]
-    with tempfile.TemporaryFile(prefix="sgcad-job-") as stdin:
-        stdin.write(json.dumps(job).encode("utf-8", "surrogatepass"))
-        stdin.seek(0)
-        process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
-            command, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={}, cwd=folder,
-            start_new_session=True, bufsize=0,
-        )  # fmt: skip
+    ours, theirs = os.pipe()
     try:
-        heard = _hear(process, time.monotonic() + wall_s)
+        process = _start(job, folder, theirs)
     finally:
+        os.close(theirs)
+    try:
+        heard = _hear(process, ours, time.monotonic() + wall_s)
+    finally:
+        os.close(ours)
         _kill(process)
     return heard, process.returncode
 
 
-def _hear(process: subprocess.Popen[bytes], deadline: float) -> _Heard:
-    """Read the answer until it ends, the time is over or there is too much of it."""
+def _start(job: dict[str, Any], folder: str, status: int) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-I", "-S", "-B", "-c", _BOOT, str(settings.ROOT), _site(), str(status)]
+    with tempfile.TemporaryFile(prefix="sgcad-job-") as stdin:
+        stdin.write(json.dumps(job).encode("utf-8", "surrogatepass"))
+        stdin.seek(0)
+        return subprocess.Popen(  # noqa: S603 - our own interpreter and module
+            command, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={}, cwd=folder,
+            start_new_session=True, bufsize=0, pass_fds=(status,),
+        )  # fmt: skip
+
+
+def _hear(process: subprocess.Popen[bytes], status: int, deadline: float) -> _Heard:
+    """Read all channels until they end, the time is over or there is too much on one."""
     heard = _Heard()
     with selectors.DefaultSelector() as selector:
+        selector.register(status, selectors.EVENT_READ, (heard.status, MAX_STATUS))
         selector.register(process.stdout, selectors.EVENT_READ, (heard.said, MAX_ANSWER))  # type: ignore[arg-type]
         selector.register(process.stderr, selectors.EVENT_READ, (heard.errors, MAX_ERRORS))  # type: ignore[arg-type]
         while selector.get_map() and not heard.cut:
@@ -160,38 +220,35 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 # ------------------------------------------------------------------ its answer
-def _read(heard: _Heard, ended: int, limits: Limits) -> Ran | None:
-    """What came back; None where the sandbox could not be isolated. Raises MissingTool if it never started."""
-    said = bytes(heard.said)
-    if not said.startswith(STARTED):
+def _status(heard: _Heard, ended: int) -> _Status:
+    """Which walls stand. Raises MissingTool if the sandbox never came so far."""
+    try:
+        return _Status.model_validate_json(bytes(heard.status))
+    except ValidationError as fault:
         words = heard.errors[-1500:].decode("utf-8", "replace").strip()
-        raise MissingTool(f"the sandbox did not start (exit code {ended}): {words or heard.cut or 'no words'}")
+        said = words or heard.cut or "no words"
+        raise MissingTool(f"the sandbox did not start (exit code {ended}): {said}") from fault
+
+
+def _read(heard: _Heard, ended: int, limits: Limits, secret: bytes) -> Ran:
+    """What came back; never raises, whatever the script wrote."""
     if heard.cut == "time":
         return _over("TimeLimit", f"the script ran longer than {limits.wall_s:g} s")
     if heard.cut == "flood":
         return _over("OutputLimit", "the script floods its output")
-    try:
-        answer = json.loads(said[len(STARTED) :])
-        return _answer(answer) if isinstance(answer, dict) else _death(ended, limits)
-    except (ValueError, KeyError, TypeError, IndexError, RecursionError):
+    said = bytes(heard.said)
+    if not said:
         return _death(ended, limits)
-
-
-def _answer(answer: dict[str, Any]) -> Ran | None:
-    layer = answer.get("layer")
-    if layer == "isolation":
-        return None
-    walls = tuple(str(w) for w in answer.get("walls", ()))
-    printed = str(answer.get("printed", ""))
-    if answer["ok"]:
-        return Ran(xosc=str(answer["xosc"]), printed=printed, walls=walls)
-    line = answer.get("line")
-    breaches = tuple((int(b[0]), str(b[1]), str(b[2]), str(b[3])) for b in answer.get("breaches", ()))
-    fault = Fault(
-        layer if layer in ("parse", "rules") else "execution", str(answer.get("kind", "")),
-        str(answer.get("message", "")), line if isinstance(line, int) else None, breaches,
-    )  # fmt: skip
-    return Ran(fault=fault, printed=printed, walls=walls)
+    try:
+        answer = _ANSWER.validate_json(said.removeprefix(secret)) if said.startswith(secret) else None
+    except ValidationError:
+        answer = None
+    if answer is None:
+        return _over("ForgedAnswer", "what came back on the sandbox's channel is not the sandbox's own answer")
+    if isinstance(answer, _Written):
+        return Ran(xosc=answer.xosc, printed=answer.printed)
+    fault = Fault(answer.layer, answer.kind, answer.message, answer.line, answer.breaches)
+    return Ran(fault=fault, printed=answer.printed)
 
 
 def _death(ended: int, limits: Limits) -> Ran:

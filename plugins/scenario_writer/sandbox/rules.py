@@ -22,7 +22,6 @@ MODULES: Mapping[str, frozenset[str]] = {
     "random": frozenset({"random", "uniform", "randint", "choice", "gauss", "seed", "Random"}),
     "itertools": ANY,
     "datetime": frozenset({"datetime", "date", "time", "timedelta", "timezone", "UTC"}),
-    "dataclasses": frozenset({"dataclass", "field"}),
     "enum": frozenset({"Enum", "IntEnum", "auto"}),
     "collections": frozenset({"defaultdict", "OrderedDict", "Counter", "deque"}),
     "functools": frozenset({"partial", "reduce", "lru_cache", "cache"}),
@@ -90,6 +89,8 @@ def _of(node: ast.AST) -> Iterator[Breach]:
         if isinstance(node.value, str | bytes) and _PRIVATE_IN_TEXT.search(_text(node.value)):
             yield Breach(line, "a text names something private", _text(node.value)[:60], "leave it out")
         return
+    if isinstance(node, ast.Attribute) and node.attr == "format" and not isinstance(node.value, ast.Constant):
+        yield Breach(line, "only a written-out text is formatted", "format", "use an f-string")
     own = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
     for name in _identifiers(node):
         if name in _FORBIDDEN:
@@ -151,6 +152,7 @@ _REMEDIES = {
     "os": "write no files: bind the finished xosc.Scenario to the name `scenario`",
     "open": "write no files: bind the finished xosc.Scenario to the name `scenario`",
     "numpy": "use math and lists",
+    "dataclasses": "write a class with __init__",
     "xodr": "the road network is written already: refer to road.xodr",
     "getattr": "name the attribute outright",
 }

@@ -1,7 +1,7 @@
-"""What is wrong with an OpenDRIVE file, and which roads, lanes and s it has.
+"""What is wrong with an OpenDRIVE file.
 
 Schema 1.7 (from the installed scenariogeneration package), references, lane links, lengths and gaps: what
-ASAM's rules demand of a network of one-way roads, so that a bad file is known before another tool meets it.
+ASAM's rules demand of a network, so that a bad file is known before another tool meets it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
 from itertools import pairwise
@@ -17,6 +16,7 @@ from itertools import pairwise
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
+from sgcad_core.formats.opendrive.check_control import control_findings
 from sgcad_core.formats.opendrive.geometry import (
     Pose,
     arc_lengths_of,
@@ -35,74 +35,16 @@ LENGTH_M = 0.001
 _NETCONVERT = "draw the junction less sharp or the roads longer"
 
 
-# ------------------------------------------------------------------ what is there
-@dataclass(frozen=True)
-class RoadEntry:
-    """One OpenDRIVE road: length, junction it belongs to ("-1": none), SUMO edge, lanes by section."""
-
-    id: str
-    length_m: float
-    junction: str
-    edge: str | None
-    """SUMO edge that it was made from; None for the connectors inside a junction."""
-    sections: tuple[tuple[float, frozenset[int]], ...]
-
-    def lanes_at(self, s_m: float) -> frozenset[int]:
-        """Lane ids (0 left out) at s."""
-        return next((lanes for start, lanes in reversed(self.sections) if start <= s_m + 1e-9), frozenset())
-
-
-@dataclass(frozen=True)
-class RoadIndex:
-    """Roads by id; answers whether a lane position exists."""
-
-    roads: Mapping[str, RoadEntry]
-
-    def fault(self, road: str, lane: int | None = None, s_m: float | None = None) -> str:
-        """Why a position does not exist, "" if it does."""
-        entry = self.roads.get(road)
-        if entry is None:
-            return f"road {road!r} is not in the .xodr (roads: {', '.join(list(self.roads)[:30])})"
-        if s_m is not None and not -1e-6 <= s_m <= entry.length_m + 1e-6:
-            return f"s = {s_m:g} m is beyond road {road!r}, which is {entry.length_m:.2f} m long"
-        lanes = entry.lanes_at(s_m or 0.0)
-        if lane is not None and lane not in lanes:
-            return f"lane {lane} is not on road {road!r} (lanes: {', '.join(map(str, sorted(lanes)))})"
-        return ""
-
-    def by_edge(self, edge: str) -> RoadEntry | None:
-        """The road made from a SUMO edge."""
-        return next((road for road in self.roads.values() if road.edge == edge), None)
-
-
-def lane_index(xodr: str) -> RoadIndex:
-    """Which roads, lanes and lengths an OpenDRIVE file has. Raises InvalidOutput where it is no XML."""
-    root = parse_xml(xodr, "xodr")
-    return RoadIndex({road.get("id", ""): _entry(road) for road in root.iterfind("road")})
-
-
-def _entry(road: Element) -> RoadEntry:
-    edge = road.find("userData[@code='sumoId']")
-    sections = tuple((number(sec, "s"), _lane_ids(sec)) for sec in road.iterfind("lanes/laneSection"))
-    return RoadEntry(
-        road.get("id", ""), number(road, "length"), road.get("junction", "-1"),
-        None if edge is None else edge.get("value"), sections,
-    )  # fmt: skip
-
-
-def _lane_ids(section: Element) -> frozenset[int]:
-    return frozenset(int(number(lane, "id")) for lane in section.iterfind("*/lane")) - {0}
-
-
 # ------------------------------------------------------------------ what is wrong
 def xodr_findings(xodr: str) -> list[Finding]:
-    """Schema faults first; where the schema holds, references, links, lengths and gaps. Empty is a pass."""
+    """Schema faults first; where it holds, references, links, lengths and gaps, then signals. Empty is a pass."""
     try:
         root = parse_xml(xodr, "opendrive")
     except InvalidOutput as fault:
         return list(fault.findings)
     broken = [_finding(m, f"line {n}", "", "follow OpenDRIVE 1.7") for n, m in schema_errors(_schema(), root)]
-    return broken or [*_doubles(root), *_references(root), *_lengths(root), *_gaps(root)]
+    found = broken or [*_doubles(root), *_references(root), *_lengths(root), *_gaps(root)]
+    return found or control_findings(root)
 
 
 @cache

@@ -76,7 +76,11 @@ def arc_lengths_of(found: Sequence[Element]) -> Floats:
     """(n,) true lengths of paramPoly3 geometries, metres (Gauss-Legendre; errors below 1e-4 m even near a cusp)."""
     polys = [(geometry.find("paramPoly3"), number(geometry, "length")) for geometry in found]
     table = np.array([_coefficients(poly) for poly, _ in polys]).reshape(-1, 8)
-    p_end = np.array([_range(poly, length) for poly, length in polys])
+    return cubic_lengths(table, np.array([_range(poly, length) for poly, length in polys]))
+
+
+def cubic_lengths(table: Floats, p_end: Floats) -> Floats:
+    """(n,) true lengths of curves (n, 8) aU bU cU dU aV bV cV dV from p = 0 to `p_end`, metres."""
     p = p_end[:, None] * _AT
     du = table[:, 1:2] + 2 * table[:, 2:3] * p + 3 * table[:, 3:4] * p**2
     dv = table[:, 5:6] + 2 * table[:, 6:7] * p + 3 * table[:, 7:8] * p**2

@@ -16,8 +16,8 @@ import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
-from sgcad_core.formats.opendrive.check import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
+from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.read import SOURCE, Node, read_root
 from sgcad_core.formats.xml import parse_xml, schema_errors
@@ -28,6 +28,8 @@ MARGIN_M = 150.0
 """Farther than this outside the network's bounding box nothing can have to do with the crash."""
 MAX_SPEED_MPS = 90.0
 MAX_BOX_M = 40.0
+ORIGIN_M = 1e-3
+"""A rear axle nearer than this to the origin is there."""
 MAX_FINDINGS = 20
 _SCHEMAS = {"0": "1_0", "1": "1_1", "2": "1_2", "3": "1_3_1"}
 _NAMED = ("Story", "Act", "ManeuverGroup", "Maneuver", "Event", "Action")
@@ -104,6 +106,11 @@ def _entities(root: Node) -> Iterator[Finding]:
         for side in ("length", "width", "height"):
             if not 0 < (value := box.number(side)) <= MAX_BOX_M:
                 yield _finding(f"box {side} {limit}", _place(box), f"{value:g}", "give the size in metres")
+    for axle in _all(root, "RearAxle"):
+        if not _local(axle) and abs(x := axle.number("positionX")) > ORIGIN_M:
+            what = "the entity's origin is the center of its rear axle, so that positionX must be 0"
+            remedy = "give BoundingBox Center and FrontAxle positionX from the rear axle, and poses of the rear axle"
+            yield _finding(what, _place(axle), f"{x:g}", remedy)
 
 
 def _entity_references(root: Node) -> Iterator[Finding]:

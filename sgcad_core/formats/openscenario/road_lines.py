@@ -1,46 +1,81 @@
-"""OpenDRIVE reference lines and lane centers as dense polylines, for playing lane-bound scenarios.
+"""One OpenDRIVE road: its reference line, its lane sections and the lanes' places and widths.
 
-A vertex every 0.25 m: within 2 mm of the curve at a radius of 5 m. Knows lines, arcs, spirals and
-paramPoly3; elevation is left out. Formulas: ASAM OpenDRIVE 1.7, sections 7 and 9.
+Elevation is left out: played motion is plane. Formulas: ASAM OpenDRIVE 1.8, section 11.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.formats.openscenario.motion import Pose
 from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.road_geometry import MAX_ROAD_M, reference_line
 from sgcad_core.geometry.plane import Floats
 
-STEP_M = 0.25
-MAX_ROAD_M = 20_000.0
-DRIVABLE = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "biking", "restricted")
+DRIVABLE = (
+    "driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "biking", "restricted", "bus",
+    "taxi", "HOV", "slipLane", "stop", "parking", "mwyEntry", "mwyExit",
+)  # fmt: skip
+MAX_LANES = 100
+"""Lanes on one side of a section."""
+
+
+class Cubic(NamedTuple):
+    """a + b d + c d² + d d³ with d counted from `begin_m`."""
+
+    begin_m: float
+    a: float
+    b: float
+    c: float
+    d: float
+
+
+@dataclass(frozen=True, eq=False)
+class Lane:
+    """One lane of one section: its width or outer border over s, and the lanes it leads to."""
+
+    node: Node
+    kind: str
+    widths: tuple[Cubic, ...]
+    borders: tuple[Cubic, ...]
+    before: int | None
+    after: int | None
 
 
 @dataclass(frozen=True, eq=False)
 class LaneSection:
-    """Lanes of one section: id -> its element; s in [begin, end)."""
+    """Lanes of one section by id, without lane 0; s in [begin, end)."""
 
     begin_m: float
     end_m: float
-    lanes: dict[int, Node]
+    lanes: dict[int, Lane]
 
     def center_t(self, lane: int, s_m: Floats) -> Floats:
-        """t of a lane's center, from the (offset) center line: inner lanes' widths and half of its own."""
-        sign = 1 if lane > 0 else -1
-        inner = [self._widths(sign * i, s_m) for i in range(1, abs(lane))]
-        t: Floats = sign * (sum(inner, np.zeros_like(s_m)) + self._widths(lane, s_m) / 2)
-        return t
+        """t of a lane's center, from the (offset) center line."""
+        inner, outer = self.edges_t(lane, s_m)
+        return (inner + outer) / 2
 
-    def _widths(self, lane: int, s_m: Floats) -> Floats:
-        if (node := self.lanes.get(lane)) is None:
-            return np.zeros_like(s_m)
-        return polynomials(node.children("width"), "sOffset", s_m - self.begin_m)
+    def edges_t(self, lane: int, s_m: Floats) -> tuple[Floats, Floats]:
+        """t of a lane's inner and outer edge: widths of the lanes inside added up, or borders where they stand."""
+        sign, inner = (1 if lane > 0 else -1), np.zeros_like(s_m)
+        outer = inner
+        for i in range(1, abs(lane) + 1):
+            inner, outer = outer, self._outer(sign * i, outer, s_m)
+        return inner, outer
+
+    def _outer(self, lane: int, inner: Floats, s_m: Floats) -> Floats:
+        if (found := self.lanes.get(lane)) is None:
+            return inner
+        if found.borders and not found.widths:
+            return cubics(found.borders, s_m - self.begin_m)
+        moved: Floats = inner + (1 if lane > 0 else -1) * cubics(found.widths, s_m - self.begin_m)
+        return moved
 
 
 class RoadLine:
@@ -51,17 +86,19 @@ class RoadLine:
         self.length_m = node.positive("length")
         if self.length_m > MAX_ROAD_M:
             raise node.fault(f"road longer than {MAX_ROAD_M:g} m", f"{self.length_m:g}")
+        self.junction = node.text("junction", "-1")
+        self.left_hand = node.text("rule", "RHT") == "LHT"
         self.sections = self._sections()
+        self._offsets = _cubics(node.need("lanes").children("laneOffset"), "s")
 
     @cached_property
     def reference(self) -> Floats:
         """(n, 4) s, x, y, heading along the reference line; headings are continuous."""
-        parts = [_sampled(g) for g in self.node.need("planView").children("geometry")]
-        if not parts:
-            raise self.node.fault("has no geometry", remedy="add a <geometry> to its <planView>")
-        rows = np.vstack(parts)
-        rows[:, 3] = np.unwrap(rows[:, 3])
-        return rows
+        return reference_line(self.node)
+
+    def sense(self, lane: int) -> int:
+        """1 where traffic drives a lane along s, -1 where against it."""
+        return (1 if lane < 0 else -1) * (-1 if self.left_hand else 1)
 
     def pose(self, s_m: float, t_m: float = 0.0) -> Pose:
         """Pose at road coordinates. Raises ValueError beyond the road."""
@@ -72,23 +109,40 @@ class RoadLine:
         return Pose(here[0] - t_m * math.sin(heading), here[1] + t_m * math.cos(heading), heading)
 
     def lane_t(self, lane: int, s_m: float) -> float:
-        """t of a lane's center there. Raises ValueError where there is no such lane."""
+        """t of a lane's center there; lane 0 is the center line. Raises ValueError where there is no such lane."""
         section = self.section(s_m)
-        if lane not in section.lanes:
+        if lane and lane not in section.lanes:
             known = ", ".join(str(i) for i in sorted(section.lanes, reverse=True)) or "none"
             raise ValueError(f"road {self.id!r} has no lane {lane} at s = {s_m:g} m; lanes there: {known}")
         s = np.array([s_m])
         return float((self._offset(s) + section.center_t(lane, s))[0])
 
+    def width_m(self, lane: int, s_m: float) -> float:
+        """A lane's width there, metres."""
+        inner, outer = self.section(s_m).edges_t(lane, np.array([s_m]))
+        return float(abs(outer - inner)[0])
+
+    def lane_at(self, s_m: float, t_m: float) -> int:
+        """The lane that holds t there, else the nearest one; 0 where the road has none."""
+        section, s = self.section(s_m), np.array([s_m])
+        offset = float(self._offset(s)[0])
+
+        def beyond(lane: int) -> float:
+            low, high = sorted(float(edge[0]) for edge in section.edges_t(lane, s))
+            return max(low - (t_m - offset), (t_m - offset) - high)
+
+        return min(section.lanes, key=beyond, default=0)
+
     def center(self, index: int, lane: int) -> Floats:
-        """(n, 4) s, x, y and reference heading of a lane's center through one section, s rising."""
+        """(n, 5) s, x, y, reference heading and half width of a lane's center through one section, s rising."""
         section = self.sections[index]
         inner = self.reference[(self.reference[:, 0] > section.begin_m) & (self.reference[:, 0] < section.end_m)]
         s = np.concatenate(([section.begin_m], inner[:, 0], [section.end_m]))
         x, y, h = (np.interp(s, self.reference[:, 0], self.reference[:, i]) for i in (1, 2, 3))
         inside = np.minimum(s, section.end_m - 1e-9)
-        t = self._offset(inside) + section.center_t(lane, inside)
-        return np.column_stack((s, x - t * np.sin(h), y + t * np.cos(h), h))
+        near, far = section.edges_t(lane, inside)
+        t = self._offset(inside) + (near + far) / 2
+        return np.column_stack((s, x - t * np.sin(h), y + t * np.cos(h), h, np.abs(far - near) / 2))
 
     def section(self, s_m: float) -> LaneSection:
         """The lane section there."""
@@ -105,7 +159,7 @@ class RoadLine:
             raise ValueError(f"s = {s_m:g} m lies beyond road {self.id!r}, which has s = 0 to {self.length_m:g} m")
 
     def _offset(self, s_m: Floats) -> Floats:
-        return polynomials(self.node.need("lanes").children("laneOffset"), "s", s_m)
+        return cubics(self._offsets, s_m)
 
     def _sections(self) -> list[LaneSection]:
         nodes = self.node.need("lanes").children("laneSection")
@@ -115,75 +169,33 @@ class RoadLine:
         return [LaneSection(n.number("s"), end, _lanes(n)) for n, end in zip(nodes, ends, strict=True)]
 
 
-def _lanes(section: Node) -> dict[int, Node]:
-    lanes = (lane for side in section.children("left", "right") for lane in side.children("lane"))
-    return {int(lane.number("id")): lane for lane in lanes}
+def _lanes(section: Node) -> dict[int, Lane]:
+    lanes = [lane for side in section.children("left", "right") for lane in side.children("lane")]
+    if len(lanes) > 2 * MAX_LANES:
+        raise section.fault(f"more than {2 * MAX_LANES} lanes", str(len(lanes)))
+    found = {lane.whole("id"): _lane(lane) for lane in lanes}
+    if worst := max((i for i in found if abs(i) > MAX_LANES), default=None, key=abs):
+        raise section.fault(f"lane ids must lie within +-{MAX_LANES}", str(worst))
+    found.pop(0, None)
+    return found
 
 
-def polynomials(entries: Sequence[Node], start: str, s_m: Floats) -> Floats:
-    """Piecewise cubics a + b d + c d² + d d³ at s; 0 before the first entry."""
+def _lane(node: Node) -> Lane:
+    link = node.find("link")
+    ends = [link.find(side) if link else None for side in ("predecessor", "successor")]
+    before, after = (end.whole("id") if end else None for end in ends)
+    widths, borders = (_cubics(node.children(tag), "sOffset") for tag in ("width", "border"))
+    return Lane(node, node.text("type", "driving"), widths, borders, before, after)
+
+
+def _cubics(entries: Sequence[Node], start: str) -> tuple[Cubic, ...]:
+    return tuple(Cubic(e.number(start), *(e.number(k, 0.0) for k in "abcd")) for e in entries)
+
+
+def cubics(entries: Sequence[Cubic], s_m: Floats) -> Floats:
+    """Piecewise cubics at s; 0 before the first entry."""
     total = np.zeros_like(s_m)
-    for entry in entries:
-        begin = entry.number(start)
+    for begin, a, b, c, cubic in entries:
         d = s_m - begin
-        a, b, c, cubic = (entry.number(k, 0.0) for k in "abcd")
         total = np.where(d >= -1e-9, a + d * (b + d * (c + d * cubic)), total)
     return total
-
-
-# ------------------------------------------------------------------ geometry
-def _sampled(geometry: Node) -> Floats:
-    """(n, 4) s, x, y, heading of one <geometry>; s is the arc length scaled to the stated length."""
-    length = geometry.number("length")
-    if not 0 <= length <= MAX_ROAD_M:
-        raise geometry.fault(f"length must lie within 0 and {MAX_ROAD_M:g} m", f"{length:g}")
-    shape = geometry.only()
-    if shape.tag not in _SHAPES:
-        raise shape.unsupported(f"the player does not know <{shape.tag}> geometry")
-    share = np.linspace(0.0, 1.0, max(2, math.ceil(length / STEP_M) + 1))
-    u, v, turn = _SHAPES[shape.tag](shape, share, length)
-    x, y, heading = (geometry.number(name) for name in ("x", "y", "hdg"))
-    c, s = math.cos(heading), math.sin(heading)
-    along = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(u), np.diff(v)))))
-    scaled = along * (length / along[-1] if along[-1] > 0 else 0.0)
-    return np.column_stack((geometry.number("s") + scaled, x + u * c - v * s, y + u * s + v * c, heading + turn))
-
-
-Local = tuple[Floats, Floats, Floats]
-
-
-def _line(shape: Node, share: Floats, length: float) -> Local:
-    return share * length, np.zeros_like(share), np.zeros_like(share)
-
-
-def _arc(shape: Node, share: Floats, length: float) -> Local:
-    k = shape.number("curvature")
-    return _curved(k * share * length, share, length)
-
-
-def _spiral(shape: Node, share: Floats, length: float) -> Local:
-    first, last = shape.number("curvStart"), shape.number("curvEnd")
-    return _curved((first + (last - first) * share / 2) * share * length, share, length)
-
-
-def _curved(turn: Floats, share: Floats, length: float) -> Local:
-    """The curve with a given heading at every share of its length (midpoint rule: exact to 1e-4 m a step)."""
-    step, middle = np.diff(share) * length, (turn[1:] + turn[:-1]) / 2
-    chord = np.sinc(np.diff(turn) / (2 * math.pi))  # sin(x) / x: exact for a constant curvature
-    u = np.concatenate(([0.0], np.cumsum(step * chord * np.cos(middle))))
-    v = np.concatenate(([0.0], np.cumsum(step * chord * np.sin(middle))))
-    return u, v, turn
-
-
-def _param_poly3(shape: Node, share: Floats, length: float) -> Local:
-    p = share * (1.0 if shape.text("pRange", "normalized") == "normalized" else length)
-    k = [shape.number(name) for name in ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")]
-    u = k[0] + p * (k[1] + p * (k[2] + p * k[3]))
-    v = k[4] + p * (k[5] + p * (k[6] + p * k[7]))
-    du, dv = k[1] + p * (2 * k[2] + 3 * p * k[3]), k[5] + p * (2 * k[6] + 3 * p * k[7])
-    return u, v, np.unwrap(np.arctan2(dv, du))
-
-
-_SHAPES: dict[str, Callable[[Node, Floats, float], Local]] = {
-    "line": _line, "arc": _arc, "spiral": _spiral, "paramPoly3": _param_poly3,
-}  # fmt: skip

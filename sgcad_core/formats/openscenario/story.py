@@ -1,12 +1,13 @@
 """The storyboard while it is played: acts, maneuver groups, maneuvers and events with their states.
 
-One pass over the storyboard a step; an element sees what elements before it did in the same step. Knows no
-action's or condition's meaning.
+Each step first ends what is over, then starts and stops what is triggered: what ends by itself at a step is seen by
+conditions from the next step on, as players have it. Knows no action's or condition's meaning.
 """
 
 from __future__ import annotations
 
-from sgcad_core.formats.openscenario.actions import Begin, Running, global_action, private_action
+from sgcad_core.formats.openscenario.actions import Begin, Effect, Running, global_action, private_action
+from sgcad_core.formats.openscenario.actions.running import GLOBAL
 from sgcad_core.formats.openscenario.conditions import Trigger
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene, Stage
@@ -17,15 +18,15 @@ _PRIORITIES = ("override", "overwrite", "parallel", "skip")
 class Event:
     """Runs its actions for every actor of its group each time its trigger fires, up to its count."""
 
-    def __init__(self, node: Node, path: str, actors: list[str], scene: Scene) -> None:
-        self.stage, self.actors = _stage("event", path, scene), actors
-        self.priority = node.choice("priority", _PRIORITIES) if "priority" in node.element.attrib else "override"
-        self.left = _count(node)
+    def __init__(self, node: Node, path: str, actors: list[str], select: bool, scene: Scene) -> None:
+        self.stage, self.actors, self._select = _stage("event", path, scene), actors, select
+        self.priority = node.choice("priority", _PRIORITIES) if node.has("priority") else "override"
+        self._count = self.left = _count(node)
         self.trigger = Trigger(node.find("StartTrigger"), missing=True)
-        self.actions = [_action(a, f"{path}::{a.text('name')}", scene) for a in node.children("Action")]
+        self.actions = [_action(a, f"{path}::{a.name}", scene) for a in node.children("Action")]
         if not self.actions:
             raise node.fault("has no action", remedy="give it an <Action>")
-        if not actors and any(begin for begin, _ in self.actions):
+        if not actors and not select and any(begin for begin, _, _ in self.actions):
             raise node.fault("a private action needs an actor", remedy="name one in the ManeuverGroup's <Actors>")
         self.running: list[tuple[Running, Stage]] = []
 
@@ -43,9 +44,12 @@ class Event:
         self.left -= 1
         self.stage.turn("startTransition", "runningState", scene.step)
         self.running = []
-        for begin, stage in self.actions:
+        actors = list(dict.fromkeys((*self.actors, *self.trigger.entities))) if self._select else self.actors
+        for begin, effect, stage in self.actions:
             stage.turn("startTransition", "runningState", scene.step)
-            self.running += [(begin(scene, actor), stage) for actor in self.actors] if begin else []
+            if effect:
+                effect(scene)
+            self.running += [(begin(scene, actor), stage) for actor in actors] if begin else []
 
     def stop(self, scene: Scene) -> None:
         """End it before its actions have ended."""
@@ -64,42 +68,53 @@ class Event:
         if not self.is_running:
             return
         going = [(r, s) for r, s in self.running if not r.done(scene)]
-        for _, stage in self.actions:
+        for _, _, stage in self.actions:
             if stage.state == "runningState" and not any(s is stage for _, s in going):
                 stage.turn("endTransition", "completeState", scene.step)
         self.running = going
         if not going:
             self._end("endTransition", scene, again=self.left > 0)
 
+    def reset(self) -> None:
+        """Stand by for another run of its group."""
+        self.left, self.running, self.stage.state = self._count, [], "standbyState"
+        self.trigger.reset()
+
     def _end(self, transition: str, scene: Scene, again: bool) -> None:
         self.running = []
         self.stage.turn(transition, "standbyState" if again else "completeState", scene.step)
+        if again:
+            self.trigger.reset()
 
 
 class Maneuver:
     """Events that know each other by priority."""
 
-    def __init__(self, node: Node, path: str, actors: list[str], scene: Scene) -> None:
+    def __init__(self, node: Node, path: str, actors: list[str], select: bool, scene: Scene) -> None:
         node = node.scoped()
         self.stage = _stage("maneuver", path, scene)
-        self.events = [Event(e, f"{path}::{e.text('name')}", actors, scene) for e in node.children("Event")]
+        events = node.children("Event")
+        self.events = [Event(e, f"{path}::{e.name}", actors, select, scene) for e in events]
 
     @property
     def complete(self) -> bool:
         """Whether every event is."""
         return all(e.stage.state == "completeState" for e in self.events)
 
+    def settle(self, scene: Scene) -> None:
+        """End what is over."""
+        for event in self.events:
+            event.settle(scene)
+        if self.complete and self.stage.state == "runningState":
+            self.stage.turn("endTransition", "completeState", scene.step)
+
     def step(self, scene: Scene) -> None:
-        """Settle what ended, start what is triggered."""
+        """Start what is triggered."""
         if self.stage.state == "standbyState":
             self.stage.turn("startTransition", "runningState", scene.step)
         for event in self.events:
-            event.settle(scene)
-        for event in self.events:
             if event.wants_to_start(scene):
                 self._start(event, scene)
-        if self.complete and self.stage.state == "runningState":
-            self.stage.turn("endTransition", "completeState", scene.step)
 
     def _start(self, event: Event, scene: Scene) -> None:
         others = [e for e in self.events if e.is_running]
@@ -109,7 +124,6 @@ class Maneuver:
         for other in others if event.priority in ("override", "overwrite") else []:
             other.stop(scene)
         event.start(scene)
-        event.settle(scene)
 
     def stop(self, scene: Scene) -> None:
         """End it and its events."""
@@ -118,29 +132,40 @@ class Maneuver:
                 event.stop(scene)
         self.stage.turn("stopTransition", "completeState", scene.step)
 
+    def reset(self) -> None:
+        """Stand by for another run of its group."""
+        self.stage.state = "standbyState"
+        for event in self.events:
+            event.reset()
+
 
 class Group:
-    """A maneuver group: maneuvers for the same actors."""
+    """A maneuver group: maneuvers for the same actors, run as often as it says."""
 
     def __init__(self, node: Node, path: str, scene: Scene) -> None:
-        if _count(node) != 1:
-            raise node.unsupported("the player runs a maneuver group once (maximumExecutionCount 1)")
+        self.left = _count(node)
         holder = node.need("Actors")
-        if holder.flag("selectTriggeringEntities", False):
-            raise holder.unsupported("the player does not select triggering entities")
-        actors = [ref.text("entityRef") for ref in holder.children("EntityRef")]
-        for actor in actors:
-            scene.body(actor, holder)
-        if node.find("CatalogReference"):
-            raise node.need("CatalogReference").unsupported()
+        select = holder.flag("selectTriggeringEntities", False)
+        refs = holder.children("EntityRef")
+        actors = [name for ref in refs for name in scene.members(ref.text("entityRef"), holder)]
         self.stage = _stage("maneuverGroup", path, scene)
-        found = node.children("Maneuver")
-        self.maneuvers = [Maneuver(m, f"{path}::{m.text('name')}", actors, scene) for m in found]
+        found = [m.followed("Maneuver") for m in node.children("CatalogReference", "Maneuver")]
+        self.maneuvers = [Maneuver(m, f"{path}::{m.name}", actors, select, scene) for m in found]
+
+    def settle(self, scene: Scene) -> None:
+        """End what is over; stand by again while there are executions left."""
+        for maneuver in self.maneuvers:
+            maneuver.settle(scene)
+        if self.stage.state == "runningState" and all(m.complete for m in self.maneuvers):
+            self.left -= 1
+            self.stage.turn("endTransition", "completeState" if self.left < 1 else "runningState", scene.step)
+            for maneuver in self.maneuvers if self.left > 0 else ():
+                maneuver.reset()
 
     @property
     def complete(self) -> bool:
-        """Whether every maneuver is."""
-        return all(m.complete for m in self.maneuvers)
+        """Whether it has run as often as it may."""
+        return self.stage.state == "completeState"
 
 
 class Act:
@@ -150,10 +175,24 @@ class Act:
         self.stage = _stage("act", path, scene)
         self.start_trigger = Trigger(node.find("StartTrigger"), missing=True)
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
-        self.groups = [Group(g, f"{path}::{g.text('name')}", scene) for g in node.children("ManeuverGroup")]
+        self.groups = [Group(g, f"{path}::{g.name}", scene) for g in node.children("ManeuverGroup")]
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is over."""
+        return self.stage.state == "completeState"
+
+    def settle(self, scene: Scene) -> None:
+        """End what is over."""
+        if self.stage.state != "runningState":
+            return
+        for group in self.groups:
+            group.settle(scene)
+        if all(g.complete for g in self.groups):
+            self.stage.turn("endTransition", "completeState", scene.step)
 
     def step(self, scene: Scene) -> None:
-        """Start, run, stop or complete it."""
+        """Start it, stop it, start what is triggered in it."""
         if self.stage.state == "standbyState" and self.start_trigger.fires(scene):
             self._turn_all("startTransition", "runningState", scene)
         if self.stage.state != "runningState":
@@ -162,12 +201,8 @@ class Act:
             self._stop(scene)
             return
         for group in self.groups:
-            for maneuver in group.maneuvers:
+            for maneuver in group.maneuvers if not group.complete else ():
                 maneuver.step(scene)
-            if group.complete and group.stage.state == "runningState":
-                group.stage.turn("endTransition", "completeState", scene.step)
-        if all(g.complete for g in self.groups):
-            self.stage.turn("endTransition", "completeState", scene.step)
 
     def _stop(self, scene: Scene) -> None:
         for group in self.groups:
@@ -181,14 +216,15 @@ class Act:
 
 
 class Storyboard:
-    """All stories and the trigger that ends the scenario."""
+    """All stories and the trigger that ends the scenario; `init`: actions of Init that are still under way."""
 
-    def __init__(self, node: Node, scene: Scene) -> None:
+    def __init__(self, node: Node, scene: Scene, init: list[Running]) -> None:
+        self.init = init
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
         self.stories: list[tuple[Stage, list[Act]]] = []
         for story in node.children("Story"):
-            scoped, name = story.scoped(), story.text("name", "")
-            acts = [Act(a, f"{name}::{a.text('name')}", scene) for a in scoped.children("Act")]
+            scoped, name = story.scoped(), story.name
+            acts = [Act(a, f"{name}::{a.name}", scene) for a in scoped.children("Act")]
             stage = _stage("story", name, scene)
             stage.turn("startTransition", "runningState", 0)
             self.stories.append((stage, acts))
@@ -198,10 +234,14 @@ class Storyboard:
 
         Only the stop trigger ends it; without one it ends when all of its stories are complete.
         """
-        for stage, acts in self.stories:
-            for act in acts:
-                act.step(scene)
-            if stage.state == "runningState" and all(a.stage.state == "completeState" for a in acts):
+        self.init = [running for running in self.init if not running.done(scene)]
+        acts = [act for _, acts in self.stories for act in acts]
+        for act in acts:
+            act.settle(scene)
+        for act in acts:
+            act.step(scene)
+        for stage, inner in self.stories:
+            if stage.state == "runningState" and all(a.complete for a in inner):
                 stage.turn("endTransition", "completeState", scene.step)
         if self.stop_trigger:
             return self.stop_trigger.moment(scene)
@@ -221,12 +261,12 @@ def _count(node: Node) -> int:
     return int(count)
 
 
-def _action(node: Node, path: str, scene: Scene) -> tuple[Begin | None, Stage]:
-    child = node.only()
+def _action(node: Node, path: str, scene: Scene) -> tuple[Begin | None, Effect | None, Stage]:
     stage = _stage("action", path, scene)
+    if not node.children():
+        node.doubt("needs exactly one child element", "0", "nothing happens")
+        return None, None, stage
+    child = node.only()
     if child.tag == "PrivateAction":
-        return private_action(child), stage
-    if child.tag != "GlobalAction":
-        raise child.unsupported()
-    global_action(child)
-    return None, stage
+        return private_action(child), None, stage
+    return None, global_action(child) if child.tag == "GlobalAction" else GLOBAL.compile(child), stage

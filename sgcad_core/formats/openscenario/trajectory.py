@@ -1,83 +1,109 @@
-"""FollowTrajectoryAction: polylines, timed or untimed. Clothoids, NURBS and catalogs are not supported."""
+"""Trajectories: timed or untimed, followed as they are, and positions along them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.motion import Course, Timed, tangents
-from sgcad_core.formats.openscenario.positions import Where, has_heading, position
+from sgcad_core.formats.openscenario.course import Course
+from sgcad_core.formats.openscenario.motion import Pose, Timed, tangents
+from sgcad_core.formats.openscenario.positions import POSITIONS, Spot, Where, orientation
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.formats.openscenario.shapes import SHAPES, Drawn, Line
+from sgcad_core.geometry.plane import Floats, arc_lengths
 
-MAX_VERTICES = 50_000
+Made = Callable[[Scene, str], Timed | Course]
+"""What a body follows once its action starts."""
 
-
-@dataclass(frozen=True)
-class _Polyline:
-    node: Node
-    times_s: list[float]
-    places: list[Where]
-    with_heading: bool
-
-    def rows(self, scene: Scene) -> tuple[Floats, Floats]:
-        """Points (n, 2) and headings (n,) now."""
-        rows = np.array([where(scene) for where in self.places])
-        return rows[:, :2], rows[:, 2] if self.with_heading else tangents(rows[:, :2])
+_UNTIMED = "give every vertex one, or use <None/> as time reference"
 
 
-def trajectory(node: Node) -> Callable[[Scene], Timed | Course]:
-    """Compile a <FollowTrajectoryAction> into what a body follows once it starts."""
+def trajectory(node: Node) -> Made:
+    """Compile a <FollowTrajectoryAction>."""
     holder = node.find("TrajectoryRef") or node
-    line = _polyline(holder.need("Trajectory"))
-    timing = node.need("TimeReference").only()
-    if timing.tag == "None":
-        start = node.number("initialDistanceOffset", 0.0)
-        return lambda scene: _course(line, scene, start)
-    if node.number("initialDistanceOffset", 0.0):
-        raise node.unsupported("the player does not support initialDistanceOffset with timing")
-    return _timed(line, timing)
+    shape = holder.either("Trajectory")
+    drawn, closed = _shape(shape), shape.flag("closed", False)
+    reference = node.find("TimeReference")
+    timing = reference.only() if reference else None
+    start = node.number("initialDistanceOffset", 0.0)
+    if timing is None or timing.tag == "None":
+        return lambda scene, actor: _course(shape, drawn(scene, actor), start, closed)
+    return _timed(shape, drawn, timing, start)
 
 
-def _timed(line: _Polyline, timing: Node) -> Callable[[Scene], Timed]:
-    """Vertex times are scaled, moved by the offset and, in the relative domain, count from the action's start."""
+def _shape(node: Node) -> Drawn:
+    return SHAPES.compile(node.need("Shape").only())
+
+
+def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
+    """Vertex times are scaled, moved by the offset and, in the relative domain, count from the action's start.
+
+    Who starts some way along the line is there at once: relative times count from that place.
+    """
     relative = timing.choice("domainAbsoluteRelative", ("absolute", "relative")) == "relative"
     scale, offset = timing.positive("scale"), timing.number("offset")
-    times = np.array(line.times_s)
-    if len(times) < len(line.places):
-        raise line.node.fault("a vertex has no time", remedy="give every vertex one, or use <None/> as time reference")
-    if (np.diff(times) < 0).any():
-        raise line.node.fault("vertex times fall", remedy="order the vertices by time")
+    _check_times(node)
 
-    def make(scene: Scene) -> Timed:
-        points, headings = line.rows(scene)
+    def make(scene: Scene, actor: str) -> Timed:
+        line = drawn(scene, actor)
+        if line.times_s is None:
+            raise node.fault("a vertex has no time", remedy=_UNTIMED)
         begin = scene.t_s if relative else 0.0
-        return Timed(times * scale + offset + begin, points, headings, (scene.step, scene.dt_s))
+        if start_m and relative:
+            begin -= scale * float(np.interp(start_m, arc_lengths(line.points), line.times_s))
+        headings = tangents(line.points) if line.headings is None else line.headings
+        return Timed(line.times_s * scale + offset + begin, line.points, headings, (scene.step, scene.dt_s))
 
     return make
 
 
-def _course(line: _Polyline, scene: Scene, start_m: float) -> Course:
-    points = line.rows(scene)[0]
+def _check_times(node: Node) -> None:
+    """Times of vertices, as far as they are known before the action starts."""
+    vertices = node.need("Shape").only().children("Vertex", "ControlPoint")
+    times = [v.number("time") for v in vertices if v.has("time")]
+    if len(times) < len(vertices):
+        raise node.fault("a vertex has no time", remedy=_UNTIMED)
+    if (np.diff(times) < 0).any():
+        raise node.fault("vertex times fall", remedy="order the vertices by time")
+
+
+def _course(node: Node, line: Line, start_m: float, closed: bool) -> Course:
+    points, headings = line.points, line.headings
+    if closed:
+        points = np.vstack((points, points[:1]))
+        headings = None if headings is None else np.append(headings, headings[0])
     apart = np.concatenate(([True], np.hypot(*np.diff(points, axis=0).T) > 1e-6))
     if apart.sum() < 2:
-        raise line.node.fault("all vertices lie in one place", remedy="an untimed trajectory needs two places")
-    return Course(points[apart], start_m)
+        raise node.fault("all vertices lie in one place", remedy="an untimed trajectory needs two places")
+    course = Course(points[apart], start_m, closed=closed)
+    course.headings = None if headings is None else np.unwrap(headings[apart])
+    return course
 
 
-def _polyline(node: Node) -> _Polyline:
-    node = node.scoped()
-    if node.flag("closed", False):
-        raise node.unsupported("the player does not support closed trajectories")
-    shape = node.need("Shape").only()
-    if shape.tag != "Polyline":
-        raise shape.unsupported()
-    vertices = shape.children("Vertex")
-    if not 2 <= len(vertices) <= MAX_VERTICES:
-        raise shape.fault("a polyline needs 2 to 50000 vertices", str(len(vertices)))
-    places = [v.need("Position") for v in vertices]
-    times = [v.number("time") for v in vertices if v.element.get("time") is not None]
-    return _Polyline(node, times, [position(p) for p in places], all(map(has_heading, places)))
+@POSITIONS.plays("TrajectoryPosition")
+def _trajectory_position(node: Node) -> Where:
+    shape = node.need("TrajectoryRef").either("Trajectory")
+    drawn, s_m, t_m, turn = _shape(shape), node.number("s"), node.number("t", 0.0), orientation(node)
+
+    def where(scene: Scene) -> Spot:
+        line = drawn(scene, "")
+        pose = _along(line.points, s_m)
+        x, y, h = pose
+        return Spot(turn(Pose(x - t_m * math.sin(h), y + t_m * math.cos(h), h)))
+
+    return where
+
+
+def _along(points: Floats, s_m: float) -> Pose:
+    """The pose at a distance along a line. Raises ValueError beyond it."""
+    along = arc_lengths(points)
+    if not -1e-6 <= s_m <= along[-1] + 1e-3:
+        raise ValueError(f"s = {s_m:g} m lies beyond the trajectory, which is {along[-1]:g} m long")
+    i = int(np.clip(np.searchsorted(along, s_m, side="right") - 1, 0, len(points) - 2))
+    (x, y), (x2, y2) = points[i], points[i + 1]
+    heading = math.atan2(y2 - y, x2 - x)
+    over = s_m - along[i]
+    return Pose(float(x + over * math.cos(heading)), float(y + over * math.sin(heading)), heading)

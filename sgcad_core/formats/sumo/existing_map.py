@@ -1,21 +1,25 @@
 """A map that exists already (.net.xml or .xodr) as plain XML under the project's ids, its main junction at (0, 0).
 
 netconvert reads the file; roads become "R1", "R2", ..., edge "R1" one way and "-R1" the other, nodes "n1", ... Only
-edges and connections for cars are kept. Knows no crash.
+edges and connections for cars are kept. What netconvert leaves of an .xodr (stop and yield signs, two-way left-turn
+lanes) is read here. Knows no crash.
 """
 
 from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from lxml import etree
 
 from sgcad_core.errors import ConfigError, InvalidOutput
+from sgcad_core.formats.opendrive.controls import imported_lanes, lane_links, signed_junctions, width_of
 from sgcad_core.formats.sumo.graph_spec import CONTROLS
 from sgcad_core.formats.sumo.netconvert import plain_files
+from sgcad_core.formats.sumo.plain_xml import CENTER_LANE_CLASS
+from sgcad_core.formats.sumo.told import CONTROL
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
@@ -26,29 +30,76 @@ MOST_EDGES = 110
 OUT_M = 20.0
 """A leg's direction is taken so far from its junction."""
 BESIDE_RAD = math.radians(15)
-_FLAGS = ("--keep-edges.by-vclass", "passenger", "--remove-edges.isolated", "--no-turnarounds", "-X", "never")
+_FLAGS = ("--keep-edges.by-vclass", "passenger", "--no-turnarounds", "-X", "never")
 _EDGE = ("numLanes", "speed", "priority", "shape", "spreadType", "width")
 _LINK = ("fromLane", "toLane")
 
 
 def read_map(file: Path) -> PlainXml:
     """Read a map. Raises ConfigError naming the file for one that netconvert cannot read or that is too large."""
-    with tempfile.TemporaryDirectory(prefix="sgcad-map-") as folder:
-        parts = _converted(file, Path(folder))
-    try:
-        nodes, edges, links = (parse_xml(text, file.name) for text in parts)
-    except InvalidOutput as fault:
-        raise ConfigError(f"{file}: {fault}") from fault
-    found = list(edges.iterfind("edge"))
+    nodes, edges, links = _parts(file)
+    found = _with_junction(list(edges.iterfind("edge")))
     if not 0 < len(found) <= MOST_EDGES:
         raise ConfigError(f"{file}: {len(found)} directions of roads, 1 to {MOST_EDGES} make a map; cut it smaller")
     return _renamed(nodes, found, links)
 
 
-def _converted(file: Path, folder: Path) -> list[str]:
+def plain_of_map(file: Path) -> PlainXml:
+    """A map under netconvert's own names. Raises ConfigError naming the file for one that it cannot read."""
+    nodes, edges, links = _parts(file, ("--no-turnarounds",))
+    return PlainXml(nodes=to_text(nodes), edges=to_text(edges), connections=to_text(links))
+
+
+def _parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
+    """Nodes, edges and connections as netconvert reads them, completed where it passes over what an .xodr says."""
+    with tempfile.TemporaryDirectory(prefix="sgcad-map-") as folder:
+        parts = _converted(file, flags, Path(folder))
+    try:
+        nodes, edges, links = (parse_xml(text, file.name) for text in parts)
+        if file.name.endswith(".xodr"):
+            _restore(parse_xml(file.read_text(encoding="utf-8"), file.name), nodes, edges, links)
+    except InvalidOutput as fault:
+        raise ConfigError(f"{file}: {fault}") from fault
+    return nodes, edges, links
+
+
+def _converted(file: Path, flags: Sequence[str], folder: Path) -> list[str]:
     kind = "--opendrive-files" if file.name.endswith(".xodr") else "--sumo-net-file"
-    parts = plain_files(file, (kind, str(file.resolve()), *_FLAGS), folder, TIMEOUT_S)
+    parts = plain_files(file, (kind, str(file.resolve()), *flags), folder, TIMEOUT_S)
     return [part.read_text(encoding="utf-8") for part in parts]
+
+
+def _restore(xodr: Element, nodes: Element, edges: Element, links: Element) -> None:
+    """Signs, two-way left-turn lanes and lanes that merge of an OpenDRIVE file, which netconvert passes over."""
+    known = {edge.get("id") for edge in edges.iterfind("edge")}
+    there = {(c.get("from"), c.get("fromLane"), c.get("to"), c.get("toLane")) for c in links.iterfind("connection")}
+    for came, lane, goes, goal in sorted(lane_links(xodr)):
+        if {came, goes} <= known and (came, str(lane), goes, str(goal)) not in there:
+            made = etree.SubElement(links, "connection", fromLane=str(lane), toLane=str(goal), to=goes)
+            made.set("from", came)
+    signed = signed_junctions(xodr)
+    for node in nodes.iterfind("node"):
+        if sign := signed.get(node.get("id")):
+            node.set("type", sign.type)
+            etree.SubElement(node, "param", key=CONTROL, value=sign.control)
+    minor = {edge for sign in signed.values() for edge in sign.minor}
+    drawn = imported_lanes(xodr)
+    for edge in edges.iterfind("edge"):
+        if edge.get("id") in minor:
+            edge.set("priority", "0")
+        _restore_lanes(edge, drawn.get(edge.get("id"), []))
+
+
+def _restore_lanes(edge: Element, drawn: list[Element]) -> None:
+    """Widths, which netconvert writes into no plain XML where all lanes have one; who may use a center lane."""
+    there = {int(lane.get("index")): lane for lane in edge.iterfind("lane")}
+    for index, source in enumerate(drawn[: int(edge.get("numLanes", 1))]):
+        lane = there[index] if index in there else etree.SubElement(edge, "lane", index=str(index))
+        if (width := width_of(source)) is not None:
+            lane.set("width", f"{width:.3f}")
+        if source.get("type") == "bidirectional":
+            lane.attrib.pop("disallow", "")
+            lane.set("allow", CENTER_LANE_CLASS)
 
 
 # ------------------------------------------------------------------ ids
@@ -82,10 +133,7 @@ def _road_names(edges: list[Element]) -> Mapping[str, str]:
 
 def _hub(edges: list[Element]) -> str:
     """The node with the most neighbors; of equals the first. A plain road's is the one with two."""
-    near: dict[str, set[str]] = {}
-    for edge in edges:
-        near.setdefault(edge.get("from"), set()).add(edge.get("to"))
-        near.setdefault(edge.get("to"), set()).add(edge.get("from"))
+    near = _neighbors(edges)
     return max(near, key=lambda node: len(near[node]))
 
 
@@ -97,6 +145,7 @@ def _node(node: Element, name: str, shift: tuple[float, float]) -> Element:
     x, y = _place(node)
     made = etree.Element("node", id=name, x=f"{x - shift[0]:.3f}", y=f"{y - shift[1]:.3f}")
     made.set("type", node.get("type", "priority"))
+    made.extend(list(node.iterfind("param")))
     return made
 
 
@@ -133,6 +182,29 @@ def _document(name: str, children: Iterable[Element]) -> str:
     root = etree.Element(name)
     root.extend(list(children))
     return to_text(root)
+
+
+def _with_junction(edges: list[Element]) -> list[Element]:
+    """Without roads that are joined to no junction, where the map has one.
+
+    (netconvert's --remove-edges.isolated removes a map that is one plain road as well.)
+    """
+    near = _neighbors(edges)
+    kept: set[str] = set()
+    stack = [node for node, others in near.items() if len(others) > 2]
+    while stack:
+        if (node := stack.pop()) not in kept:
+            kept.add(node)
+            stack += near[node]
+    return [edge for edge in edges if edge.get("from") in kept] if kept else edges
+
+
+def _neighbors(edges: list[Element]) -> dict[str, set[str]]:
+    near: dict[str, set[str]] = {}
+    for edge in edges:
+        near.setdefault(edge.get("from"), set()).add(edge.get("to"))
+        near.setdefault(edge.get("to"), set()).add(edge.get("from"))
+    return near
 
 
 # ------------------------------------------------------------------ the main junction

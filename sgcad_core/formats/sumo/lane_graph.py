@@ -7,8 +7,9 @@ in its forward and edge "-R" in its backward direction. Knows no file format.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Direction = Literal["left", "through", "right", "u_turn"]
+NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 class NetNode(NamedTuple):
@@ -24,6 +26,8 @@ class NetNode(NamedTuple):
     x_m: float
     y_m: float
     type: str
+    told: Mapping[str, str] = NOTHING
+    """Parameters of the file: what was told of the node beyond its type (`plain_xml`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,9 @@ class Edge:
     from_node: str
     to_node: str
     lanes: tuple[Lane, ...]
+    priority: int = -1
+    told: Mapping[str, str] = field(default_factory=dict)
+    """Parameters of the file: what was told of the road beyond its lanes (`plain_xml`)."""
 
     @property
     def car_lanes(self) -> tuple[Lane, ...]:
@@ -68,6 +75,25 @@ class Connection:
     to_lane: int
     via_shape: Floats
     direction: Direction
+    state: str = ""
+    """SUMO's link state: M and m (has or lacks the right of way), s stop, w all-way stop, o by a signal, ..."""
+    light: str = ""
+    """Program that controls it, "" for none, and the place of its letter in the program's states."""
+    link: int = -1
+
+
+class Phase(NamedTuple):
+    """One phase of a signal program: a letter a controlled connection (G g green, y yellow, r red, ...)."""
+
+    duration_s: float
+    states: str
+
+
+class Program(NamedTuple):
+    """What a traffic signal shows in turn."""
+
+    offset_s: float
+    phases: tuple[Phase, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +103,7 @@ class LaneGraph:
     edges: Mapping[str, Edge]
     connections: tuple[Connection, ...]
     nodes: Mapping[str, NetNode]
+    programs: Mapping[str, Program] = field(default_factory=dict)
 
     def leaving(self, edge: str, lane: int | None = None) -> tuple[Connection, ...]:
         """Connections out of an edge (or of one of its lanes)."""

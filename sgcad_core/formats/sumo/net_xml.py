@@ -19,6 +19,8 @@ from sgcad_core.formats.sumo.lane_graph import (
     LaneGraph,
     NetNode,
     NetworkFigures,
+    Phase,
+    Program,
     edge_id,
     network_figures,
     road_of,
@@ -45,7 +47,7 @@ def parse_net(net_xml: str) -> LaneGraph:
     edges = {e.get("id", ""): _edge(e) for e in root.iterfind("edge") if e.get("function", "normal") == "normal"}
     nodes = {j.get("id", ""): _node(j) for j in root.iterfind("junction") if j.get("type") != "internal"}
     _check_ends(edges, nodes)
-    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes)
+    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes, _programs(root))
 
 
 def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
@@ -64,7 +66,12 @@ def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
 
 def _edge(element: Element) -> Edge:
     lanes = tuple(sorted((_lane(lane) for lane in element.iterfind("lane")), key=lambda lane: lane.index))
-    return Edge(element.get("id", ""), element.get("from", ""), element.get("to", ""), lanes)
+    ends = element.get("from", ""), element.get("to", "")
+    return Edge(element.get("id", ""), *ends, lanes, int(_number(element, "priority", -1)), _told(element))
+
+
+def _told(element: Element) -> dict[str, str]:
+    return {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
 
 
 def _lane(element: Element) -> Lane:
@@ -85,7 +92,7 @@ def _allows_cars(lane: Element) -> bool:
 
 
 def _node(element: Element) -> NetNode:
-    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""))
+    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""), _told(element))
 
 
 def _number(element: Element, name: str, default: float | None = None) -> float:
@@ -122,7 +129,17 @@ def _connections(root: Element, edges: Mapping[str, Edge], inner: Mapping[str, F
         start, end = _lane_at(c, "from", edges), _lane_at(c, "to", edges)
         pieces = [start.shape[-1:], *(inner[v] for v in _chain(c.get("via"), onward) if v in inner), end.shape[:1]]
         direction = _DIRECTIONS.get(c.get("dir"), "through")
-        yield Connection(c.get("from"), start.index, c.get("to"), end.index, _joined(pieces), direction)
+        control = c.get("state", ""), c.get("tl", ""), int(_number(c, "linkIndex", -1))
+        yield Connection(c.get("from"), start.index, c.get("to"), end.index, _joined(pieces), direction, *control)
+
+
+def _programs(root: Element) -> dict[str, Program]:
+    """The first program of every signal, as netconvert writes them."""
+    found: dict[str, Program] = {}
+    for logic in root.iterfind("tlLogic"):
+        phases = [Phase(_number(p, "duration"), p.get("state", "")) for p in logic.iterfind("phase")]
+        found.setdefault(logic.get("id", ""), Program(_number(logic, "offset", 0.0), tuple(phases)))
+    return found
 
 
 def _chain(via: str | None, onward: Mapping[str, str | None]) -> Iterator[str]:

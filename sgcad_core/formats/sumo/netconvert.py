@@ -14,12 +14,15 @@ from pathlib import Path
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.opendrive.mend import mend
+from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
+from sgcad_core.limited import run_limited
 from sgcad_core.records import PlainXml, RoadNetwork
 from sgcad_core.specs import RoadSpec
 
 TIMEOUT_S = 60.0
+MAP_MEMORY_MB, MAP_FILE_MB = 16_000, 4_000
+"""Of a user's map: a city of a million people takes 6 GB."""
 XSD_RETURNCODE = 1
 """As netconvert's own for input that it refuses."""
 FLAGS = (
@@ -42,27 +45,29 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
         return RoadNetwork(plain=plain, spec=spec, log=log, returncode=XSD_RETURNCODE)
     with tempfile.TemporaryDirectory(prefix="sgcad-net-") as folder:
         code, log = _run(plain, Path(folder))
-        net, xodr = _read(Path(folder) / "road.net.xml"), _read(Path(folder) / "road.xodr")
-    if code != 0 or not net or not xodr:
+        net = _read(Path(folder) / "road.net.xml")
+    if code != 0 or not net:
         return RoadNetwork(plain=plain, spec=spec, log=log or "netconvert wrote no network", returncode=code or 1)
     try:
-        mended = mend(xodr)
+        xodr = write_xodr(net)
     except InvalidOutput as fault:
         return RoadNetwork(plain=plain, spec=spec, net_xml=net, log=f"{log}\n{fault}".strip(), returncode=1)
-    return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=mended, log=log, returncode=code)
+    return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=xodr, log=log, returncode=code)
 
 
 def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:
-    command = [str(settings.netconvert()), *FLAGS, "-o", "road.net.xml", "--opendrive-output", "road.xodr"]
+    arguments = [*FLAGS, "-o", "road.net.xml"]
     for flag, name in (("-n", "nodes"), ("-e", "edges"), ("-x", "connections")):
         if text := getattr(plain, name):
             (folder / f"{name}.xml").write_text(text, encoding="utf-8")
-            command += [flag, f"{name}.xml"]
+            arguments += [flag, f"{name}.xml"]
+    return _call(arguments, folder)
+
+
+def _call(arguments: Sequence[str], folder: Path) -> tuple[int, str]:
     environment = settings.subprocess_environment()
     try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on files that we wrote
-            command, cwd=folder, env=environment, capture_output=True, timeout=TIMEOUT_S, check=False
-        )
+        done = run_limited([str(settings.netconvert()), *arguments], folder, environment, TIMEOUT_S)
     except subprocess.TimeoutExpired:
         return 124, f"netconvert took longer than {TIMEOUT_S:g} s"
     said = (done.stderr + b"\n" + done.stdout).decode("utf-8", "replace")
@@ -76,6 +81,16 @@ def _read(file: Path) -> str | None:
     return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
 
 
+def net_of_xodr(xodr: str) -> tuple[str, str]:
+    """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
+    with tempfile.TemporaryDirectory(prefix="sgcad-back-") as name:
+        folder = Path(name)
+        (folder / "road.xodr").write_text(xodr, encoding="utf-8")
+        code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
+        net = _read(folder / "road.net.xml") if code == 0 else None
+    return net or "", log
+
+
 def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:
     """Node, edge and connection file of a user's map, written to `folder`; `source`: netconvert's flags for reading it.
 
@@ -83,10 +98,8 @@ def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: floa
     """
     command = [str(settings.netconvert()), *source, "--plain-output-prefix", "map"]
     try:
-        done = subprocess.run(  # noqa: S603 - SUMO's binary on a file that the user named
-            command, cwd=folder, env=settings.subprocess_environment(), capture_output=True, timeout=timeout_s,
-            check=False,
-        )  # fmt: skip
+        environment = settings.subprocess_environment()
+        done = run_limited(command, folder, environment, timeout_s, memory_mb=MAP_MEMORY_MB, file_mb=MAP_FILE_MB)
     except subprocess.TimeoutExpired as fault:
         raise ConfigError(f"{file}: netconvert took longer than {timeout_s:g} s; cut the map smaller") from fault
     if done.returncode:

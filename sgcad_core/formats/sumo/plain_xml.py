@@ -7,13 +7,14 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 
 from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
@@ -27,11 +28,13 @@ from sgcad_core.roads.road_geometry import (
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
-from sgcad_core.specs import Node, NodeControl, Road, RoadSpec
+from sgcad_core.specs import Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
 """Where the report states no limit."""
+MAX_LANES = 16
+"""Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
 DRIVEWAY_RADIUS_M = 1.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
@@ -42,12 +45,15 @@ _TYPES: Mapping[NodeControl, str] = {
 }  # fmt: skip
 
 
-def plain_xml(spec: RoadSpec) -> PlainXml:
-    """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold."""
+def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> PlainXml:
+    """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold.
+
+    `told`: road id -> what the report tells of it; a road without an entry has the limit that its spec states.
+    """
     if findings := spec_findings(spec):
         raise InvalidOutput("\n".join(f.line() for f in findings), findings)
     drawn = roadways(spec)
-    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn), connections=_connections(links(spec, drawn)))
+    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=_connections(links(spec, drawn)))
 
 
 # ------------------------------------------------------------------ nodes
@@ -63,6 +69,7 @@ def _nodes(spec: RoadSpec) -> str:
             place = etree.SubElement(root, "node", id=node.id, x=_m(node.x_m), y=_m(node.y_m), type=kind)
             if len(roads) > 2 and sum(road.kind != "driveway" for road in roads) < 3:
                 place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
+            _tell(place, {CONTROL: node.control})
     return to_text(root)
 
 
@@ -80,17 +87,17 @@ def _yields(road: Road) -> bool:
 
 
 # ------------------------------------------------------------------ edges
-def _edges(drawn: Mapping[str, Roadway]) -> str:
+def _edges(drawn: Mapping[str, Roadway], told: Mapping[str, ToldRoad]) -> str:
     root = etree.Element("edges")
     for way in drawn.values():
         directions: tuple[Direction, ...] = ("forward", "backward")
         for direction in directions:
             if lanes(way.road, direction):
-                _edge(root, way, direction)
+                _edge(root, way, direction, told.get(way.road.id, ToldRoad()))
     return to_text(root)
 
 
-def _edge(root: Element, way: Roadway, direction: Direction) -> None:
+def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> None:
     road, forward = way.road, direction == "forward"
     ends = (road.from_node, road.to_node) if forward else (road.to_node, road.from_node)
     center = forward and has_center_lane(road)
@@ -106,6 +113,13 @@ def _edge(root: Element, way: Roadway, direction: Direction) -> None:
     edge.set("shape", _shape(way.left_border(direction)))
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
+    limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
+    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
+
+
+def _tell(element: Element, told: Mapping[str, str]) -> None:
+    for key, value in told.items():
+        etree.SubElement(element, "param", key=key, value=value)
 
 
 def _priority(road: Road) -> int:
@@ -149,7 +163,20 @@ def sumo_findings(kind: str, text: str) -> list[Finding]:
     return [
         Finding(source="sumo_xsd", what=message, where=f"{kind}, line {line}", remedy=remedy)
         for line, message in schema_errors(_schema(kind), root)
-    ]
+    ] or list(_too_wide(kind, root))
+
+
+def _too_wide(kind: str, root: Element) -> Iterator[Finding]:
+    """Edges of more lanes than any road has: SUMO's schema takes a million, and netconvert then all memory."""
+    for edge in root.iter("edge", "type"):
+        if int(edge.get("numLanes") or 1) > MAX_LANES:
+            yield Finding(
+                source="sumo_xsd",
+                what=f"an edge has at most {MAX_LANES} lanes",
+                where=f"{kind}, line {edge.sourceline}",
+                value=edge.get("numLanes"),
+                remedy="give the lanes of one direction, as the report tells them",
+            )
 
 
 @cache

@@ -126,7 +126,7 @@ def test_the_opendrive_lanes_in_the_query_are_those_of_the_file():
     ).replace("board.add_story(story)\n", "")  # fmt: skip
     placed = play(write(code_answer(script)).xosc, network.xodr)[0]
     shape = parse_net(network.net_xml).edges["S"].lanes[1].shape
-    assert np.allclose([placed.x_m[0], placed.y_m[0]], shape[0] + [0, 20], atol=0.05)
+    assert np.allclose([placed.x_m[0], placed.y_m[0]], shape[0] + [0, 20 + 1.36], atol=0.05)  # its rear axle is there
 
 
 @pytest.mark.parametrize(("kind", "message", "line", "entry"), [

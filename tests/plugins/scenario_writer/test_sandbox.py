@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import socket
+import textwrap
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import psutil
 import pytest
 
 from plugins.scenario_writer.sandbox import outside
 from plugins.scenario_writer.sandbox.outside import Limits, run_script
+from plugins.scenario_writer.sandbox.rules import breaches, parsed
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from tests.plugins.scenario_writer.escapes import RAW, RULED
+from tests.plugins.scenario_writer.forgeries import CODED, FORGED, U
 
 TIGHT = Limits(cpu_s=1, wall_s=20.0, memory_mb=300)
 BRIEF = Limits(cpu_s=1, wall_s=4.0, memory_mb=300)
@@ -22,8 +27,13 @@ SLEEPS = ("sleep", "closed answer")
 
 
 @pytest.fixture
-def bait(tmp_path):
-    """A secret to read, a place to write, a port to call, and a look at what came of it."""
+def bait(tmp_path, monkeypatch):
+    """A secret to read, a place to write, a port to call, and a look at what came of it.
+
+    Its processes carry a mark in their command lines, which forks keep: other tests may run scripts meanwhile.
+    """
+    mark = f"# of {tmp_path}"
+    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n{mark}")
     secret, canary = tmp_path / "secret.txt", tmp_path / "canary.txt"
     secret.write_text("the-secret")
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -34,7 +44,24 @@ def bait(tmp_path):
             server.accept()
     assert secret.read_text() == "the-secret"
     assert not canary.exists()
-    assert not [p for p in psutil.process_iter(["cmdline"]) if "sandbox.inside" in " ".join(p.info["cmdline"] or ())]
+    assert not running(mark)
+
+
+def running(mark):
+    """Processes with a word in their command lines, this one's children or not."""
+    return [p for p in psutil.process_iter(["cmdline"]) if mark in " ".join(p.info["cmdline"] or ())]
+
+
+def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
+    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n# of {tmp_path}")
+    with ThreadPoolExecutor(1) as pool:
+        waiting = pool.submit(
+            run_script, "import time\ntime.sleep(60)\n", dataclasses.replace(TIGHT, wall_s=2.0), unchecked=True
+        )
+        while not running(f"# of {tmp_path}"):
+            assert not waiting.done(), "it ended unseen"
+            time.sleep(0.01)
+    assert not running(f"# of {tmp_path}")
 
 
 def test_there_are_a_hundred_attempts():
@@ -59,6 +86,44 @@ def test_the_walls_hold_without_the_rules(bait, name):
     assert not ran.xosc, "the script got hold of something"
     assert "the-secret" not in f"{ran}"
     assert time.monotonic() - started < 25
+
+
+def _breached(source):
+    try:
+        return breaches(parsed(source))
+    except SyntaxError:
+        return ["no Python"]
+
+
+def test_no_text_becomes_code_or_a_private_name():
+    """What the rules let pass runs, all in one script: each attempt fails, and the script lives to its end."""
+    passing = [source.removeprefix(U) for source in CODED.values() if not _breached(source)]
+    assert len(CODED) + len(FORGED) >= 200
+    assert 20 < len(passing) < len(CODED)
+    bodies = [
+        f"def attempt{i}():\n{textwrap.indent(source, '    ')}\n    return found\n"
+        f"try:\n    held = attempt{i}()\nexcept Exception:\n    pass\nelse:\n    print({i}, held)\n"
+        for i, source in enumerate(passing)
+    ]
+    ran = run_script(U + "".join(bodies) + "print('ended')\n" + EXAMPLE)
+    assert ran.fault is None
+    assert ran.printed == "ended\n"
+
+
+def test_an_enumeration_of_the_scripts_own_works():
+    own = (
+        "from enum import Enum, IntEnum, auto\nclass A(Enum):\n    x = auto()\n    y = 2\nprint(A(2).name, A.x.value)\n"
+    )
+    assert run_script(own + EXAMPLE).printed == "y 1\n"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FORGED)
+def test_nobody_answers_in_the_sandboxs_place(name):
+    ran = run_script(FORGED[name], TIGHT, unchecked=True)
+    assert not ran.xosc
+    assert "forged" not in f"{ran}"
+    assert ran.walls == run_script(EXAMPLE).walls, "a script said which walls stand"
 
 
 def test_an_honest_script_comes_back_as_a_scenario():
@@ -107,7 +172,7 @@ def test_a_scripts_own_private_attributes_are_its_own():
 @pytest.fixture
 def no_namespaces(monkeypatch):
     """A system that lets nobody unshare, as seen from inside."""
-    denied = "import plugins.scenario_writer.sandbox.confine as c; c.isolate = lambda: False; "
+    denied = "import plugins.scenario_writer.sandbox.confine as c; c.isolate = lambda channels: False; "
     monkeypatch.setattr(outside, "_BOOT", outside._BOOT.replace("from plugins", f"{denied}from plugins", 1))
 
 

@@ -8,11 +8,11 @@ import pytest
 from plugins.simulator.kinematic import Kinematic
 from plugins.simulator.libsumo import LibSumo, _worker
 from sgcad_core.errors import SimulationFailed
+from sgcad_core.execution.contact import realised
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import write_xosc
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import RoadNetwork, Scenario
-from sgcad_core.result import realised
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(120)
@@ -35,8 +35,9 @@ def test_a_planned_crash_happens_as_planned(simulator):
     assert [t.actor for t in execution.trajectories] == ["V1", "V2", "P1"]
     for seen, planned in zip(execution.trajectories, scenario.planned, strict=True):
         np.testing.assert_allclose(seen.t_s, planned.t_s, atol=1e-9)
-        np.testing.assert_allclose(seen.x_m, planned.x_m, atol=1e-5)
-        np.testing.assert_allclose(seen.y_m, planned.y_m, atol=1e-5)
+        away = np.hypot(seen.x_m - planned.x_m, seen.y_m - planned.y_m)
+        assert away.max() < 0.06, "what the file leaves out of coming to rest"
+        assert away[planned.t_s <= execution.contact.t_s].max() < 0.01
         assert np.abs(np.diff(seen.heading_rad)).max() < 1.0
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from plugins.validator.behavior_narrative import BehaviorNarrative
 from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.facts import crash_facts
+from sgcad_core.narrative.reading import crash_facts
 from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Access, Actor, BehaviorSpec, Leg, RoadLayout, RoadSpec

@@ -8,7 +8,7 @@ from sgcad_core.asking.narrowing import narrowed
 from sgcad_core.asking.prompts import answer_schema
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 from sgcad_core.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Leg, RoadLayout
@@ -356,3 +356,12 @@ def test_a_missing_junction_gets_its_legs_where_the_told_paths_use_every_one() -
     guessed = FROM_THE_SIDE.replace("The side street joins it from the north. ", "")
     (found,) = [f for f in findings(guessed, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "repair"]
     assert [hold.at_least for hold in found.holds] == [3]
+
+
+def test_a_crash_in_a_roundabout_is_refused_and_one_at_a_railway_crossing_is_noted() -> None:
+    plain = network(leg("N", 1, 1), leg("S", 1, 1))
+    refused = findings("V1 was northbound and entered a roundabout. V1 struck the rear of V2.", plain)[0]
+    assert (refused.severity, refused.value) == ("refuse", "a roundabout")
+    assert "which cannot be drawn yet" in refused.what
+    noted = findings("The crash occurred at a railroad crossing. V1 was northbound and struck the rear of V2.", plain)
+    assert [found.severity for found in noted if found.value == "a railway crossing"] == ["note"]

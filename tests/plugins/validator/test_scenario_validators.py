@@ -107,7 +107,7 @@ def test_the_two_road_files_must_describe_the_same_roads(scenario):
         geometry.set("y", str(float(geometry.get("y")) + 9))
     moved = crossroads().model_copy(update={"xodr": to_text(root)})
     assert any("edge 'S' lies elsewhere in the .xodr" in line for line in lines(scenario, on(moved)))
-    renamed = crossroads().xodr.replace('value="-N"', 'value="-X"')
+    renamed = crossroads().xodr.replace('value="-N_', 'value="-X_')
     found = lines(scenario, on(crossroads().model_copy(update={"xodr": renamed})))
     assert "edges without road in the .xodr at road network (found -N)" in found[0]
     assert "roads without edge in the net.xml at road network (found -X)" in found[1]
@@ -118,10 +118,10 @@ def test_the_two_road_files_must_describe_the_same_roads(scenario):
 def test_lanes_must_be_as_many(scenario):
     network = crossroads()
     root = parse_xml(network.xodr, "xodr")
-    (side,) = root.xpath("road[userData/@value='N']/lanes/laneSection/right")
-    side.remove(side[-1])
+    (lane,) = root.xpath("road/lanes/laneSection/right/lane[userData/@value='N_0']")
+    lane.getparent().remove(lane)
     found = lines(scenario, on(network.model_copy(update={"xodr": to_text(root)})))
-    assert any("edge 'N' and road" in line and "have other lanes" in line for line in found)
+    assert any("lanes of edge 'N' are not in the .xodr" in line and "N_0" in line for line in found)
 
 
 def test_a_scenario_file_that_says_otherwise_than_the_plan_is_judged_by_its_boxes(scenario):

@@ -147,7 +147,7 @@ def entity(name: str, center_x: float = 0.0) -> str:
     return (
         f'<ScenarioObject name="{name}"><Vehicle name="car" vehicleCategory="car"><BoundingBox>'
         f'<Center x="{center_x}" y="0" z="0.7"/><Dimensions width="1.8" length="4.6" height="1.4"/></BoundingBox>'
-        '<Performance maxSpeed="60" maxAcceleration="9" maxDeceleration="9"/><Axles>'
+        '<Performance maxSpeed="60" maxAcceleration="12" maxDeceleration="12"/><Axles>'
         '<FrontAxle maxSteering="0.5" wheelDiameter="0.6" trackWidth="1.7" positionX="2.8" positionZ="0.3"/>'
         '<RearAxle maxSteering="0" wheelDiameter="0.6" trackWidth="1.7" positionX="0" positionZ="0.3"/>'
         "</Axles><Properties/></Vehicle></ScenarioObject>"

@@ -97,3 +97,13 @@ def test_post_encroachment_time_is_zero_on_overlap_and_none_apart():
     assert conflict.post_encroachment_time(a, drive(0, -30, math.pi / 2, 10)) == (0.0, "overlap")
     assert conflict.post_encroachment_time(a, drive(-30, 40, 0.0, 10)) == (None, "no common area")
     assert conflict.post_encroachment_time(a, drive(-500, 400, 0.0, 10)) == (None, "no common area")
+
+
+def test_a_paper_encroachment_that_only_the_clock_ends_is_none():
+    """Whoever comes to rest in the common area never leaves it, and whoever stands there never came."""
+    a, b = drive(-30, 0, 0.0, 10), drive(0, -50, math.pi / 2, 10)
+    k = 60  # a stands at the crossing from 3 s on
+    stopped = a._replace(pose=np.vstack((a.pose[:k], np.repeat(a.pose[k : k + 1], len(a.pose) - k, axis=0))))
+    assert conflict.post_encroachment_time_paper(stopped, b) == (None, "ego never leaves")
+    waiting = drive(0, 0, math.pi / 2, 0)
+    assert conflict.post_encroachment_time_paper(a, waiting) == (None, "other there from the start")

@@ -101,6 +101,14 @@ def test_a_rear_end_crash_is_a_collision_in_both_readings_and_json_has_no_nan():
     json.dumps(result, allow_nan=False)
 
 
+def test_the_collision_speed_of_a_braking_car_is_that_of_the_step_into_the_contact():
+    """20 m/s less 8 m/s2: 4 m/s after 24 m, where it meets V2 and stays."""
+    t = np.arange(161) * 0.05
+    x = np.where(t <= 2, 20 * t - 4 * t**2, 24.0)
+    result = measure(*scene(trajectory("V1", x, 0 * t), trajectory("V2", 28.5 + 0 * t, 0 * t)))
+    assert result["exact"]["collision_speed_mps"] == pytest.approx(4.2, abs=1e-6)  # over the last 0.05 s
+
+
 def test_the_share_of_frames_depends_on_the_clock_but_the_collision_does_not():
     short, long = (np.arange(n) * 0.05 for n in (121, 401))
     results = [

@@ -6,7 +6,7 @@ import pytest
 
 from sgcad_core.errors import Refused
 from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.facts import crash_facts
+from sgcad_core.narrative.reading import crash_facts
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Access, Actor, BehaviorSpec, Leg, Node, Road, RoadLayout, RoadSpec
 

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.narrative.facts import CrashFacts, crash_facts
+from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.privacy import redact
+from sgcad_core.narrative.reading import crash_facts
 
 Told = dict[str, tuple[str | None, str | None]]
 REPORTS: tuple[tuple[str, Told, dict[str, str] | None], ...] = (

@@ -3,7 +3,7 @@
 import pytest
 
 from sgcad_core.narrative.paths import legs_used
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 
 SIDE = "The front of V1 struck the left side of V2."
 

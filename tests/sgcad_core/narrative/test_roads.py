@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import RoadFacts, road_facts
+from sgcad_core.narrative.reading import road_facts
+from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import RoadLayout
 

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.narrative.facts import crash_facts
 from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import crash_facts, road_facts
 
 SCENE = (
     "V1, a 2002 Ford Taurus, was traveling north on a two-lane road and was approaching an intersection. V2, a 1999 "

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.check import lane_index
+from sgcad_core.formats.opendrive.index import lane_index
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.writer import write_xosc

@@ -103,5 +103,6 @@ def test_behind_its_last_vertex_an_actor_keeps_its_speed():
 def test_an_untimed_trajectory_is_driven_at_the_own_speed():
     corner = follow([(None, 0, 0, None), (None, 10, 0, None), (None, 10, 30, None)])
     motion = v1(scenario(V1, event("e", corner, at(1)), {"V1": 10}))
-    assert row(motion, 1.0) == pytest.approx((0, 0, 0, 10))
+    assert row(motion, 1.0) == pytest.approx((10, 0, 0, 10)), "still where it was before the action"
+    assert row(motion, 1.05) == pytest.approx((0.5, 0, 0, 10))
     assert row(motion, 2.5) == pytest.approx((10, 5, math.pi / 2, 10))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.check import lane_index
+from sgcad_core.formats.opendrive.index import lane_index
 from sgcad_core.formats.openscenario.motion import Pose
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.positions import shifted
@@ -34,13 +34,14 @@ def test_lanes_lie_where_sumo_has_them(network):
     graph, roads = parse_net(network().net_xml), XodrRoads(network().xodr)
     index = lane_index(network().xodr)
     for edge in graph.edges.values():
-        road = index.by_edge(edge.id)
-        for number, expected in ((s.index - len(edge.lanes), s.shape) for s in edge.lanes):
-            assert distance_to(roads.lane_center(road.id, number), expected).max() < 0.25
-            pose = roads.lane_pose(road.id, number, road.length_m / 2, 0.0)
+        for sumo in edge.lanes:
+            road, number = index.lane(edge.id, sumo.index)
+            length = index.roads[road].length_m
+            assert distance_to(roads.lane_center(road, number), sumo.shape).max() < 0.25
+            pose = roads.lane_pose(road, number, length / 2, 0.0)
             found = roads.nearest(pose)
-            assert found[:2] == (road.id, number)
-            assert found.s_m == pytest.approx(road.length_m / 2, abs=0.3)
+            assert found[:2] == (road, number)
+            assert found.s_m == pytest.approx(length / 2, abs=0.3)
 
 
 def test_the_straightest_way_leads_over_a_junction():
@@ -56,8 +57,16 @@ def test_the_straightest_way_leads_over_a_junction():
 def test_a_pose_off_the_road_or_across_has_no_lane():
     roads = XodrRoads(crossroads().xodr)
     assert roads.nearest(Pose(60, 60, 0)) is None
-    against = roads.nearest(Pose(-60, -5.4, math.pi))
-    assert against is None or abs(roads.lane_pose(*against[:3], 0.0).y_m + 5.4) > 3
+    assert roads.nearest(Pose(-60, -5.4, math.pi / 2)) is None
+
+
+def test_who_faces_against_the_traffic_is_in_its_lane_and_drives_on_that_way():
+    roads = XodrRoads(crossroads().xodr)
+    place = roads.nearest(Pose(-60, -5.4, math.pi))
+    assert roads.lane_pose(*place)[:2] == pytest.approx((-60, -5.4), abs=0.01)
+    sense = roads.sense(place, math.pi)
+    assert sense == -roads.road(place.road).sense(place.lane)
+    assert roads.drive(place, sense).points[-1] == pytest.approx((-120, -5.4), abs=0.1)
 
 
 @pytest.mark.parametrize(("lane_id", "by", "expected"), [(-1, 1, 1), (-1, -1, -2), (-2, 1, -1), (1, -1, -1), (1, 1, 2)])
@@ -136,7 +145,7 @@ def test_a_place_that_the_network_does_not_have_is_named(position, message):
 
 @pytest.mark.parametrize(("text", "message"), [
     ("<OpenDRIVE/>", "no road '7'"), ("<net/>", "no OpenDRIVE file"), ("", "no well-formed XML"),
-    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "does not know <poly3>"),
+    (xodr("", 10), "has no geometry"), (xodr(piece("<poly3/>", 0, 0, 0, 0, 9), 9), "'a' is missing at <poly3>"),
     (xodr(ARC, 1e9), "longer than 20000 m"), (xodr(piece("<line/>", 0, 0, 0, 0, 1e9), 9), "length must lie within"),
 ])  # fmt: skip
 def test_a_bad_network_is_a_clear_error(text, message):

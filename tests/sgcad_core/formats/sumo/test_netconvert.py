@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 
 from sgcad_core import settings as paths
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.mend import xodr_findings
+from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.formats.sumo import netconvert
 from sgcad_core.formats.sumo.net_xml import parse_net, segments
 from sgcad_core.formats.sumo.netconvert import compile_network

@@ -1,0 +1,15 @@
+"""Text on its way to a terminal. Knows no flow."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from rich import markup
+
+
+def escape(text: str) -> str:
+    """The text as rich shows it unchanged, control characters made visible.
+
+    Names of files and reasons hold what strangers wrote: an escape sequence could colour, move and clear.
+    """
+    return markup.escape("".join(c if c == "\n" or unicodedata.category(c) != "Cc" else "\ufffd" for c in text))

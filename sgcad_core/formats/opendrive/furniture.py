@@ -1,0 +1,72 @@
+"""OpenDRIVE elements of what stands on or beside roads: stop lines, signs, signal heads. Knows lxml."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from sgcad_core.formats.opendrive.elements import add, number
+from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
+from sgcad_core.formats.opendrive.streets import Street
+from sgcad_core.formats.xml import Element
+
+STOP_LINE = "stopLine"
+
+
+def add_objects(road: Element, street: Street, stop_lines: Sequence[StopLine]) -> None:
+    """Stop lines; no <objects> where there are none."""
+    if not stop_lines:
+        return
+    objects = add(road, "objects")
+    for line in stop_lines:
+        made = add(objects, "object", id=line.id, type="roadMark", subtype=STOP_LINE, name="stop line", dynamic="no")
+        made.set("orientation", _orientation(line.side))
+        _place(made, line.s_m, line.t_m, 0.0)
+        made.set("hdg", number(0.0 if line.side == "right" else math.pi))
+        for name, value in (("length", STOP_LINE_M), ("width", line.width_m), ("height", 0.0)):
+            made.set(name, number(value))
+        _validity(made, line.lanes)
+
+
+def add_signals(road: Element, signals: Sequence[Signal]) -> None:
+    """Signs and signal heads; no <signals> where there are none."""
+    if not signals:
+        return
+    parent = add(road, "signals")
+    for signal in signals:
+        made = add(parent, "signal", id=signal.id, name=signal.name, dynamic="yes" if signal.dynamic else "no")
+        made.set("orientation", _orientation(signal.side))
+        _place(made, signal.s_m, signal.t_m, signal.z_m)
+        for name, text in (("country", signal.country), ("type", signal.type), ("subtype", "-1")):
+            made.set(name, text)
+        made.set("width", f"{signal.size_m[0]:g}")
+        made.set("height", f"{signal.size_m[1]:g}")
+        if signal.limit_mph is not None:
+            made.set("value", f"{signal.limit_mph:g}")
+            made.set("unit", "mph")
+        _validity(made, signal.lanes)
+        if signal.main:
+            add(made, "reference", elementType="signal", elementId=signal.main, type="supplements")
+        if signal.stop_line:
+            add(made, "reference", elementType="object", elementId=signal.stop_line, type=STOP_LINE)
+
+
+def _orientation(side: str) -> str:
+    return "+" if side == "right" else "-"
+
+
+def _place(element: Element, s_m: float, t_m: float, z_m: float) -> None:
+    for name, value in (("s", s_m), ("t", t_m), ("zOffset", z_m)):
+        element.set(name, number(value))
+
+
+def _validity(element: Element, lanes: Iterable[int]) -> None:
+    """Neighboring lane ids in one element."""
+    runs: list[list[int]] = []
+    for lane in sorted(lanes):
+        if runs and lane == runs[-1][-1] + 1:
+            runs[-1].append(lane)
+        else:
+            runs.append([lane])
+    for run in runs:
+        add(element, "validity", fromLane=str(run[0]), toLane=str(run[-1]))

@@ -1,0 +1,93 @@
+"""Actions that say where to drive: FollowTrajectoryAction, AssignRouteAction and AcquirePositionAction."""
+
+from __future__ import annotations
+
+import math
+
+from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, at_once, nested
+from sgcad_core.formats.openscenario.body import Body
+from sgcad_core.formats.openscenario.course import Course
+from sgcad_core.formats.openscenario.families import Family
+from sgcad_core.formats.openscenario.positions import position
+from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.routes import route
+from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.trajectory import trajectory
+from sgcad_core.formats.openscenario.way import LanePlace, Route
+
+ROUTING: Family[Begin] = Family("routing action")
+PRIVATE.plays("RoutingAction")(lambda node: nested(ROUTING, node))
+ROUTING.refuses(
+    "RandomRouteAction", remark="the ways it draws are nobody's but the simulator's", remedy="assign a route"
+)
+_FOLLOW = "followingMode 'follow' is driven exactly on the path: the standard leaves the steering to the simulator"
+
+
+@ROUTING.plays("FollowTrajectoryAction", remark="followingMode 'follow' is driven exactly on the path, with a note")
+def _follow(node: Node) -> Begin:
+    make = trajectory(node)
+    mode = node.find("TrajectoryFollowingMode", "TrajectoryFollowing")
+    if (
+        mode
+        and mode.choice("followingMode" if mode.has("followingMode") else "mode", ("position", "follow")) == "follow"
+    ):
+        mode.note(_FOLLOW)
+
+    def begin(scene: Scene, actor: str) -> Running:
+        body = scene.body(actor, node)
+        made = make(scene, actor)
+        body.course = body.timed = body.place = None
+        body.present, body.at_end = True, False
+        if isinstance(made, Course):
+            return _untimed(body, made)
+        body.timed = timed = made
+        body.pace = body.next_mps = None
+        body.pose, body.speed_mps = body.seated(timed.pose(scene.step)), timed.speed(scene.step)
+        return Running(body, ("path", "speed"), lambda scene: scene.t_s >= timed.end_s - 1e-9).claim()
+
+    return begin
+
+
+def _untimed(body: Body, course: Course) -> Running:
+    """At the own speed; who drives backwards faces against the line unless headings are stated."""
+    first = course.headings[0] if course.headings is not None else None
+    against = first is not None and math.cos(first - course.pose.heading_rad) < 0
+    course.reverse = body.speed_mps < 0 and (first is None or against)
+    body.course = course
+    body.pose = body.seated(course.pose)
+    return Running(body, ("path",), lambda scene: course.rest_m <= 1e-6).claim()
+
+
+@ROUTING.plays("AssignRouteAction", remark="where the lane does not lead onto the route, the straightest way is driven")
+def _assign(node: Node) -> Begin:
+    made = route(node)
+
+    def begin(scene: Scene, actor: str) -> Running:
+        return _sent(scene.body(actor, node), made(scene))
+
+    return begin
+
+
+@ROUTING.plays("AcquirePositionAction", remark="drives there by the shortest roads and goes on behind it")
+def _acquire(node: Node) -> Begin:
+    where = position(node.need("Position"))
+
+    def begin(scene: Scene, actor: str) -> Running:
+        body, roads = scene.body(actor, node), scene.road_map(node)
+        here, spot = scene.lane_place(body), where(scene)
+        there: LanePlace | None = spot.place or roads.nearest(spot.pose)
+        if here is None or there is None:
+            raise node.fault("needs an entity and a place that are on the roads", actor)
+        try:
+            return _sent(body, roads.route([here, there], scene.sense(body, here)))
+        except ValueError as fault:
+            raise node.fault(str(fault)) from fault
+
+    return begin
+
+
+def _sent(body: Body, way: Route) -> Running:
+    body.route = way
+    if body.course is not None and body.course.way is not None:
+        body.course = None
+    return at_once(body)

@@ -1,0 +1,107 @@
+"""Which elements of OpenSCENARIO are written, read and refused: the page docs/conformance.md, made from the code.
+
+What is read comes from the families that compile elements, what there is from ASAM's schema 1.3.1 (it comes with
+scenariogeneration), what is written from a file of ours with every kind of actor and every surrounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.metadata import distribution
+from typing import Any
+
+import numpy as np
+from lxml import etree
+
+from sgcad_core.formats.openscenario.actions import GLOBAL, PRIVATE
+from sgcad_core.formats.openscenario.actions.lateral import LATERAL
+from sgcad_core.formats.openscenario.actions.routing import ROUTING
+from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
+from sgcad_core.formats.openscenario.conditions import BY_ENTITY, BY_VALUE
+from sgcad_core.formats.openscenario.families import Family
+from sgcad_core.formats.openscenario.positions import POSITIONS
+from sgcad_core.formats.openscenario.shapes import SHAPES
+from sgcad_core.formats.openscenario.variation import STOCHASTIC
+from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.records import ActorInfo, Trajectory
+from sgcad_core.specs import BehaviorSpec
+
+FAMILIES: dict[str, tuple[Family[Any], str]] = {
+    "Private actions": (PRIVATE, "PrivateAction"),
+    "Longitudinal actions": (LONGITUDINAL, "LongitudinalAction"),
+    "Lateral actions": (LATERAL, "LateralAction"),
+    "Routing actions": (ROUTING, "RoutingAction"),
+    "Global actions": (GLOBAL, "GlobalAction"),
+    "Conditions by entity": (BY_ENTITY, "EntityCondition"),
+    "Conditions by value": (BY_VALUE, "ByValueCondition"),
+    "Positions": (POSITIONS, "Position"),
+    "Shapes of trajectories": (SHAPES, "Shape"),
+    "Stochastic distributions": (STOCHASTIC, "StochasticDistribution"),
+}
+"""Families by heading, and the schema's type that holds one of them."""
+_KINDS = ("car", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "object")
+_XSD = "{http://www.w3.org/2001/XMLSchema}"
+_HEAD = """# What is written, read and refused of OpenSCENARIO
+
+Made by `python docs/draw_conformance.py` from the code; a test holds both together. Elements are those of ASAM
+OpenSCENARIO XML 1.3.1, and those of versions 1.0 to 1.2 that have been renamed since.
+
+- **read**: our player (`sgcad play FILE.xosc`, and every check of ours) plays it.
+- **noted**: accepted without effect on the motion; a note stands in played.json and in player.html.
+- **refused**: the file is not played. The error names the element, its line, its file and what would help.
+- **written**: our own scenario files hold it.
+
+Also read: catalogs of vehicles, pedestrians, objects, maneuvers, routes, trajectories, environments; parameters with
+assignments and `${...}` expressions; variables; entity selections; trailers; controllers' phases of traffic signals;
+deterministic and stochastic parameter distributions (each set is played); maps in OpenDRIVE 1.4 to 1.8 with lines,
+arcs, spirals, poly3, paramPoly3, several lane sections, lane offsets, borders, junctions, left- and right-hand traffic.
+Motion is plane: elevation, pitch and roll are left out.
+
+A stranger's file gets what other players let pass as a note: a place beyond a road's end (the end is taken), a signed
+rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In files
+of our own the same are faults.
+"""
+
+
+def page() -> str:
+    """The page as text."""
+    written, parts = written_elements(), [_HEAD]
+    for heading, (family, holder) in FAMILIES.items():
+        parts.append(f"\n## {heading}\n\n| element | reading | written | remark |\n|---|---|---|---|\n")
+        parts += [f"| `{tag}` | {told} | {'yes' if tag in written else ''} | {remark} |\n"
+                  for tag, told, remark in _rows(family, holder)]  # fmt: skip
+    return "".join(parts)
+
+
+def _rows(family: Family[Any], holder: str) -> Iterator[tuple[str, str, str]]:
+    for tag in sorted({*family.entries, *_in_schema(holder)}):
+        entry = family.entries.get(tag)
+        if entry is None:
+            yield tag, "refused", "not known to the player"
+        else:
+            yield tag, "read" if entry.status == "played" else entry.status, entry.remark
+
+
+def _in_schema(holder: str) -> set[str]:
+    """Elements that a type of the schema may hold."""
+    file = distribution("scenariogeneration").locate_file("schemas/OpenSCENARIO_1_3_1.xsd")
+    root = etree.parse(str(file), etree.XMLParser(no_network=True)).getroot()
+    kind = root.find(f"{_XSD}complexType[@name='{holder}']")
+    return set() if kind is None else {str(e.get("name")) for e in kind.iter(f"{_XSD}element")}
+
+
+def written_elements() -> set[str]:
+    """Names of all elements in a file of ours."""
+    actors = [
+        ActorInfo(id=f"V{i}", type=kind, length_m=4.0, width_m=1.8, maneuver="straight")
+        for i, kind in enumerate(_KINDS, 1)
+    ]
+    t_s = np.arange(40) * 0.05
+    motions = [
+        Trajectory(actor=a.id, t_s=t_s, x_m=t_s * 9, y_m=t_s * 0 + 5 * i, heading_rad=t_s * 0, speed_mps=t_s * 0 + 9)
+        for i, a in enumerate(actors)
+    ]
+    spoken = {"id": "V1", "kind": "car", "road": "S", "direction": "forward", "maneuver": "straight"}
+    behavior = BehaviorSpec.model_validate({"actors": [spoken], "light": "dark", "weather": "rain", "surface": "wet"})
+    root = etree.fromstring(write_xosc(actors, motions, behavior).encode())
+    return {str(e.tag) for e in root.iter() if isinstance(e.tag, str)}

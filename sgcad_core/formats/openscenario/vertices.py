@@ -1,0 +1,114 @@
+"""Which rows of a trajectory become vertices of a polyline, so that every player keeps them all.
+
+esmini merges vertices nearer than 0.1 m to the last one kept (its `traj_filter`, on by default), unless they turn
+right by 0.1 rad or end a standstill of a second, and moves evenly across what it dropped: up to 0.09 m beside the
+file while an actor comes to rest. So what it would drop is not written; where actors drive faster than
+APART_M / 0.05 s = 2.2 m/s that is nothing. Knows no XML.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sgcad_core.records import Floats, Trajectory
+
+APART_M = 0.11
+"""Nearest neighbors in space; a little above esmini's 0.1 m."""
+TURN_RAD = (-0.11, 0.8)
+"""Right and left turns on the spot that are vertices of their own; left ones are kept so that no turn is lost
+(headings go along the shortest arc), although esmini drops them."""
+NEAREST = 8
+"""How many rows before one are tried as its neighbor."""
+STAND_S = 1.0 + 1e-3
+"""Shortest standstill between two motions that a player keeps as such."""
+_STILL = 1e-6
+
+
+def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
+    """Rows to write, rising; the first and the last are always among them.
+
+    `move` is the origin's motion; of all choices that players keep, the one is taken under which the box center,
+    `ahead_m` before it, moves nearest to its rows (least squares).
+    """
+    poses = np.column_stack((move.x_m, move.y_m, np.unwrap(move.heading_rad)))
+    end = len(poses) - 1
+    rows = [0]
+    for first, last in pairwise(_anchors(poses, move.t_s)):
+        here = slice(first, last + 1)
+        stretch = _Stretch(move.t_s[here], poses[here], ahead_m)
+        rows += [first + row for row in stretch.choice(last == end)]
+    return rows
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Rows from one that is written to another: times (n,) and the origin's poses (n, 3)."""
+
+    t_s: Floats
+    poses: Floats
+    ahead_m: float
+
+    def choice(self, final: bool) -> list[int]:
+        """The rows behind the first one, the last included, with the least error (dynamic programming).
+
+        The final vertex of a polyline is never merged, so its neighbor may be near.
+        """
+        end = len(self.poses) - 1
+        least, before = np.full(end + 1, np.inf), np.zeros(end + 1, int)
+        least[0] = 0.0
+        for row in range(1, end + 1):
+            closes = final and row == end
+            reach = np.flatnonzero(np.isfinite(least[:row]) & (closes | _apart(self.poses[:row], self.poses[row])))
+            for k in reach if closes else reach[-NEAREST:]:
+                if (error := least[k] + self._error(int(k), row)) <= least[row]:  # of equals the nearest
+                    least[row], before[row] = error, k
+        rows = [end]
+        while (row := int(before[rows[-1]])) > 0:
+            rows.append(row)
+        return rows[::-1]
+
+    def _error(self, first: int, last: int) -> float:
+        """Sum of squared distances of the box centers between two rows from even motion, m2."""
+        if last - first < 2:
+            return 0.0
+        t_s, poses = self.t_s[first : last + 1], self.poses[first : last + 1]
+        share = ((t_s - t_s[0]) / (t_s[-1] - t_s[0]))[:, None]
+        away = self._centers(poses[0] + share * (poses[-1] - poses[0])) - self._centers(poses)
+        return float((away * away).sum())
+
+    def _centers(self, poses: Floats) -> Floats:
+        reach = np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
+        return np.asarray(poses[:, :2] + self.ahead_m * reach, dtype=np.float64)
+
+
+def _anchors(poses: Floats, t_s: Floats) -> list[int]:
+    """First and last row, both ends of standstills that last, the end of those too short to be kept."""
+
+    def apart(first: int, second: int) -> bool:
+        return bool(_apart(poses[first : first + 1], poses[second])[0])
+
+    end = len(poses) - 1
+    anchors = [0]
+    for first, last in _standstills(poses):
+        if last == end:
+            break  # the choice of rows sees to it
+        lasting = t_s[last] - t_s[first] >= STAND_S and (first == anchors[-1] or apart(anchors[-1], first))
+        if lasting or apart(anchors[-1], last):
+            anchors += [row for row in (first, last) if row > anchors[-1] and (lasting or row == last)]
+    return [*anchors, end]
+
+
+def _standstills(poses: Floats) -> list[tuple[int, int]]:
+    """First and last row of every run of equal poses."""
+    still = (np.abs(np.diff(poses, axis=0)) < _STILL).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(int)))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+
+
+def _apart(poses: Floats, other: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Whether no player merges poses (n, 3) with a later one."""
+    dx, dy, turn = (other - poses).T
+    return np.asarray((dx * dx + dy * dy >= APART_M**2) | (turn <= TURN_RAD[0]) | (turn >= TURN_RAD[1]), dtype=np.bool_)

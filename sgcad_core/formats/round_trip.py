@@ -1,0 +1,165 @@
+"""What a network loses on the way .xodr -> netconvert -> .net.xml: lanes, connections, signals, signs.
+
+netconvert names the edge along a road "-<road>" and the one against it "<road>". By itself it reads no signs, opens
+two-way left-turn lanes to through cars, and of several lanes of a road that lead into one lane takes the first;
+`existing_map` reads those as well. Phases are no part of OpenDRIVE: both make programs of their own.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from sgcad_core.errors import ConfigError
+from sgcad_core.formats.opendrive.controls import center_lanes
+from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
+from sgcad_core.formats.opendrive.signals import posted_mph
+from sgcad_core.formats.sumo.existing_map import plain_of_map
+from sgcad_core.formats.sumo.lane_graph import Connection, Edge, LaneGraph
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
+from sgcad_core.formats.sumo.told import CONTROL
+from sgcad_core.formats.xml import parse_xml
+
+ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
+Reader = Literal["netconvert", "sgcad"]
+WIDTH_M = 0.1
+"""netconvert takes a lane's greatest width."""
+SPEED_MPS = 0.01
+
+
+class Difference(NamedTuple):
+    """One thing that the way back changes."""
+
+    aspect: str
+    where: str
+    before: str
+    after: str
+
+
+class _Back(NamedTuple):
+    """Both networks, and the names of the first's edges in the second."""
+
+    graph: LaneGraph
+    found: LaneGraph
+    names: Mapping[str, str]
+    center: Mapping[str, int]
+
+    def pairs(self) -> Iterator[tuple[Edge, Edge]]:
+        """Edges of both networks that are the same."""
+        for name, edge in self.graph.edges.items():
+            other = self.found.edges.get(self.names.get(name, ""))
+            if other is not None:
+                yield edge, other
+
+
+def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[Difference]:
+    """All that is not as before, aspect by aspect. Raises InvalidOutput where a file is none."""
+    graph, index = parse_net(net_xml), lane_index(xodr)
+    net, log = net_of_xodr(xodr) if reader == "netconvert" else _read_as_map(xodr)
+    if not net:
+        return [Difference("edges", "file", "read", f"netconvert cannot: {log[:200]}")]
+    center = center_lanes(parse_xml(xodr, "xodr")) if reader == "netconvert" else {}
+    both = _Back(graph, parse_net(net), edge_names(graph, index), center)
+    signs = () if reader == "netconvert" else _signs(both)
+    return [*_edges(both), *_lanes(both), *_connections(both), *_signals(both), *signs]
+
+
+def _read_as_map(xodr: str) -> tuple[str, str]:
+    with tempfile.TemporaryDirectory(prefix="sgcad-back-") as folder:
+        file = Path(folder) / "road.xodr"
+        file.write_text(xodr, encoding="utf-8")
+        try:
+            network = compile_network(plain_of_map(file))
+        except ConfigError as fault:
+            return "", str(fault)
+    return network.net_xml or "", network.log
+
+
+def edge_names(graph: LaneGraph, index: RoadIndex) -> dict[str, str]:
+    """SUMO edge -> the name that netconvert gives it when it reads the .xodr."""
+    found = {}
+    for edge in graph.edges.values():
+        if place := index.lane(edge.id, 0):
+            found[edge.id] = f"-{place.road}" if place.lane < 0 else place.road
+    return found
+
+
+# ------------------------------------------------------------------ roads
+def _edges(both: _Back) -> Iterator[Difference]:
+    there = {both.names.get(edge, f"no road for {edge}") for edge in both.graph.edges}
+    for missing in sorted(there - set(both.found.edges)):
+        yield Difference("edges", missing, "edge", "none")
+    for spare in sorted(set(both.found.edges) - there):
+        yield Difference("edges", spare, "none", "edge")
+
+
+def _lanes(both: _Back) -> Iterator[Difference]:
+    for edge, other in both.pairs():
+        center = both.center.get(other.id, 0)
+        after = [lane.allows_cars and i < len(other.lanes) - center for i, lane in enumerate(other.lanes)]
+        before = [lane.allows_cars for lane in edge.lanes]
+        if before != after:
+            yield Difference("lanes", edge.id, str(before), str(after))
+            continue
+        for lane, found in zip(edge.lanes, other.lanes, strict=True):
+            if abs(lane.width_m - found.width_m) > WIDTH_M:
+                yield Difference("widths", lane.id, f"{lane.width_m:.2f} m", f"{found.width_m:.2f} m")
+            if posted_mph(edge) is not None and abs(lane.speed_mps - found.speed_mps) > SPEED_MPS:
+                yield Difference("limits", lane.id, f"{lane.speed_mps:.2f} m/s", f"{found.speed_mps:.2f} m/s")
+
+
+# ------------------------------------------------------------------ connections
+def _connections(both: _Back) -> Iterator[Difference]:
+    before = Counter(_key(link, both.names) for link in both.graph.connections)
+    after = Counter(_key(link, {}) for link in both.found.connections)
+    for link in sorted(before - after):
+        yield Difference("connections", " ".join(map(str, link)), "connection", "none")
+    for link in sorted(after - before):
+        yield Difference("connections", " ".join(map(str, link)), "none", "connection")
+
+
+def _key(link: Connection, names: Mapping[str, str]) -> tuple[str, int, str, int]:
+    return (
+        names.get(link.from_edge, link.from_edge),
+        link.from_lane,
+        names.get(link.to_edge, link.to_edge),
+        link.to_lane,
+    )
+
+
+# ------------------------------------------------------------------ signals and signs
+def _signals(both: _Back) -> Iterator[Difference]:
+    """Connections that a signal controls, among those that both networks have."""
+    there = {_key(link, {}) for link in both.found.connections}
+    before = {_key(link, both.names) for link in both.graph.connections if link.light} & there
+    after = {_key(link, {}) for link in both.found.connections if link.light}
+    for link in sorted(before ^ after):
+        was, now = ("signal", "none") if link in before else ("none", "signal")
+        yield Difference("signals", " ".join(map(str, link)), was, now)
+
+
+def _signs(both: _Back) -> Iterator[Difference]:
+    """Stop and yield signs of every approach."""
+    before = {both.names[edge]: sign for edge, sign in signs_of(both.graph).items() if edge in both.names}
+    after = signs_of(both.found)
+    for edge in sorted(set(before) | set(after)):
+        if before.get(edge) != after.get(edge):
+            yield Difference("signs", edge, before.get(edge, "none"), after.get(edge, "none"))
+
+
+def signs_of(graph: LaneGraph) -> dict[str, str]:
+    """Approach -> "stop" or "yield", as SUMO's link states and the node's told control have it."""
+    found = {}
+    for edge in graph.edges.values():
+        states = {link.state for link in graph.leaving(edge.id)}
+        node = graph.nodes[edge.to_node]
+        lower = any(e.to_node == edge.to_node and e.priority > edge.priority for e in graph.edges.values())
+        if states & {"s", "w"}:
+            found[edge.id] = "stop"
+        elif node.told.get(CONTROL) == "yield" and "m" in states and lower:
+            found[edge.id] = "yield"
+    return found

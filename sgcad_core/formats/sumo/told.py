@@ -1,0 +1,20 @@
+"""Names of what networks carry beyond SUMO's own terms, as <param> of edges and nodes in plain XML and .net.xml.
+
+A key that is missing says that nothing is known (a map, a network that a model wrote), not that there is none.
+"""
+
+from __future__ import annotations
+
+KIND = "kind"
+"""Of an edge: road, driveway, ramp."""
+MEDIAN = "median"
+"""Of an edge: none, painted, raised, grass, barrier."""
+LIMIT = "speed_limit"
+"""Of an edge: `POSTED` with mph where the report tells a limit, else `USUAL`: the lanes' speed is an assumption."""
+POSTED, USUAL = "posted_mph ", "assumed"
+AREA = "area"
+"""Of an edge: rural, town, motorway, where told."""
+CENTER_LINE = "center_line"
+"""Of an edge: the marking between the directions, where told."""
+CONTROL = "control"
+"""Of a node: what the spec says stands there (none, signal, flashing, stop, all_way_stop, yield)."""

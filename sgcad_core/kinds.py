@@ -1,0 +1,78 @@
+"""The closed kinds, one record each: junctions, roads and maneuvers, and what is named in reports and cannot be drawn.
+
+Specs, layout, generator, reader and validators take their kinds from here; docs/kinds.md lists what a new one touches.
+Plain data: knows no pydantic, no narrative and no file format. Wordings stand in `sgcad_core/language`; a record names
+its rule.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
+RoadKind = Literal["road", "driveway", "ramp"]
+Maneuver = Literal[
+    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
+    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
+    "departing_road_left", "departing_road_right", "backing", "other",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Junction:
+    """A junction that can be drawn: `legs` meet at its hub, of which one is a road of the kind `stem` where not all are
+    roads; `rule`: the wordings that name it; `layout`: what made reports call it."""
+
+    kind: JunctionKind
+    called: str
+    legs: int
+    intersections: int
+    layout: str
+    stem: RoadKind = "road"
+    rule: str = ""
+
+
+JUNCTIONS: tuple[Junction, ...] = (
+    Junction("none", "a road without a junction", 2, 0, "plain"),
+    Junction("four_leg", "a four-leg intersection", 4, 1, "four", rule="junction.four"),
+    Junction("t", "a T-intersection", 3, 1, "t", rule="junction.t"),
+    Junction("driveway", "a driveway", 3, 1, "driveway", stem="driveway"),
+    Junction("ramp", "a ramp that merges", 3, 1, "merge", stem="ramp"),
+)
+"""Kinds that a text names come in the order in which they win where two are named at one place."""
+ROADS: tuple[RoadKind, ...] = ("road", "driveway", "ramp")
+MANEUVERS: tuple[Maneuver, ...] = (
+    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
+    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
+    "departing_road_left", "departing_road_right", "backing", "other",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Unsupported:
+    """A place that reports name and that cannot be drawn: a crash there is refused, or the network carries a note of
+    what it lacks. Its words are the vocabulary class `unsupported_place`, whose meanings are these kinds."""
+
+    kind: str
+    called: str
+    severity: Literal["refuse", "note"]
+    remedy: str
+
+
+UNSUPPORTED: tuple[Unsupported, ...] = (
+    Unsupported("roundabout", "a roundabout", "refuse", "leave the case out: no circular road can be drawn"),
+    Unsupported("parking_garage", "a parking garage", "refuse", "leave the case out: no aisles or decks can be drawn"),
+    Unsupported("interchange", "an interchange", "note", "see that the ramp or the road of the crash is drawn"),
+    Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
+)
+
+
+def junction_kind(kind: JunctionKind) -> Junction:
+    """The record of a kind. Raises KeyError for one that there is not."""
+    return {record.kind: record for record in JUNCTIONS}[kind]
+
+
+def unsupported_kind(kind: str) -> Unsupported:
+    """The record of a kind that cannot be drawn. Raises KeyError for one that there is not."""
+    return {record.kind: record for record in UNSUPPORTED}[kind]
