@@ -13,8 +13,6 @@ from sgcad_core.planner import Plan, plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Area, BehaviorSpec, size_m
 
-ODD = 0.5
-"""Oddity of a plan (`Plan.oddity`) from which other sides are tried, where the report leaves them open."""
 Sides = tuple[Area, Area]
 
 
@@ -55,18 +53,18 @@ def compile_scenario(
 
 
 def _planned(behavior: BehaviorSpec, graph: LaneGraph, may: May) -> tuple[BehaviorSpec, Plan]:
-    """The plan of a behavior; with other sides of the first contact where only those meet in ordinary driving."""
-    told = behavior
-    best = plan(behavior, graph, may_skid=may.skid)
-    for pair in may.sides if behavior.contacts else ():
-        if best.realised and best.oddity < ODD:
-            break
-        changed = _with_sides(told, pair)
-        found = plan(changed, graph, may_skid=may.skid)
-        if found.realised and (not best.realised or found.oddity < best.oddity - ODD / 2):
-            note = f"sides as told do not meet in ordinary driving: {pair[0]} and {pair[1]}, which it allows, stand in"
-            best, behavior = found.model_copy(update={"notes": (note, *found.notes)}), changed
-    return behavior, best
+    """The plan of a behavior; with other sides of the first contact where only those can be driven to meet."""
+    sides = may.sides if behavior.contacts else ()
+    told = plan(behavior, graph, may_skid=may.skid, by_force=not sides)
+    for pair in () if told.realised else sides:
+        changed = _with_sides(behavior, pair)
+        found = plan(changed, graph, may_skid=may.skid, by_force=False)
+        if found.realised:
+            note = f"sides as told meet in no driving: {pair[0]} and {pair[1]}, which the report allows, stand in"
+            return changed, found.model_copy(update={"notes": (note, *found.notes)})
+    if sides and not told.realised:
+        told = plan(behavior, graph, may_skid=may.skid)
+    return behavior, told
 
 
 def _with_sides(behavior: BehaviorSpec, sides: Sides) -> BehaviorSpec:

@@ -41,6 +41,8 @@ from sgcad_core.specs import Area
 _ZONE_M = 12.0
 _SWING_ASIDE_M = 5.0
 """Who steers aside does so within this much of its line, if need be slowly."""
+_COMES_M, _SHOULDER_M = 70.0, 2.5
+"""How far before the meeting place an actor is on the road, and how far beside its edge it may be."""
 _PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
@@ -142,6 +144,7 @@ def driving(option: Option) -> Motion:
     drift, pace = option.drift, _pace(role, option)
     line = _steered(_line_of(role.course.path, drift, place), option, pace)
     line, path, drivable = _boxed(role, line)
+    drivable = drivable and _on_the_road(role, line)
     time, station = drive(line, pace, place, (path, role.course.path))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
@@ -160,6 +163,13 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     path = rolled(line, length, backing=backing)
     drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
     return replace(line, s_m=path.s_m), path, drivable
+
+
+def _on_the_road(role: Role, line: Path) -> bool:
+    """Whether it comes from the road or its shoulder: what happens later is told of the maneuver, this is not."""
+    course = role.course
+    _, left = offset(course.path, line, role.place.station_m - _COMES_M)
+    return -course.right_edge_m - _SHOULDER_M <= left <= course.left_edge_m + _SHOULDER_M
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:

@@ -11,13 +11,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, spun
 from sgcad_core.planner.pairing import Encounter, Ways, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
-from sgcad_core.planner.role import Role, speed_there
+from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
@@ -33,6 +34,7 @@ _TRIES = (16, 26, 24, 400)
 _ONE_TURNS = 24
 """Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
+_SPEED_SHOWS_S = 0.3
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 
@@ -55,12 +57,15 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) -> Plan:
+def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by_force: bool = True) -> Plan:
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
+    Not `by_force`: without the long search through the oddest ways where all others fail.
     """
-    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior), may_skid)
+    gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
+    courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
+    cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -79,8 +84,8 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) ->
     )  # fmt: skip
 
 
-def _course(graph: LaneGraph, actor: Actor) -> Course:
-    course = find_course(graph, actor)
+def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
+    course = find_course(graph, actor, gentle)
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
         return course.reversed()
     keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
@@ -89,6 +94,14 @@ def _course(graph: LaneGraph, actor: Actor) -> Course:
 
 def _facing(role: Role, other: Role) -> Role:
     return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
+
+
+def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
+    """How long before the contact the clock must begin to show a told speed; 0 where it is never driven."""
+    if motion.standing or role.actor.speed_mph is None:
+        return 0.0
+    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
+    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0
 
 
 def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool:
@@ -115,6 +128,7 @@ class _Cast:
     courses: dict[str, Course]
     tractors: dict[str, str]
     may_skid: bool = False
+    by_force: bool = True
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -153,7 +167,8 @@ class _Cast:
         yield (plain[0], ways[aimed][1]), _ONE_TURNS
         yield (ways[aimed][0], plain[1]), _ONE_TURNS
         yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
-        yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
+        if self.by_force:
+            yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]
@@ -214,6 +229,7 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
+        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
         contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:

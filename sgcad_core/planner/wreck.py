@@ -22,15 +22,19 @@ from sgcad_core.planner.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
 
-SEEN_M = 0.015
+SEEN_M = 0.022
 """Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
 APART_M = 0.008
 """Gap that is left between bodies that touched."""
+_SHOWN_M = 0.008
+"""Overlap that is left for the sample behind a touch."""
 _SHORTEST_S, _LONGEST_S = 0.0005, 0.01
 _PARTING_MPS = 0.3
 """How fast bodies that sank into each other are moved apart."""
-_HELD_S = 0.06
-"""A touch stays as it is for more than one sample: who reads samples must see it."""
+_HELD_S = 0.11
+"""A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
+_DEEPEST_M = 0.03
+"""Deeper overlaps are parted at once."""
 _ROUNDS = 6
 """Of impulses over all touching pairs in one step."""
 _SLIP_LEVER = 0.25
@@ -129,6 +133,14 @@ class Wreck:
                     self._advance(m, step)
             self.now += step
             self._resolve(near, k)
+        self._show(near, k)
+
+    def _show(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
+        """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
+        for a, b in near:
+            if self.touches.get(_key(a, b), -1.0) > sample * STEP_S:
+                seen = apart(a.body, b.body)
+                _shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
     def _step(self, near: Sequence[tuple[Mover, Mover]]) -> float:
         """The longest step after which no pair has sunk deeper than it may."""
@@ -222,14 +234,20 @@ class Wreck:
 
     def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
         """Move two apart that sank into each other: places only, no motion comes of it."""
-        if seen.gap_m >= APART_M or self.now - self.touches[_key(a, b)] < _HELD_S:
+        held = self.now - self.touches[_key(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
+        if seen.gap_m >= APART_M or held:
             return
         by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
-        total = a.body.inverse_mass + b.body.inverse_mass
-        for one, sign in ((a.body, -1), (b.body, 1)):
-            share = sign * by * one.inverse_mass / total
-            one.x += share * seen.normal[0]
-            one.y += share * seen.normal[1]
+        _shift(a, b, seen, by)
+
+
+def _shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
+    """Move two apart along their axis (together where negative): places only, no motion comes of it."""
+    total = a.body.inverse_mass + b.body.inverse_mass
+    for one, sign in ((a.body, -1), (b.body, 1)):
+        share = sign * by_m * one.inverse_mass / total
+        one.x += share * seen.normal[0]
+        one.y += share * seen.normal[1]
 
 
 def _key(a: Mover, b: Mover) -> tuple[str, str]:
