@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flows.chain import ask_of, context_of
+from flows.chain import ask_of
 from sgcad_core.config import Config
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
@@ -12,7 +12,7 @@ from sgcad_core.records import Context, CrashReport, Generation, Query
 def first_answers(config: Config, report: CrashReport) -> tuple[dict[str, Generation], bool]:
     """The answers by stage ("road", and "scenario" where the road could be drawn), and whether one is a refusal."""
     heard: dict[str, Generation] = {}
-    context = context_of(report)
+    context = Context.of(report)
     try:
         passages = config.retriever.retrieve(context.narrative, "road")
         network = config.road_writer.write(context, passages, (), _ask(config, "road", heard), 1)

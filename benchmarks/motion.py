@@ -26,8 +26,8 @@ from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.reading import crash_facts
 from sgcad_core.narrative.losses import tells_lost_control
+from sgcad_core.narrative.reading import crash_facts
 from sgcad_core.records import Trajectory
 
 MPH = 0.44704

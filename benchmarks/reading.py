@@ -12,7 +12,7 @@ import argparse
 import sys
 import time
 
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 
 PROSE = (
     "V1, a 2001 Ford Focus, was traveling northbound on a two-lane, two-way road, approaching an intersection. "

@@ -45,6 +45,7 @@ Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YA
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
 Out = Annotated[Path, typer.Option("--out", "-o", help="Folder for the results.")]
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", help="Cases at a time; default: the cores, with a model 8.")]
+Encoding = Annotated[str, typer.Option("--encoding", help="How the .xosc tells the plan: timed or events.")]
 Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini: does it play the same?")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Do finished cases again.")]
 
@@ -57,11 +58,12 @@ def run(
     out: Out = DEFAULT_OUT,
     jobs: Jobs = None,
     fresh: Fresh = False,
+    encoding: Encoding = "",
 ) -> None:
     """Turn reports into scenarios."""
     from flows.cases import cases_of
 
-    _batch(cases_of(reports), config, overrides, out, jobs, fresh)
+    _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
 
 
 @app.command()
@@ -73,12 +75,18 @@ def evaluate(
     jobs: Jobs = None,
     fresh: Fresh = False,
     judge: Judge = "",
+    encoding: Encoding = "",
 ) -> None:
     """Run every case of a folder under one or several configs; run again to go on where it stopped."""
     from flows.cases import cases_in
 
     judged = [f"judge.name={judge}"] if judge else []
-    _batch(cases_in(cases), config, [*(overrides or ()), *judged], out, jobs, fresh)
+    _batch(cases_in(cases), config, [*(overrides or ()), *judged, *_encoded(encoding)], out, jobs, fresh)
+
+
+def _encoded(encoding: str) -> list[str]:
+    """The option as an override; the config's check tells a wrong value and a writer that has no choice."""
+    return [f"scenario_writer.encoding={encoding}"] if encoding else []
 
 
 def _batch(

@@ -33,10 +33,10 @@ from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
-from mini.precision import native_dtype
 from mini.ranks import Ranks
 from mini.rows import Row, collate
 from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
+from plugins.precision import native_dtype
 
 TOKENIZER_BASE = 40_000_000
 HEADS = "tags.safetensors"
@@ -227,8 +227,7 @@ class Trainer:
         """Answer tokens and a tenth of the others, which keeps those down at a tenth of the price."""
         seeded = torch.Generator().manual_seed(self.steps)
         others = torch.randint(len(self.tokenizer), (len(self.tokenizer) // 10,), generator=seeded)
-        kept = torch.cat((self.answer_tokens.to(wanted.device), others.to(wanted.device), wanted))
-        found: torch.Tensor = kept.unique()
+        found: torch.Tensor = torch.cat([p.to(wanted.device) for p in (self.answer_tokens, others, wanted)]).unique()
         return found
 
     def _lesson(self, batch: Batch) -> Lesson:

@@ -100,13 +100,12 @@ class Stage:
         self._stand(keeper, self._crossing(contact, keeper, other) if index is None else index)
 
     def _stand(self, actor: int, index: int) -> None:
-        self.at[actor] = self._on_way(actor, index)
-        self.index[actor] = index
+        self.at[actor], self.index[actor] = self._on_way(actor, index), index
 
     def _on_way(self, actor: int, index: int) -> Pose:
         """An actor where its way has an index."""
-        x, y = self.ways[actor][index]
-        return Pose(x, y, wrap(float(self.faces[actor][index]) + _turned(self.crash.actors[actor])))
+        (x, y), face = self.ways[actor][index], float(self.faces[actor][index])
+        return Pose(x, y, wrap(face + _turned(self.crash.actors[actor])))
 
     def _along(self, keeper: int, other: int) -> int | None:
         """Index on the keeper's way at which it is met by one of its own road; None: where their ways cross."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from PIL import Image
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.registry import catalogue
 
 Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
 """A picture in one of its views (0: as it is) to the tensors of the model's arguments, and what else the processor says
@@ -55,7 +57,7 @@ def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
     """The options with a dtype of torch in place of "native"."""
     if options.get("dtype") != "native":
         return dict(options)
-    from mini.precision import native_dtype
+    from plugins.precision import native_dtype
 
     return {**options, "dtype": native_dtype(_device("auto" if options.get("device_map") else device).type)}
 
@@ -124,8 +126,8 @@ def _not_loaded(place: str, fault: Exception) -> ConfigError:
 
 # ------------------------------------------------------------------ pictures and chat template
 def _prepare(place: str, revision: str | None) -> Prepare:
-    if _own_kind(place) == "MiniImageProcessor":
-        return _mini(Path(place))
+    if own := catalogue("image_processor").get(_own_kind(place)):
+        return _own(own, Path(place))
     try:
         processor = tf.AutoImageProcessor.from_pretrained(place, revision=revision, backend="pil")
     except ImportError as fault:
@@ -161,12 +163,10 @@ def _own_kind(place: str) -> str:
         raise ConfigError(f"{file}: is no JSON: {fault}") from fault
 
 
-def _mini(folder: Path) -> Prepare:
-    """The embedded model's own pictures: turned until north is up, seen through its eye."""
-    from mini.eye import load
-
+def _own(point: EntryPoint, folder: Path) -> Prepare:
+    """Pictures as a package of the model's own sees them, such as the embedded one: `load(folder).patches(...)`."""
     try:
-        sight = load(folder)
+        sight = point.load()(folder)
     except FileNotFoundError as fault:
         raise ConfigError(f"backbone.model {fault}") from fault
 

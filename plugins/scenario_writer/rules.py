@@ -11,8 +11,8 @@ from itertools import product
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.scenario import May, compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
@@ -33,6 +33,8 @@ class Rules(ScenarioWriter):
     version: ClassVar[str] = "2"
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
+    encoding: Encoding = DEFAULT_ENCODING
+    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -48,8 +50,8 @@ class Rules(ScenarioWriter):
         facts = context.reading.crash
         lost = tells_lost_control(context.reading.narrative)
         behavior = behavior_of_facts(facts, spec)
-        may = May(skid=lost, sides=_other_sides(facts, behavior))
-        scenario = compile_scenario(behavior, network, self.openscenario, may)
+        sides = _other_sides(facts, behavior)
+        scenario = compile_scenario(behavior, network, self.openscenario, self.encoding, may_skid=lost, sides=sides)
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 
 

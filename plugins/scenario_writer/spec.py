@@ -12,8 +12,8 @@ from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.execution.scenario import May, compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.losses import tells_lost_control
@@ -33,6 +33,8 @@ class SpecScenario(ScenarioWriter):
 
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
+    encoding: Encoding = DEFAULT_ENCODING
+    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -53,8 +55,8 @@ class SpecScenario(ScenarioWriter):
             attempt=attempt,
         )
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        may = May(skid=tells_lost_control(context.reading.narrative))
-        return compile_scenario(behavior, network, self.openscenario, may)
+        lost = tells_lost_control(context.reading.narrative)
+        return compile_scenario(behavior, network, self.openscenario, self.encoding, may_skid=lost)
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

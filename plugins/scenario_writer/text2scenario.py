@@ -15,8 +15,8 @@ from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.scenario import May, compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
@@ -92,6 +92,8 @@ class Text2Scenario(ScenarioWriter):
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
+    encoding: Encoding = DEFAULT_ENCODING
+    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -118,8 +120,10 @@ class Text2Scenario(ScenarioWriter):
         beside = [_beside(role, behavior.actors[0]) for role in parsed.roles if role.id not in taken]
         contacts = behavior.contacts or tuple(_contact(c) for c in _strikes(parsed))
         changed = {"actors": (*behavior.actors, *beside), "contacts": contacts}
-        may = May(skid=tells_lost_control(context.reading.narrative))
-        return compile_scenario(behavior.model_copy(update=changed), network, self.openscenario, may)
+        lost = tells_lost_control(context.reading.narrative)
+        return compile_scenario(
+            behavior.model_copy(update=changed), network, self.openscenario, self.encoding, may_skid=lost
+        )
 
 
 def _read_back(network: RoadNetwork) -> RoadSpec:

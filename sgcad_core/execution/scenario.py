@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.writer import DEFAULT_VERSION, Version, write_xosc
+from sgcad_core.formats.openscenario.events import Handover
+from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import Plan, plan
@@ -16,33 +16,31 @@ from sgcad_core.specs import Area, BehaviorSpec, size_m
 Sides = tuple[Area, Area]
 
 
-class May(NamedTuple):
-    """What a report allows besides the behavior as declared."""
-
-    skid: bool = False
-    """It tells that somebody lost control."""
-    sides: Sequence[Sides] = ()
-    """Of striker and struck in the first contact, as well as the declared ones, likeliest first."""
-
-
-_NOTHING_MORE = May()
-
-
 def compile_scenario(
-    behavior: BehaviorSpec, network: RoadNetwork, version: Version = DEFAULT_VERSION, may: May = _NOTHING_MORE
+    behavior: BehaviorSpec,
+    network: RoadNetwork,
+    version: Version = DEFAULT_VERSION,
+    encoding: Encoding = DEFAULT_ENCODING,
+    *,
+    may_skid: bool = False,
+    sides: Sequence[Sides] = (),
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
+    `encoding`: timed polylines, or maneuver events that people edit by hand.
+
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say.
+    for the validators to say. `may_skid`: the report tells that somebody lost control. `sides`: of
+    striker and struck in the first contact, what the report allows as well as the declared ones, likeliest first.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    behavior, planned = _planned(behavior, parse_net(network.net_xml), may)
+    behavior, planned = _planned(behavior, parse_net(network.net_xml), may_skid, sides)
     actors = actor_infos(behavior)
+    handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior, version=version),
+        xosc=write_xosc(actors, planned.trajectories, behavior, version=version, handover=handover),
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
@@ -52,18 +50,20 @@ def compile_scenario(
     )
 
 
-def _planned(behavior: BehaviorSpec, graph: LaneGraph, may: May) -> tuple[BehaviorSpec, Plan]:
+def _planned(
+    behavior: BehaviorSpec, graph: LaneGraph, may_skid: bool, sides: Sequence[Sides]
+) -> tuple[BehaviorSpec, Plan]:
     """The plan of a behavior; with other sides of the first contact where only those can be driven to meet."""
-    sides = may.sides if behavior.contacts else ()
-    told = plan(behavior, graph, may_skid=may.skid, by_force=not sides)
+    sides = sides if behavior.contacts else ()
+    told = plan(behavior, graph, may_skid=may_skid, by_force=not sides)
     for pair in () if told.realised else sides:
         changed = _with_sides(behavior, pair)
-        found = plan(changed, graph, may_skid=may.skid, by_force=False)
+        found = plan(changed, graph, may_skid=may_skid, by_force=False)
         if found.realised:
             note = f"sides as told meet in no driving: {pair[0]} and {pair[1]}, which the report allows, stand in"
             return changed, found.model_copy(update={"notes": (note, *found.notes)})
     if sides and not told.realised:
-        told = plan(behavior, graph, may_skid=may.skid)
+        told = plan(behavior, graph, may_skid=may_skid)
     return behavior, told
 
 

@@ -1,6 +1,4 @@
-"""Every threshold and weight of the criticality metrics in one frozen record, printed with each result.
-
-The limits of driving stand in another.
+"""Every threshold and weight of the criticality metrics in one frozen record, printed with results; limits of driving.
 
 Values are the paper's where it gives one; where it names a constant without a value, ours stands with
 its reason. Knows no metric.

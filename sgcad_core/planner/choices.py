@@ -33,6 +33,9 @@ _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
 _ASKEW, _STEERS = "stands askew", "steers aside before contact"
+SLIDES = "slides into the contact at an angle that no steering explains"
+_SLIDING = 2.0
+"""Cost of a slide: more than any steering."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
@@ -232,6 +235,14 @@ def spins(role: Role) -> list[Twist]:
     """Any angle, in steps of 45 degrees, and small ones."""
     angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
     return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
+
+
+def slides(role: Role) -> list[Twist]:
+    """The box at any angle to its way, though the report tells no loss of control: dearer than all driving."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    off = mismatch(role)
+    facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []
+    return [Twist(0.0), *facing_it, *(Twist(_SLIDING + abs(a), a, SLIDES, skids=True) for a in angles)]
 
 
 def homing(role: Role) -> list[Drift]:

@@ -58,6 +58,11 @@ class Course:
     astray: bool = False
     """Whether the way that was asked for does not exist: another was taken, or one off the road."""
 
+    @property
+    def first_m(self) -> float:
+        """Where the first road of the route begins; before it no road supports it (a walker's has none)."""
+        return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
+
     def on_road(self, road: str) -> tuple[float, float] | None:
         """Stations between which a road is driven."""
         return next(((a, b) for name, a, b in self.roads if name == road), None)

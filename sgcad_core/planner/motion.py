@@ -18,6 +18,8 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.path import Path
 
 STEP_S = 0.05
+LEAD_S = (4.2, 8.0)
+"""Shortest and longest approach before the first contact."""
 WINDOW_S = (-6.0, 4.5)
 """Own time in which an encounter is looked for."""
 LATERAL_MPS2 = 3.0

@@ -27,29 +27,30 @@ from sgcad_core.planner.choices import (
     homing,
     pacings,
     skids,
+    slides,
     spins,
     stand_offs,
     steps_aside,
 )
-from sgcad_core.planner.motion import HARD_MPS2, YAW_RADPS, Motion, Pace, drive, stand
+from sgcad_core.planner.fit import misfit, outside, waiting_zone
+from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
-from sgcad_core.planner.place import STOP_LINE_M, TURNING
+from sgcad_core.planner.place import STOP_LINE_M
 from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
 from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
 from sgcad_core.specs import Area
 
-_ZONE_M = 12.0
 _SWING_ASIDE_M = 5.0
 """Who steers aside does so within this much of its line, if need be slowly."""
-_COMES_M, _SHOULDER_M = 70.0, 2.5
-"""How far before the meeting place an actor is on the road, and how far beside its edge it may be."""
+_VERGE_M = 3.0
+"""Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
+_STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
+"""Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
 _PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
-_DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
-             "departing_road_left", "departing_road_right"}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +134,13 @@ def spun(role: Role) -> list[Option]:
     return _sorted(role, product(lines, (Pacing(0.0),), spins(role)))
 
 
+def slid(role: Role) -> list[Option]:
+    """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
+    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+        return spun(role)
+    return _sorted(role, product(homing(role)[::2], (Pacing(0.0),), slides(role)))
+
+
 def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:
     return sorted((Option(role, *part) for part in parts), key=lambda option: option.cost)
 
@@ -144,11 +152,11 @@ def driving(option: Option) -> Motion:
     drift, pace = option.drift, _pace(role, option)
     line = _steered(_line_of(role.course.path, drift, place), option, pace)
     line, path, drivable = _boxed(role, line)
-    drivable = drivable and _on_the_road(role, line)
     time, station = drive(line, pace, place, (path, role.course.path))
+    drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
-    penalty = _misfit(role, path, drift, begins)
+    penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
@@ -165,11 +173,10 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     return replace(line, s_m=path.s_m), path, drivable
 
 
-def _on_the_road(role: Role, line: Path) -> bool:
-    """Whether it comes from the road or its shoulder: what happens later is told of the maneuver, this is not."""
-    course = role.course
-    _, left = offset(course.path, line, role.place.station_m - _COMES_M)
-    return -course.right_edge_m - _SHOULDER_M <= left <= course.left_edge_m + _SHOULDER_M
+def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
+    """Whether a line is far off the road at places from which the shortest approach may begin."""
+    left = [offset(role.course.path, line, station)[1] for station in stations_m]
+    return max(left) > role.course.left_edge_m + _VERGE_M or -min(left) > role.course.right_edge_m + _VERGE_M
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:
@@ -196,7 +203,7 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = _outside(path.s_m, *_waiting_zone(role), 0.03)
+    penalty = outside(path.s_m, *waiting_zone(role), 0.03)
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
 
 
@@ -269,28 +276,3 @@ def _pace(role: Role, option: Option) -> Pace:
     if role.actor.maneuver == "slowing":
         return replace(pace, slow_at_m=role.place.station_m - 3.0, slow_mps=max(0.35 * speed, 1.5))
     return pace
-
-
-# ------------------------------------------------------------------ how ill a place fits
-def _misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
-    place = role.place.station_m
-    penalty = _outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
-    turned = path.heading_rad - np.interp(begins_m - 5.0, path.s_m, path.heading_rad)
-    maneuver = role.actor.maneuver
-    if maneuver in TURNING:
-        way = -1.0 if maneuver == "turn_right" else 1.0
-        penalty = penalty + 2.0 * (way * turned < math.radians(16))
-    elif maneuver == "straight":
-        penalty = penalty + 2.0 * (np.abs(turned) > math.radians(28))
-    if maneuver in _DRIFTING and drift.left_m:
-        penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
-    return penalty
-
-
-def _outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
-    return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
-
-
-def _waiting_zone(role: Role) -> tuple[float, float]:
-    line, place = line_m(role), role.place.station_m
-    return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

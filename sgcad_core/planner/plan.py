@@ -1,7 +1,8 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
 The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
-lane, with a swerve or a skid; what was changed stands in the plan's notes.
+lane, with a swerve; what was changed stands in the plan's notes. Boxes that slide against their way without
+a told loss of control are the last resort: noted, and doubted by the validator `drivable`.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
-from sgcad_core.planner.options import Option, aimed, forced, options, plainly, spun
-from sgcad_core.planner.pairing import Encounter, Ways, search
+from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
+from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
@@ -25,12 +26,12 @@ from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_c
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
-LEAD_S = (4.2, 8.0)
-"""Shortest and longest approach before the first contact."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
+_LAST_TRIES = 90
+"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
 _ONE_TURNS = 24
 """Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
@@ -61,7 +62,7 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
-    Not `by_force`: without the long search through the oddest ways where all others fail.
+    Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
@@ -111,15 +112,6 @@ def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool
     return sides == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
-def _cannot(contact: Contact, found: Encounter | None) -> str:
-    """That a pair cannot touch as declared, and what would come of it as both drive."""
-    said = f"{contact.striker} and {contact.struck} cannot touch as declared in any driving"
-    if found is None:
-        return f"{said}: their ways never meet"
-    sides = found.meeting.sides
-    return f"{said}; as they drive, the {sides[0]} of {contact.striker} meets the {sides[1]} of {contact.struck}"
-
-
 @dataclass
 class _Cast:
     """The actors with their courses, and what happened to their stated behavior on the way."""
@@ -152,10 +144,13 @@ class _Cast:
     def encounter(self, contact: Contact) -> Scene | None:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
         a, b = self._roles(contact)
-        found = search(self._stages(a, b), (contact.striker_area, contact.struck_area))
+        wanted = (contact.striker_area, contact.struck_area)
+        found = search(self._stages(a, b), wanted)
+        if found is None and self.by_force:
+            found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
         if found is None:
             found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
-            self.notes.append(_cannot(contact, found))
+            self.notes.append(cannot(contact, found))
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
@@ -230,7 +225,8 @@ class _Cast:
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
         lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
-        contact = math.ceil(min(max(lead, LEAD_S[0]), LEAD_S[1]) / STEP_S)
+        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
+        contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes

@@ -11,11 +11,12 @@ import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area
 from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.ground import Drag
 from sgcad_core.planner.hitch import Hitch, hitched
 from sgcad_core.planner.impact import body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.wreck import Drag, Mover, Touch, Wreck
+from sgcad_core.planner.wreck import Mover, Touch, Wreck
 from sgcad_core.records import ObservedContact, Trajectory
 from sgcad_core.specs import ActorKind, Area, Surface
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
+from sgcad_core.planner.ground import Drag, slow
 from sgcad_core.planner.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
@@ -37,16 +38,7 @@ _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS = 6
 """Of impulses over all touching pairs in one step."""
-_SLIP_LEVER = 0.25
-"""Mean lever of ground friction against turning, as a share of the box's diagonal."""
 _LEAST_LEFT_S = 0.1
-
-
-class Drag(NamedTuple):
-    """Deceleration along and across the box by tires, brakes and ground, m/s2."""
-
-    along: float
-    across: float
 
 
 @dataclass
@@ -161,7 +153,7 @@ class Wreck:
         one.heading += one.spin * step
         if m.free:
             left = max((self.count - 4) * STEP_S - self.now, _LEAST_LEFT_S)
-            _slow(one, m.drag, step, left)
+            slow(one, m.drag, step, left)
 
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
@@ -271,22 +263,3 @@ def _may_meet(a: Mover, b: Mover) -> bool:
 
 def _moves(m: Mover) -> bool:
     return bool(m.body.vx or m.body.vy or m.body.spin)
-
-
-def _slow(one: Body, drag: Drag, step: float, left_s: float) -> None:
-    """Ground friction over a step; more of it where the body would not stand in the time that is left."""
-    speed = one.speed
-    if speed > 0.0:
-        c, s = math.cos(one.heading), math.sin(one.heading)
-        along, across = (one.vx * c + one.vy * s) / speed, (one.vy * c - one.vx * s) / speed
-        brake = math.hypot(drag.along * along, drag.across * across)
-        more = max(1.0, speed / (left_s * max(brake, 1e-6)))
-        if brake * more * step >= speed:
-            one.vx = one.vy = 0.0
-        else:
-            ahead, left = drag.along * along * more * step, drag.across * across * more * step
-            one.vx -= ahead * c - left * s
-            one.vy -= ahead * s + left * c
-    turning = one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * radius(one) * drag.across
-    turning = max(turning, abs(one.spin) / left_s) * step
-    one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)

@@ -21,7 +21,7 @@ from mini.generator.writer import Writer
 from mini.rows import road_ids
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, Refusal, RoadLayout
-from tests.mini.reports import sentences
+from tests.mini.reports import sentences, text_report
 
 seeds = st.integers(0, 10**6)
 
@@ -182,7 +182,7 @@ def test_both_sides_of_the_split_have_clauses(options: Group) -> None:
 
 
 def test_texts_are_thousands_of_forms() -> None:
-    shapes = {re.sub(r"\d+|[A-Z][\w-]*", "#", make_report(seed, modes={"text": 1.0}).narrative) for seed in range(1500)}
+    shapes = {re.sub(r"\d+|[A-Z][\w-]*", "#", text_report(seed).narrative) for seed in range(1500)}
     assert len(shapes) > 1450
 
 
@@ -201,7 +201,7 @@ def test_depleted_reports_are_refused(mode: str) -> None:
 def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
     told = 0
     for seed in range(base, base + 1500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         found = re.search(r"\bV(\d)\b(?![^.]* rest)[^.]* (?:behind|(?<!the )following) V(\d)\b", report.narrative)
         if report.crash.config != "rear_end" or not found:
             continue
@@ -242,7 +242,7 @@ def test_a_one_way_street_carries_everybody_who_uses_it(seed: int) -> None:
 def test_no_sign_is_told_of_traffic_that_cannot_come() -> None:
     signed = 0
     for seed in range(2500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         closed = {leg.flow for leg in report.crash.legs if not leg.lanes_in}
         for end, facts in report.sentences:
             if "control" in facts and closed and "top sign" in report.narrative[:end].rpartition(". ")[2]:
@@ -296,7 +296,7 @@ def test_words_are_believed_where_a_drawing_is_careless() -> None:
 
 def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
     plain = {False: 0, True: 0}
-    for report in (make_report(s, length=0.1, modes={"text": 1.0}) for s in range(300)):
+    for report in (text_report(s, length=0.1) for s in range(300)):
         silent = [leg for leg in report.crash.legs if leg.kind == "road"]
         silent = [leg for leg in silent if not {f"lanes.{leg.bearing % 4}"} & (report.told | report.doubtful)]
         for leg in silent:
@@ -306,7 +306,7 @@ def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
 
 def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> None:
     found = {False: 0, True: 0}
-    for report in (make_report(s, length=0.1, modes={"text": 1.0}) for s in range(2000)):
+    for report in (text_report(s, length=0.1) for s in range(2000)):
         answers = report.behavior["actors"] if report.behavior else ()
         for actor, answer in zip(report.crash.actors, answers, strict=False):
             if actor.meant and f"man.{actor.id}" in report.told and f"heading.{actor.id}" in report.told:
@@ -384,7 +384,7 @@ def test_driveways_are_spoken_of_where_there_is_one() -> None:
     """What one turns into or comes out of tells a driveway, and only a crash that has one speaks so of it."""
     alone = 0
     for seed in range(4500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         turning = re.search(
             r"turn(?:ed|ing)? (?:left|right) (?:into|out of) (?:a|the) (?:driveway|parking lot)", report.narrative
         )
@@ -399,7 +399,7 @@ def test_driveways_are_spoken_of_where_there_is_one() -> None:
 def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
     lanes = []
     for seed in range(4000):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for leg in report.crash.legs if report.behavior and "refuse" not in report.road else ():
             axis = leg.bearing % 4
             if leg.kind == "road" and f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told:
@@ -425,7 +425,7 @@ def test_what_no_words_can_tell_is_not_told() -> None:
     """Which way one backs out, and whether one that hit a parked vehicle had kept its lane, where nobody says so."""
     backing, parked = 0, {True: 0, False: 0}
     for seed in range(2500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for i, actor in enumerate(report.crash.actors if report.behavior else ()):
             if actor.maneuver == "backing":
                 backing += 1
@@ -451,7 +451,7 @@ def test_who_goes_on_along_a_bend_negotiates_it() -> None:
 def test_impacts_that_name_nobody_tell_no_striker() -> None:
     seen = 0
     for seed in range(2500):
-        for sentence, facts in sentences(make_report(seed, length=0.0, modes={"text": 1.0})):
+        for sentence, facts in sentences(text_report(seed, length=0.0)):
             if "contact.0" in facts:
                 assert any(fact.startswith("~named") for fact in facts), sentence
             seen += bool(re.match(r"(This led to|This ended in|There was an impact|An impact occurred)", sentence))

@@ -11,11 +11,12 @@ from mini.grow import BLOCKS, deepened, places
 from mini.model import Forward, make_config, make_model
 from mini.rows import collate, training_row
 from mini.tokens import Coder, train_tokenizer
+from tests.mini.reports import text_report
 
 
 @pytest.fixture(scope="module")
 def coder() -> Coder:
-    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(100)))
+    return Coder(train_tokenizer(text_report(seed).narrative for seed in range(100)))
 
 
 def model_of(coder: Coder, layers: int, blocks: int = 1) -> Forward:

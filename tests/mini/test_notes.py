@@ -22,6 +22,7 @@ from mini.generator.words import NUMBERS
 from mini.generator.world import WORDS, Actor
 from mini.rows import collate, road_ids, training_row
 from mini.tokens import ROAD, SCENARIO, Coder, train_tokenizer
+from tests.mini.reports import text_report
 
 seeds = st.integers(0, 10**6)
 NAMES = {index: name for name, index in NOTES.items()}
@@ -34,7 +35,7 @@ TOLD = re.compile(
 
 @pytest.fixture(scope="module")
 def coder() -> Coder:
-    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(200)))
+    return Coder(train_tokenizer(text_report(seed).narrative for seed in range(200)))
 
 
 def with_lists(count: int, held_out: bool = False) -> list[Report]:
@@ -42,7 +43,7 @@ def with_lists(count: int, held_out: bool = False) -> list[Report]:
     found: list[Report] = []
     seed = 0
     while len(found) < count:
-        report = make_report(seed, held_out, length=0.2, modes={"text": 1.0})
+        report = text_report(seed, held_out, length=0.2)
         found += [report] * bool(items_of(report))
         seed += 1
     return found
@@ -117,7 +118,7 @@ def test_noted_sides_are_those_that_touch(seed: int, held_out: bool) -> None:
 def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
     told = both = 0
     for seed in range(300):
-        report = make_report(seed, held_out, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, held_out, length=0.0)
         rear_end = report.crash.contacts[0].struck_area == "back"  # often said in words that name no side
         if "areas.0" in report.told and not rear_end:
             told += 1
@@ -135,7 +136,7 @@ def test_a_noted_way_is_the_one_in_its_words() -> None:
     """Or the opposite one where they say where somebody came from."""
     same = opposite = 0
     for seed in range(250):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for end, some in report.notes:
             way = next((int(name[8:]) for name in some if name.startswith("heading=")), None)
             found = list(WAY.finditer(report.narrative[max(0, end - 34) : end].lower()))
@@ -286,7 +287,7 @@ def roads_of(report: Report) -> list[tuple[int, dict[str, str]]]:
 def test_roads_are_noted_in_the_order_of_the_text_with_the_lanes_they_have(held_out: bool) -> None:
     seen = Counter[str]()
     for seed in range(400):
-        report = make_report(seed, held_out, 0.2, {"text": 1.0})
+        report = text_report(seed, held_out, length=0.2)
         roads = roads_of(report)
         assert [told["road"] for _, told in roads][:1] == ["first"] * bool(roads)
         for _, told in roads:
@@ -305,7 +306,7 @@ def test_roads_are_noted_in_the_order_of_the_text_with_the_lanes_they_have(held_
 def test_lanes_of_two_roads_in_one_sentence_point_each_at_its_own(coder: Coder, held_out: bool) -> None:
     seen = 0
     for seed in range(400):
-        report = make_report(seed, held_out, 0.2, {"text": 1.0})
+        report = text_report(seed, held_out, length=0.2)
         ends = {told["axis"]: end for end, told in roads_of(report) if "axis" in told}
         if len(ends) < 2 or not report.behavior:
             continue
@@ -318,7 +319,7 @@ def test_lanes_of_two_roads_in_one_sentence_point_each_at_its_own(coder: Coder, 
 
 
 def test_how_a_road_lies_is_never_asked_at_its_phrase(coder: Coder) -> None:
-    reports = (make_report(seed, length=0.2, modes={"text": 1.0}) for seed in range(60))
+    reports = (text_report(seed, length=0.2) for seed in range(60))
     rows = [training_row(coder, report, None) for report in reports if any("axis" in t for _, t in roads_of(report))]
     assert len(rows) > 10
     batch = collate(rows, coder)
@@ -369,7 +370,7 @@ def test_a_batch_carries_the_notes_of_its_rows_and_heads_learn_them(coder: Coder
 def test_pronouns_behind_a_name_mean_its_driver() -> None:
     seen = 0
     for seed in range(60):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         begun = 0
         ends = [0] + [end for end, _ in report.sentences]
         for end, names in report.notes:

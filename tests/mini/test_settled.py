@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from mini.evaluate import source
 from mini.generator.crash import sample_crash
-from mini.generator.report import make_report
 from mini.generator.settled import AXIS, FLOW, FROM_LEFT, ROAD, STEM, VAGUE, unsettled
 from mini.generator.targets import GUESS, LIKELY, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
 from mini.tags import TEXT, told
+from tests.mini.reports import text_report
 
 LANES = {"lanes.0", "lanes.2"}
 NOWHERE = {"legs", "control"}
@@ -73,7 +73,7 @@ def test_a_one_way_road_needs_its_direction(fact: str) -> None:
 
 
 def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() -> None:
-    reports = [make_report(seed, modes={"text": 1.0}) for seed in range(400)]
+    reports = [text_report(seed) for seed in range(400)]
     weights = []
     for report in reports:
         for index, leg in enumerate(report.crash.legs):
@@ -105,7 +105,7 @@ def test_a_lane_named_from_the_left_needs_the_lanes_beside_it(turns: list[str]) 
 def test_the_left_lane_of_nobody_knows_how_many_is_a_guess() -> None:
     found = 0
     for seed in range(600):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         for index, actor in enumerate(report.crash.actors):
             if f"lane.{actor.id}" in report.doubtful:
                 found += 1
@@ -163,7 +163,7 @@ def test_more_said_never_unsettles(seed: int) -> None:
 def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> None:
     found = 0
     for seed in range(400):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         for fact in report.doubtful:
             assert source(report, fact) == "none"
         for index, leg in enumerate(report.crash.legs):
@@ -192,7 +192,7 @@ def test_what_every_sentence_tells_in_part_is_doubtful() -> None:
 def test_what_is_told_in_part_alone_weighs_as_a_guess_and_tags_nothing(fact: str) -> None:
     seen = 0
     for seed in range(1500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         telling = [facts for _, facts in report.sentences if fact in {told.partition(".")[0] for told in facts}]
         if not telling or not report.behavior:
             continue
@@ -225,7 +225,7 @@ def test_what_is_told_plainly_stays_so_when_it_is_said_loosely_again(fact: str) 
 def test_of_whom_no_maneuver_is_told_the_exit_is_a_guess_and_straight_ahead_where_it_drove_on() -> None:
     ahead, gone = 0, 0
     for seed in range(600):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for i, actor in enumerate(report.crash.actors if report.behavior else ()):
             if not actor.vehicle or f"man.{actor.id}" in report.told or actor.maneuver == "straight":
                 continue
@@ -240,7 +240,7 @@ def test_of_whom_no_maneuver_is_told_the_exit_is_a_guess_and_straight_ahead_wher
 def test_the_lane_of_one_parked_or_of_no_known_heading_is_not_taken_from_the_road() -> None:
     seen = 0
     for seed in range(3000):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for actor, have in zip(report.crash.actors, (report.behavior or {}).get("actors", ()), strict=False):
             told = {f"lane.{actor.id}", f"heading.{actor.id}"} & (report.told | report.doubtful)
             if f"lane.{actor.id}" not in told and (actor.maneuver == "parked" or not told):
@@ -252,7 +252,7 @@ def test_the_lane_of_one_parked_or_of_no_known_heading_is_not_taken_from_the_roa
 def test_where_one_that_stands_goes_is_a_guess_until_it_is_told() -> None:
     guesses = told = 0
     for seed in range(2500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for index, actor in enumerate(report.crash.actors):
             if not actor.meant or f"man.{actor.id}" not in report.told:
                 continue
@@ -268,7 +268,7 @@ def test_where_one_that_stands_goes_is_a_guess_until_it_is_told() -> None:
 def test_a_list_of_turn_lanes_weighs_as_a_whole() -> None:
     named = told = 0
     for seed in range(1500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for index, leg in enumerate(report.crash.legs):
             path = ("legs", index, "turns_in")
             weights = {report.weight((*path, 0)), report.weight((*path, 0, "more")), report.weight(path)}
@@ -283,7 +283,7 @@ def test_a_list_of_turn_lanes_weighs_as_a_whole() -> None:
 def test_how_far_a_driveway_lies_no_text_tells() -> None:
     found = 0
     for seed in range(1500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         for index, _ in enumerate(report.road["accesses"] if report.road else ()):
             found += 1
             assert report.weight(("accesses", index, "distance_m")) == GUESS

@@ -23,6 +23,7 @@ from mini.options import parse
 from mini.rows import collate, tag_picture, training_row
 from mini.tokens import Coder, train_tokenizer
 from mini.train import Trainer
+from tests.mini.reports import text_report
 
 seeds = st.integers(0, 10**6)
 NAMES = {index: name for name, index in tags.TEXT.items()}
@@ -31,7 +32,7 @@ SHOWN = {index: name for name, index in tags.PICTURE.items()}
 
 @pytest.fixture(scope="module")
 def coder() -> Coder:
-    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(200)))
+    return Coder(train_tokenizer(text_report(seed).narrative for seed in range(200)))
 
 
 @settings(max_examples=150, deadline=None)
@@ -79,7 +80,7 @@ def test_marks_are_taken_out_with_their_places() -> None:
 
 @pytest.mark.parametrize("seed", range(0, 60, 6))
 def test_the_tagged_token_ends_the_sentence(coder: Coder, seed: int) -> None:
-    report = make_report(seed, modes={"text": 1.0})
+    report = text_report(seed)
     row = training_row(coder, report, None)
     assert len(row.text_tags) == len(report.sentences)
     for (at, _), (end, _) in zip(row.text_tags, report.sentences, strict=True):
@@ -107,7 +108,7 @@ def test_every_leg_and_vehicle_in_view_is_tagged(seed: int) -> None:
 
 def _any_coder(made: list[Coder] = []) -> Coder:  # noqa: B006 - remembered on purpose
     if not made:
-        made.append(Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(50))))
+        made.append(Coder(train_tokenizer(text_report(seed).narrative for seed in range(50))))
     return made[0]
 
 
@@ -201,7 +202,7 @@ def test_pointers_lead_to_what_tells_the_value(seed: int) -> None:
 def test_one_way_without_a_count_tells_the_direction_that_nobody_drives(coder: Coder) -> None:
     found = 0
     for seed in range(500):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         bare = [leg for leg in report.crash.legs if not leg.two_way and f"ways.{leg.bearing % 4}" in report.told]
         bare = [leg for leg in bare if f"lanes.{leg.bearing % 4}" not in report.told | report.doubtful]
         said = {NAMES[i] for _, facts in report.sentences for i in tags.told(report.crash, facts)}
@@ -221,7 +222,7 @@ def test_one_way_without_a_count_tells_the_direction_that_nobody_drives(coder: C
 def test_places_of_three_legs_are_read_where_the_third_is_used(coder: Coder) -> None:
     found = 0
     for seed in range(300):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         legs = report.crash.legs
         if report.crash.layout not in ("driveway", "t") or "legs" not in report.told:
             continue
@@ -259,7 +260,7 @@ def test_every_fact_of_an_answer_has_a_name() -> None:
 
 
 def test_attention_on_the_right_place_costs_nothing(coder: Coder) -> None:
-    report = make_report(3, length=0.0, modes={"text": 1.0})
+    report = text_report(3, length=0.0)
     batch = collate([training_row(coder, report, None)], coder)
     places, length = len(batch.pointing), batch.ids.shape[1]
     assert places
@@ -295,7 +296,7 @@ def test_vehicles_that_share_a_token_are_told_apart_by_name(seed: int) -> None:
 def test_the_side_that_hit_a_pedestrian_is_asked_where_it_is_named(coder: Coder) -> None:
     seen = 0
     for seed in range(1500):
-        report = make_report(seed, length=0.0, modes={"text": 1.0})
+        report = text_report(seed, length=0.0)
         if "side.0" not in report.told or report.behavior is None:
             continue
         seen += 1

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from mini.generator.report import make_report
 from mini.rows import training_row
 from mini.tokens import ROAD, SCENARIO, SPECIAL, Coder, fragments, train_tokenizer
+from tests.mini.reports import text_report
 
 _SPARED = (
     "a an the its his her own of in at to and then also had that which turn turning lane lanes road roadway street "
@@ -22,7 +23,7 @@ SPARED = set(_SPARED.split())
 
 @pytest.fixture(scope="module")
 def coder() -> Coder:
-    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(300)))
+    return Coder(train_tokenizer(text_report(seed).narrative for seed in range(300)))
 
 
 @settings(max_examples=100, deadline=None)
@@ -46,7 +47,7 @@ def test_a_report_cannot_smuggle_special_tokens(coder: Coder) -> None:
 
 def test_pieces_join_to_the_tokens_of_the_whole_answer(coder: Coder) -> None:
     for seed in range(80):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         row = training_row(coder, report, None)
         start = row.ids.index(coder.special[ROAD]) + 1
         end = row.ids.index(coder.special[SCENARIO])
@@ -106,7 +107,7 @@ def test_the_template_puts_evidence_first_and_the_task_last(coder: Coder) -> Non
 
 
 def test_picks_point_at_value_tokens(coder: Coder) -> None:
-    row = training_row(coder, make_report(3, modes={"text": 1.0}), None)
+    row = training_row(coder, text_report(3), None)
     spoken = "".join(coder.tokenizer.decode([row.ids[at]]) for at, _ in row.picks)
     assert '"forward"' in spoken
     assert ',"direction":' not in spoken
@@ -115,7 +116,7 @@ def test_picks_point_at_value_tokens(coder: Coder) -> None:
 def test_where_more_digits_might_follow_the_end_of_a_number_is_learned(coder: Coder) -> None:
     seen = 0
     for seed in range(400):
-        report = make_report(seed, modes={"text": 1.0})
+        report = text_report(seed)
         if report.behavior is None or "actors" not in report.behavior:
             continue
         speeds = [actor["speed_mph"] for actor in report.behavior["actors"]]
@@ -128,7 +129,7 @@ def test_where_more_digits_might_follow_the_end_of_a_number_is_learned(coder: Co
 
 
 def test_a_distance_ends_behind_its_decimals(coder: Coder) -> None:
-    reports = [r for r in (make_report(seed, modes={"text": 1.0}) for seed in range(300)) if r.road.get("accesses")]
+    reports = [r for r in (text_report(seed) for seed in range(300)) if r.road.get("accesses")]
     assert reports
     for report in reports:
         row = training_row(coder, report, None)

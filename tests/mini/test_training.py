@@ -17,18 +17,19 @@ from mini.grow import deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import orthogonal
 from mini.options import CHOICES, parse
-from mini.precision import native_dtype
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
 from mini.train import EYES, HEADS, Trainer, schedule
+from plugins.precision import native_dtype
 from sgcad_core import settings
+from tests.mini.reports import text_report
 
 torch.set_num_threads(1)
 
 
 @pytest.fixture(scope="module")
 def coder() -> Coder:
-    return Coder(train_tokenizer(make_report(seed, modes={"text": 1.0}).narrative for seed in range(200)))
+    return Coder(train_tokenizer(text_report(seed).narrative for seed in range(200)))
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +81,7 @@ def test_free_running_answers_are_the_argmax_of_the_full_forward(coder: Coder, f
 
 
 def test_a_narrower_softmax_keeps_the_ranking(coder: Coder, forward: Forward) -> None:
-    report = make_report(1, length=0.1, modes={"text": 1.0})
+    report = text_report(1, length=0.1)
     batch = collate([training_row(coder, report, None)], coder)
     everything = torch.arange(len(coder.tokenizer))
     with torch.no_grad():
@@ -185,7 +186,7 @@ def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) ->
     from transformers import AutoModelForImageTextToText, AutoTokenizer
 
     trainer = Trainer(parse(options(tmp_path, 6)))
-    rows = [training_row(trainer.coder, make_report(seed, length=0.0, modes={"text": 1.0}), None) for seed in range(6)]
+    rows = [training_row(trainer.coder, text_report(seed, length=0.0), None) for seed in range(6)]
     batch = collate(rows, trainer.coder)
     with torch.no_grad():
         before = float(trainer.forward.loss(batch)[0])

@@ -17,6 +17,7 @@ from plugins.decoder.greedy import Greedy
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.records import Context, Diagram, Query
 from sgcad_core.specs import BehaviorSpec, RoadLayout
+from tests.mini.reports import text_report
 
 WEIGHTS = Path(__file__).parents[2] / "mini" / "weights"
 SEEDS = (60_000_001, 60_000_002)
@@ -74,7 +75,7 @@ def test_the_products_engine_and_the_trainers_decoder_agree(backbone: HfVision) 
 @pytest.mark.slow
 def test_a_speed_of_one_digit_ends_alike_in_both_engines(backbone: HfVision) -> None:
     """A decoder that goes by tokens may write more digits where one that goes by whole values may not."""
-    reports = (make_report(SEEDS[0] + i, length=0.2, modes={"text": 1.0}) for i in range(400))
+    reports = (text_report(SEEDS[0] + i, length=0.2) for i in range(400))
     slow = [r for r in reports if r.behavior and any(a["speed_mph"] == 5 for a in r.behavior.get("actors", ()))][:3]
     for report, (road, behavior) in zip(slow, answers_of(*load(WEIGHTS), slow), strict=True):
         ids = [leg["bearing"] for leg in road["legs"]]

@@ -72,7 +72,7 @@ class MiniLM:
         import torch
         from transformers import AutoModel, AutoTokenizer
 
-        from mini.precision import native_dtype
+        from plugins.precision import native_dtype
 
         folder = minilm_folder()
         check_digest(folder / "model.safetensors", MINILM_SHA256)

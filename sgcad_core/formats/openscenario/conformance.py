@@ -18,12 +18,13 @@ from sgcad_core.formats.openscenario.actions.lateral import LATERAL
 from sgcad_core.formats.openscenario.actions.routing import ROUTING
 from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
 from sgcad_core.formats.openscenario.conditions import BY_ENTITY, BY_VALUE
+from sgcad_core.formats.openscenario.events import Handover
 from sgcad_core.formats.openscenario.families import Family
 from sgcad_core.formats.openscenario.positions import POSITIONS
 from sgcad_core.formats.openscenario.shapes import SHAPES
 from sgcad_core.formats.openscenario.variation import STOCHASTIC
 from sgcad_core.formats.openscenario.writer import write_xosc
-from sgcad_core.records import ActorInfo, Trajectory
+from sgcad_core.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.specs import BehaviorSpec
 
 FAMILIES: dict[str, tuple[Family[Any], str]] = {
@@ -63,6 +64,13 @@ of our own the same are faults.
 """
 
 
+_ROAD = """<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1"><planView>
+<geometry s="0" x="-20" y="2" hdg="0" length="100"><line/></geometry></planView><lanes><laneSection s="0">
+<center><lane id="0" type="none"/></center><right><lane id="-1" type="driving">
+<width sOffset="0" a="4" b="0" c="0" d="0"/></lane></right></laneSection></lanes></road></OpenDRIVE>"""
+"""A road under the first of the actors that are written to see what is written."""
+
+
 def page() -> str:
     """The page as text."""
     written, parts = written_elements(), [_HEAD]
@@ -91,7 +99,7 @@ def _in_schema(holder: str) -> set[str]:
 
 
 def written_elements() -> set[str]:
-    """Names of all elements in a file of ours."""
+    """Names of all elements in files of ours, in both encodings."""
     actors = [
         ActorInfo(id=f"V{i}", type=kind, length_m=4.0, width_m=1.8, maneuver="straight")
         for i, kind in enumerate(_KINDS, 1)
@@ -103,5 +111,6 @@ def written_elements() -> set[str]:
     ]
     spoken = {"id": "V1", "kind": "car", "road": "S", "direction": "forward", "maneuver": "straight"}
     behavior = BehaviorSpec.model_validate({"actors": [spoken], "light": "dark", "weather": "rain", "surface": "wet"})
-    root = etree.fromstring(write_xosc(actors, motions, behavior).encode())
-    return {str(e.tag) for e in root.iter() if isinstance(e.tag, str)}
+    touch = ObservedContact(actor="V1", other="V2", actor_area="front", other_area="back", t_s=1.0)
+    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, Handover(touch, _ROAD))]
+    return {str(e.tag) for text in texts for e in etree.fromstring(text.encode()).iter() if isinstance(e.tag, str)}

@@ -11,6 +11,7 @@ import re
 import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -19,13 +20,16 @@ from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
+from sgcad_core.formats.openscenario.events import EventActor, Handover, event_actors
+from sgcad_core.formats.openscenario.parts import Happening, at_once, at_time, group, number, positions
 from sgcad_core.formats.openscenario.vertices import vertex_rows
-from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.records import ActorInfo, Floats, Trajectory
+from sgcad_core.records import ActorInfo, Trajectory
 from sgcad_core.specs import BehaviorSpec
 
 Version = Literal["1.0", "1.1", "1.2", "1.3"]
 DEFAULT_VERSION: Version = "1.2"
+Encoding = Literal["timed", "events"]
+DEFAULT_ENCODING: Encoding = "timed"
 END = "EndTime"
 """The file's parameter for people who cut a scenario short: when it stops, seconds."""
 _WRITING = threading.Lock()
@@ -42,15 +46,19 @@ def write_xosc(
     road_file: str = "road.xodr",
     name: str = "crash",
     version: Version = DEFAULT_VERSION,
+    handover: Handover | None = None,
 ) -> str:
     """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
 
     What the file holds are the entities' origins, for vehicles the rear axle; trajectories are those of box centers.
     One trajectory an actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise. The versions
-    differ in names and in what surroundings they can tell; the motion is the same.
+    differ in names and in what surroundings they can tell; the motion is the same. With a `handover` the plan is told
+    as maneuver events instead (`events`): near the trajectories until the contact, free behind it.
     """
     moves = [_origin(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
+    told = [_Timed(*pair) for pair in zip(moves, reaches, strict=True)] if handover is None else None
+    parts = told or event_actors(moves, reaches, handover or Handover())
     with _WRITING:
         VersionBase().setVersion(minor=minor)
         scenario = xosc.Scenario(
@@ -58,7 +66,7 @@ def write_xosc(
             "SG-CADVLM",
             _parameters(moves),
             _entities(actors, minor),
-            _storyboard(moves, reaches, environment(behavior, minor)),
+            _storyboard(parts, environment(behavior, minor)),
             xosc.RoadNetwork(road_file),
             xosc.Catalog(),
             osc_minor_version=minor,
@@ -70,7 +78,7 @@ def write_xosc(
 
 
 def _parameters(moves: Sequence[Trajectory]) -> xosc.ParameterDeclarations:
-    end = _number(max(t.t_s[-1] for t in moves))
+    end = number(max(t.t_s[-1] for t in moves))
     declared = xosc.ParameterDeclarations()
     declared.add_parameter(xosc.Parameter(END, xosc.ParameterType.double, str(end)))
     return declared
@@ -102,67 +110,50 @@ def _entities(actors: Sequence[ActorInfo], minor: int) -> xosc.Entities:
     return entities
 
 
+@dataclass(frozen=True)
+class _Timed:
+    """One actor whose origin's whole motion is a timed polyline."""
+
+    move: Trajectory
+    ahead_m: float
+
+    @property
+    def first_mps(self) -> float:
+        return float(self.move.speed_mps[0])
+
+    def start(self) -> xosc.WorldPosition:
+        return positions(self.move, [0])[0]
+
+    def group(self) -> xosc.ManeuverGroup:
+        name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
+        path = xosc.Trajectory(f"{name}_path", False)
+        path.add_shape(xosc.Polyline([number(self.move.t_s[k]) for k in rows], positions(self.move, rows)))
+        absolute = xosc.ReferenceContext.absolute
+        follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, 1.0, 0.0)
+        event = Happening(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
+        return group(name, {f"{name}_maneuver": [event]})
+
+
 def _storyboard(
-    moves: Sequence[Trajectory], ahead_m: Sequence[float], surroundings: xosc.Environment | None
+    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None
 ) -> xosc.StoryBoard:
-    end = _at("end", f"${END}", xosc.Rule.greaterThan, "stop")
-    board = xosc.StoryBoard(_init(moves, surroundings), end)
-    act = xosc.Act("act", _at_once("start"))
-    for move, ahead in zip(moves, ahead_m, strict=True):
-        act.add_maneuver_group(_group(move, vertex_rows(move, ahead)))
+    end = at_time("end", f"${END}", xosc.Rule.greaterThan, "stop")
+    board = xosc.StoryBoard(_init(actors, surroundings), end)
+    act = xosc.Act("act", at_once("start"))
+    for actor in actors:
+        act.add_maneuver_group(actor.group())
     story = xosc.Story("crash", xosc.ParameterDeclarations())
     story.add_act(act)
     board.add_story(story)
     return board
 
 
-def _init(moves: Sequence[Trajectory], surroundings: xosc.Environment | None) -> xosc.Init:
+def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None) -> xosc.Init:
     init = xosc.Init()
     if surroundings:
         init.add_global_action(xosc.EnvironmentAction(surroundings))
-    at_once = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0.0)
-    for move in moves:
-        place = _position(move.x_m[0], move.y_m[0], wrap_angle(move.heading_rad[0]))
-        init.add_init_action(move.actor, xosc.TeleportAction(place))
-        init.add_init_action(move.actor, xosc.AbsoluteSpeedAction(_number(move.speed_mps[0]), at_once))
+    step = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0.0)
+    for actor in actors:
+        init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
+        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(number(actor.first_mps), step))
     return init
-
-
-def _group(move: Trajectory, rows: Sequence[int]) -> xosc.ManeuverGroup:
-    path = xosc.Trajectory(f"{move.actor}_path", False)
-    path.add_shape(xosc.Polyline([_number(move.t_s[k]) for k in rows], _positions(move, rows)))
-    follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, xosc.ReferenceContext.absolute, 1.0, 0.0)
-    before = VersionBase().isVersionEqLess(minor=1)
-    event = xosc.Event(f"{move.actor}_event", xosc.Priority.overwrite if before else xosc.Priority.override)
-    event.add_trigger(_at_once(f"{move.actor}_start"))
-    event.add_action(f"{move.actor}_follow", follow)
-    maneuver = xosc.Maneuver(f"{move.actor}_maneuver")
-    maneuver.add_event(event)
-    group = xosc.ManeuverGroup(f"{move.actor}_group")
-    group.add_actor(move.actor)
-    group.add_maneuver(maneuver)
-    return group
-
-
-def _at_once(name: str) -> xosc.ValueTrigger:
-    """From t = 0 on; version 1.0 has no "or equal"."""
-    if VersionBase().isVersion(minor=0):
-        return _at(name, -1.0, xosc.Rule.greaterThan, "start")
-    return _at(name, 0.0, xosc.Rule.greaterOrEqual, "start")
-
-
-def _at(name: str, time_s: float | str, rule: xosc.Rule, point: str) -> xosc.ValueTrigger:
-    condition = xosc.SimulationTimeCondition(time_s, rule)
-    return xosc.ValueTrigger(name, 0.0, xosc.ConditionEdge.none, condition, triggeringpoint=point)
-
-
-def _positions(move: Trajectory, rows: Sequence[int]) -> list[xosc.WorldPosition]:
-    return [_position(move.x_m[k], move.y_m[k], wrap_angle(move.heading_rad[k])) for k in rows]
-
-
-def _position(x_m: float, y_m: float, heading_rad: float | Floats) -> xosc.WorldPosition:
-    return xosc.WorldPosition(_number(x_m), _number(y_m), 0.0, _number(heading_rad, 8))
-
-
-def _number(value: float | Floats, digits: int = 6) -> float:
-    return round(float(value), digits) + 0.0  # never -0.0

@@ -94,3 +94,25 @@ def test_who_strikes_itself_strikes_another_in_the_next_answer():
     assert finding.holds == (
         Hold(items="contacts", at=1, either=tuple({"striker": (k,), "struck": v} for k, v in names.items())),
     )
+
+
+def same_lane(striker_area: str, struck_area: str) -> BehaviorSpec:
+    actors = tuple(CROSSING.actors[0].model_copy(update={"id": name}) for name in ("V1", "V2"))
+    contact = Contact.model_validate(
+        {"striker": "V1", "struck": "V2", "striker_area": striker_area, "struck_area": struck_area}
+    )
+    return BehaviorSpec(actors=actors, contacts=(contact,))
+
+
+def test_sides_that_meet_in_no_driving_give_way_to_those_that_the_report_allows() -> None:
+    told = same_lane("right", "back")
+    scenario = compile_scenario(told, crossroads(), sides=(("left", "back"), ("right", "left")))
+    assert scenario.declared is not None
+    assert (scenario.declared.striker_area, scenario.declared.struck_area) == ("right", "left")
+    assert scenario.notes[0].startswith("sides as told meet in no driving: right and left")
+    assert compile_scenario(told, crossroads()).declared == told.contacts[0]
+
+
+def test_sides_that_meet_as_told_stay() -> None:
+    told = same_lane("front", "back")
+    assert compile_scenario(told, crossroads(), sides=(("right", "left"),)).declared == told.contacts[0]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.reading import KINDS, text_of
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 from sgcad_core.narrative.text import MOST_READ, sentences
 
 BEARABLE_S = 10.0

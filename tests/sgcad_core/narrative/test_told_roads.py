@@ -2,7 +2,7 @@
 
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 from sgcad_core.narrative.told_roads import told_roads
 from sgcad_core.roads.layout import road_spec
 

@@ -5,7 +5,7 @@ import pytest
 from plugins.road_writer.template import Template
 from sgcad_core.errors import Refused
 from sgcad_core.language import of_role
-from sgcad_core.narrative.roads import road_facts
+from sgcad_core.narrative.reading import road_facts
 from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context
 

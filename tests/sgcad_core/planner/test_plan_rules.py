@@ -11,6 +11,7 @@ from crash_scenes import network
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
+from sgcad_core.planner.choices import SLIDES
 from sgcad_core.records import Trajectory
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
 
@@ -110,22 +111,22 @@ def test_declared_sides_touch_first(layout, first, second, declared):
 
 @pytest.mark.parametrize("own", ["front", "back", "left", "right"])
 @pytest.mark.parametrize("other", ["front", "back", "left", "right"])
-def test_two_sides_of_crossing_vehicles_meet_or_are_said_never_to(own, other):
+def test_any_two_sides_can_be_brought_together_where_two_cross(own, other):
     _, made = planned(
         "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "E"), contacts=(f"V1 {own} V2 {other}",)
     )
-    assert made.realised or any("cannot touch as declared in any driving" in note for note in made.notes)
-    if "front" in (own, other) and (own, other) not in (("back", "front"), ("front", "back")) and own != "left":
-        assert made.realised or (own, other) == ("front", "right"), made.notes
+    assert made.realised, (made.contact, made.notes)
+    assert made.oddity >= 2 or not any(SLIDES in note for note in made.notes)
 
 
 def test_sides_that_no_driving_brings_together_are_named_with_those_that_would() -> None:
-    _, made = planned(
-        "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "E"), contacts=("V1 back V2 back",)
-    )
+    actors = (actor("V1", "straight", "S"), actor("V2", "straight", "E"))
+    behavior = BehaviorSpec(actors=actors, contacts=(contact("V1 back V2 back"),))
+    made = plan(behavior, network("four_leg"), by_force=False)
     assert not made.realised
     assert made.oddity == 0
     assert any("as they drive, the right of V1 meets the front of V2" in note for note in made.notes)
+    assert any(SLIDES in note for note in plan(behavior, network("four_leg")).notes)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +146,7 @@ def test_nobody_turns_its_box_unless_control_was_lost() -> None:
         actors=(actor("V1", "straight", "S"), actor("V2", "straight", "S")), contacts=(contact("V1 right V2 back"),)
     )
     graph = network("straight")
-    assert not plan(behavior, graph).realised
+    assert not plan(behavior, graph, by_force=False).realised
     made = plan(behavior, graph, may_skid=True)
     assert made.realised
     assert "V1 skids before contact" in made.notes
@@ -245,7 +246,7 @@ def test_both_come_to_rest_within_five_seconds():
         contacts=("V1 front V2 left",),
     )  # fmt: skip
     for t in made.trajectories:
-        assert t.speed_mps[-1] < 0.1
+        assert t.speed_mps[-3:].max() == 0
         assert t.t_s[-1] == pytest.approx(made.contact.t_s + 5, abs=0.06)
 
 

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner.boxes import apart, mean, touch_points
+from sgcad_core.planner.ground import Drag, slow
 from sgcad_core.planner.hitch import hitched
 from sgcad_core.planner.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
-from sgcad_core.planner.wreck import Drag, Mover, Wreck
+from sgcad_core.planner.wreck import Mover, Wreck
 
 CAR = (4.7, 1.8)
 DRAG = Drag(4.5, 7.0)
@@ -93,6 +94,30 @@ def test_two_that_meet_face_to_face_touch_in_the_middle() -> None:
     a, b = body((0.0, 0.0, 0.0), CAR, 1.0), body((4.69, 0.0, math.pi), CAR, 1.0)
     assert mean(touch_points(a, b)) == pytest.approx((2.345, 0.0), abs=0.01)
     assert apart(a, b).normal == pytest.approx((1.0, 0.0))
+
+
+# ------------------------------------------------------------------ the ground
+@settings(max_examples=60, deadline=None)
+@given(number, number, st.floats(-4, 4), st.floats(0.5, 8), st.floats(0.5, 8))
+def test_whatever_slides_is_at_rest_in_the_time_that_is_left(vx, vy, spin, along, across):
+    """Friction of any size: where the ground alone would not do it in four seconds, it is made to, but for a creep."""
+    one, step, energies = body((0.0, 0.0, 0.3), CAR, 1500.0), 0.01, [math.inf]
+    one.vx, one.vy, one.spin = vx, vy, spin
+    for k in range(420):
+        slow(one, Drag(along, across), step, max(4.0 - k * step, 0.1))
+        energies.append(one.energy)
+        assert energies[-1] <= energies[-2]
+    assert one.speed < 0.1
+    assert abs(one.spin) < 0.05
+
+
+def test_a_body_stops_as_soon_as_its_friction_says() -> None:
+    one = body((0.0, 0.0, 0.0), CAR, 1500.0)
+    one.vx = 10.0
+    for _ in range(100):
+        slow(one, Drag(5.0, 7.0), 0.01, 4.0)
+    assert one.vx == pytest.approx(5.0)
+    assert one.vy == one.spin == 0
 
 
 # ------------------------------------------------------------------ all of it

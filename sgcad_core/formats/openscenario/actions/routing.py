@@ -51,7 +51,8 @@ def _follow(node: Node) -> Begin:
 def _untimed(body: Body, course: Course) -> Running:
     """At the own speed; who drives backwards faces against the line unless headings are stated."""
     first = course.headings[0] if course.headings is not None else None
-    against = first is not None and math.cos(first - course.pose.heading_rad) < 0
+    ahead_x, ahead_y = course.points[1] - course.points[0]
+    against = first is not None and math.cos(first - math.atan2(ahead_y, ahead_x)) < 0
     course.reverse = body.speed_mps < 0 and (first is None or against)
     body.course = course
     body.pose = body.seated(course.pose)

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput, SgcadError
-from sgcad_core.formats.opendrive.check import lane_index
+from sgcad_core.formats.opendrive.index import lane_index
 from sgcad_core.formats.openscenario.player import perform, play
 from sgcad_core.formats.openscenario.read import MAX_VALUE_CHARACTERS, Book, read_root
 from sgcad_core.formats.openscenario.roads import XodrRoads
