@@ -53,8 +53,8 @@ def test_each_fault_is_counted_once_and_named(tmp_path: Path) -> None:
     assert (f.rest, f.deep) == (1, 1)
     assert (f.reached, f.stated) == (2, 3)
     text = table(tmp_path, ["template"], cases=True)
-    assert "template: a V1 (straight): yaw rate 10.0 of 1.5 rad/s; slip angle 28.6 of 10 degrees" in text
-    assert "template: b: V1 and V2 overlap by 2.99 m at rest" in text
+    assert "template: a V1 (straight): yaw rate 10.0 of 1.5 rad/s; slip angle 61.8 of 10 degrees" in text
+    assert "template: b: V1 and V2 overlap by 1.80 m at rest" in text
     assert "template: c V1: told 8.9 m/s, drives up to 12.0" in text
 
 
