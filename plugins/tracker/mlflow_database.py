@@ -24,7 +24,7 @@ def make_database(file: Path) -> None:
         _usable(file)
         return
     file.parent.mkdir(parents=True, exist_ok=True)
-    with _alone(file.parent):
+    with alone(file.parent):
         if not file.exists():
             partial = file.with_name(f".{file.name}.partial")
             _remove(partial)
@@ -41,7 +41,7 @@ def _usable(file: Path) -> None:
 
 
 @contextmanager
-def _alone(folder: Path) -> Iterator[None]:
+def alone(folder: Path) -> Iterator[None]:
     """Hold the folder's lock, which ends with its process and leaves no file."""
     held = os.open(folder, os.O_RDONLY)
     try:

@@ -19,7 +19,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-from plugins.tracker.mlflow_database import make_database
+from plugins.tracker.mlflow_database import alone, make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
@@ -112,7 +112,9 @@ class Store:
         """The parent run of a config with these parameters; found again when a batch is resumed."""
         key = hashlib.sha256(json.dumps([config, params], sort_keys=True).encode()).hexdigest()[:16]
         if key not in self.parents:
-            self.parents[key] = Parent(self, self._found_or_made(config, key, params))
+            _ = self.experiment_id  # made before the lock is taken, which making a database takes as well
+            with alone(self._file.parent) if self._file else contextlib.nullcontext():
+                self.parents[key] = Parent(self, self._found_or_made(config, key, params))
         return self.parents[key]
 
     def _found_or_made(self, config: str, key: str, params: Mapping[str, str]) -> str:

@@ -283,7 +283,7 @@ def test_an_unknown_device_is_a_config_error(backbones: dict[str, HfVision]) -> 
 def test_native_is_the_dtype_that_the_device_multiplies_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dtype: torch.dtype
 ) -> None:
-    monkeypatch.setattr("mini.precision.native_dtype", lambda device: dtype if device == "cpu" else None)
+    monkeypatch.setattr("plugins.precision.native_dtype", lambda device: dtype if device == "cpu" else None)
     folder = str(folders.save("qwen2_5_vl", tmp_path))
     backbone = HfVision(model=folder, device="cpu", dtype="native", max_new_tokens=200)
     found = backbone.generate(folders.context(), QUERY, Greedy())
