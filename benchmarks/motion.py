@@ -32,6 +32,8 @@ from sgcad_core.records import Trajectory
 
 MPH = 0.44704
 DEEP_M = 0.05
+STILL_MPS = 0.2
+"""The file's last centimetres are driven evenly to its end (vertices nearer than 0.11 m are not written)."""
 HEAD = (
     "| config | cases | with motion | declared contact realised | vehicles over friction | over {yaw:g} rad/s | "
     "slip over {slip:g} degrees | overlap at rest | deeper than {deep:g} cm | still moving at the end | "
@@ -122,7 +124,7 @@ def _overlaps(case: str, motions: tuple[Trajectory, ...], sizes: dict[str, Size]
     deep, pair = deepest(motions, sizes)
     figures.rest += rest > 0
     figures.deep += deep > DEEP_M
-    moving = [m.actor for m in motions if m.actor in first_touches(motions, sizes) and m.speed_mps[-1] > 0.1]
+    moving = [m.actor for m in motions if m.actor in first_touches(motions, sizes) and m.speed_mps[-1] > STILL_MPS]
     figures.unrested += bool(moving)
     if rest > 0:
         figures.lines.append(f"{case}: {who} overlap by {rest:.2f} m at rest")

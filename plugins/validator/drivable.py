@@ -11,31 +11,41 @@ from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 from sgcad_core.interfaces import Validator
-from sgcad_core.metrics.driving import WHEELED, driven, first_touches
+from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, size_m
 
 
 class Drivable(Validator):
-    """Doubts on vehicles that leave the limits of driving before anything touches them."""
+    """Doubts on vehicles that leave the limits of driving before anything touches them, and on boxes in each other."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "1"
     odd: Literal["doubt", "note"] = "doubt"
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """One a vehicle, in the behavior's order; nothing where a loss of control is told or nothing was planned."""
+        """One a vehicle, in the behavior's order, where no loss of control is told; one for an overlap at rest."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or not artifact.planned:
             return []
+        rest = self._at_rest(artifact, artifact.behavior)
         if tells_lost_control(evidence.report.reading.narrative):
-            return []
+            return rest
         remedy = "choose roads, maneuvers, speeds and sides that steering alone brings about"
         return [
             Finding(source="drivable", severity=self.odd, what="nobody can drive so before the contact",
                     where=f"actor {actor.id}", value="; ".join(over), remedy=remedy)
             for actor, over in _excesses(artifact, artifact.behavior)
-        ]  # fmt: skip
+        ] + rest  # fmt: skip
+
+    def _at_rest(self, scenario: Scenario, behavior: BehaviorSpec) -> list[Finding]:
+        """At most one: boxes that lie in each other where all have come to rest."""
+        depth, pair = deepest(scenario.planned, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
+        what, remedy = "two boxes overlap at rest", "let them push each other apart"
+        found = Finding(
+            source="drivable", severity=self.odd, what=what, where=pair, value=f"{depth:.2f} m", remedy=remedy
+        )
+        return [found] if depth > 0 else []
 
 
 def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Actor, tuple[str, ...]]]:

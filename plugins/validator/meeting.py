@@ -24,8 +24,6 @@ from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 
-"""Somebody did not drive in the ordinary way."""
-
 
 class Meeting(Validator):
     """Doubts on contacts that only skids, spins and made-up ways bring about."""

@@ -47,13 +47,11 @@ class Driven(Record):
 
 
 def driven(motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False) -> Driven:
-    """The peaks up to the sample `until` (the first touch; default: to the end).
+    """The peaks before the sample `until` (the first touch, which falls between that sample and the one before).
 
     `backing`: the box is meant to travel against its heading, slip is told from that.
     """
-    x, y, heading = (
-        np.asarray(c, dtype=float)[: until and until + 1] for c in (motion.x_m, motion.y_m, motion.heading_rad)
-    )
+    x, y, heading = (np.asarray(c, dtype=float)[:until] for c in (motion.x_m, motion.y_m, motion.heading_rad))
     if len(x) < 3:
         return Driven(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
     heading = np.unwrap(heading)

@@ -67,7 +67,7 @@ def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area 
         flank = (
             bent
             and mine
-            and "/" in mine
+            and mine.count("/") == 1
             and yours in ("front", None)
             and out.maneuvers[me] not in ("stopped", "parked")
         )

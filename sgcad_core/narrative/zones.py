@@ -15,6 +15,7 @@ Zone = str
 
 _POSSESSIVE = rule("zones.possessive")
 _FLANKPARTS = rule("zones.flankparts")
+_CORNER = rule("zones.corner")
 
 
 _ITS_AREA = rule("zones.its_area")
@@ -23,7 +24,8 @@ _ITS_AREA = rule("zones.its_area")
 def area_of(words: str) -> Zone | None:
     """What an area phrase means: "left door" -> "left", "left front" -> "front/left"; None if it names no side.
 
-    A corner keeps both: the end it belongs to and the flank, since reports use it for either.
+    A corner keeps both: the end it belongs to and the flank, since reports use it for either; both flanks where it is
+    not told which corner.
     """
     text = words.lower().replace("-", " ")
     flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
@@ -31,6 +33,8 @@ def area_of(words: str) -> Zone | None:
     back = bool(rule("zones.back").search(text))
     if flank and (front or back) and not _FLANKPARTS.search(text):
         return f"front/{flank}" if front else f"back/{flank}"
+    if _CORNER.search(text) and (front or back) and not flank:
+        return "front/left/right" if front else "back/left/right"
     return flank or ("front" if front else "back" if back else None)
 
 

@@ -56,11 +56,9 @@ def radius(a: Body) -> float:
 
 
 def _corners(a: Body) -> list[Point]:
-    c, s, half, w = math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
-    return [
-        (a.x + i * half * c - j * w * s, a.y + i * half * s + j * w * c)
-        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))
-    ]
+    lc, ls = a.size[0] / 2 * math.cos(a.heading), a.size[0] / 2 * math.sin(a.heading)
+    wc, ws = a.size[1] / 2 * math.cos(a.heading), a.size[1] / 2 * math.sin(a.heading)
+    return [(a.x + i * lc - j * ws, a.y + i * ls + j * wc) for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
 
 
 def _holds(a: Body, p: Point) -> bool:

@@ -79,6 +79,8 @@ def _struck_by(
     scene: Scene, replay: Motion, way: Option, partner: str, sides: tuple[Area, tuple[Area, Area] | None]
 ) -> bool:
     motion = in_path_of(way, replay, sides[0]) if way.role.actor.kind == "object" else way.motion
+    if not motion.drivable:
+        return False
     found = meet(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
     if found is None or found.cost > _OUTSIDE:
         return False

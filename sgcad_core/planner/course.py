@@ -14,6 +14,7 @@ import numpy as np
 
 from sgcad_core.formats.sumo.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
 from sgcad_core.specs import Actor
@@ -82,8 +83,11 @@ class _Piece(NamedTuple):
     is_crossing: bool
 
 
-def find_course(graph: LaneGraph, actor: Actor) -> Course:
-    """The line of one actor. Raises InvalidOutput for a road id that the network does not have."""
+def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS2) -> Course:
+    """The line of one actor, smooth for a sideways acceleration.
+
+    Raises InvalidOutput for a road id that the network does not have.
+    """
     route = find_route(graph, actor)
     notes = list(route.notes)
     lanes, links = _lane_chain(graph, route, actor, notes)
@@ -93,7 +97,8 @@ def find_course(graph: LaneGraph, actor: Actor) -> Course:
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
     lane = lanes[route.start]
     usual = actor.speed_mph * _MPH if actor.speed_mph else lane.speed_mps
-    return _measured(graph, route, lane, pieces, (tuple(notes), min(usual, _SMOOTH_MPS)))
+    smooth = min(usual, _SMOOTH_MPS) * math.sqrt(LATERAL_MPS2 / gentle_mps2)
+    return _measured(graph, route, lane, pieces, (tuple(notes), smooth))
 
 
 # ------------------------------------------------------------------ lanes

@@ -19,7 +19,7 @@ from sgcad_core.specs import Area
 
 Ints = NDArray[np.int_]
 
-DEPTH_M = 0.011
+DEPTH_M = 0.016
 """How deep the boxes overlap at the first common sample: enough to be seen, less than `wreck.SEEN_M`, so that what
 follows from the touch begins behind that sample."""
 _HALVINGS = 10

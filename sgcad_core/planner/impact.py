@@ -119,6 +119,13 @@ def collide(first: Body, second: Body, at: Point, normal: Point, restitution: fl
     return True
 
 
+def hold(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> None:
+    """Slow the parting of two at a point along a normal (from first to second) by so much: they are hooked together."""
+    size = by_mps / _through(compliance(first, second, at), normal, normal)
+    first.push(normal[0] * size, normal[1] * size, *at)
+    second.push(-normal[0] * size, -normal[1] * size, *at)
+
+
 def _impulse(first: Body, second: Body, at: Point, normal: Point, give: Matrix, restitution: float) -> Point:
     """On the second body: what stops all sliding, within the cone of friction."""
     (ax, ay), (bx, by) = first.velocity_at(*at), second.velocity_at(*at)

@@ -24,7 +24,7 @@ WINDOW_S = (-6.0, 4.5)
 """Own time in which an encounter is looked for."""
 LATERAL_MPS2 = 3.0
 """Sideways in ordinary driving, on a road that allows it."""
-HARD_MPS2 = 5.0
+HARD_MPS2 = 4.5
 """Sideways where a driver swerves, or drives a bend at a speed that the report tells."""
 ACCELERATION_MPS2 = 2.2
 BRAKING_MPS2 = 3.0
@@ -32,9 +32,10 @@ YAW_RADPS = 1.1
 """Planned yaw rate at most: under the 1.5 rad/s that count."""
 _STANDING_MPS = 5.0
 _CRAWL_MPS = 1.0
+_ABOUT = 0.98
 _CURVE_PER_M = 0.02
 """A road that bends more is a turn, which one takes as slowly as one usually takes turns."""
-_SHARE = {"lateral": 0.5, "hard": 0.6, "speeding": 0.25, "braking": 0.45}
+_SHARE = {"lateral": 0.35, "hard": 0.5, "speeding": 0.25, "braking": 0.4}
 """Of the friction that a driver uses; the rest is the reserve for bends that begin and end."""
 
 
@@ -61,6 +62,11 @@ class Pace:
     def within(self, usual_mps2: float, use: str) -> float:
         """A usual acceleration, or as much of it as the surface allows."""
         return min(usual_mps2, _SHARE[use] * self.grip_mps2)
+
+
+def gentle_mps2(grip_mps2: float) -> float:
+    """Sideways acceleration of ordinary driving on a surface of some grip."""
+    return Pace(0.0, grip_mps2=grip_mps2).lateral_mps2
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +103,14 @@ class Motion:
     def time_at(self, station_m: float) -> float:
         """Own time at which a station is passed."""
         return float(np.interp(station_m, self.station_m, self.time_s))
+
+    def seen_at(self, speed_mps: float, before_s: float) -> float:
+        """The last own time up to a given one at which it drives about a speed or more; -inf if never."""
+        axle = self.axle or self.path
+        along = np.interp(self.station_m, axle.s_m, axle.lengths())
+        speed = np.diff(along) / np.maximum(np.diff(self.time_s), 1e-9)
+        fast = np.flatnonzero((speed > _ABOUT * speed_mps) & (self.time_s[1:] <= before_s))
+        return float(self.time_s[fast[-1]]) if len(fast) else -math.inf
 
     def penalties(self, time_s: ArrayLike) -> Floats:
         """How ill an encounter at own times fits the maneuver and the place."""

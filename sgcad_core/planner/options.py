@@ -32,26 +32,25 @@ from sgcad_core.planner.choices import (
     stand_offs,
     steps_aside,
 )
+from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
-from sgcad_core.planner.place import STOP_LINE_M, TURNING
+from sgcad_core.planner.place import STOP_LINE_M
 from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
 from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
 from sgcad_core.specs import Area
 
-_ZONE_M = 12.0
 _SWING_ASIDE_M = 5.0
 """Who steers aside does so within this much of its line, if need be slowly."""
-_LEAST_SWING = 1.2
-"""Radius of who steers aside, over the tightest that the vehicle can do."""
 _VERGE_M = 3.0
 """Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
 _STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
 """Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
+_PLAIN = 4
+_LEAST_SWING = 1.2
+"""Radius of who steers aside, over the tightest that the vehicle can do."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
-_DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
-             "departing_road_left", "departing_road_right"}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +114,11 @@ def aimed(role: Role) -> list[Option]:
     return _sorted(role, product(drifts(role, fine=False), pacings(role), angles))
 
 
+def plainly(role: Role) -> list[Option]:
+    """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
+    return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
+
+
 def forced(role: Role) -> list[Option]:
     """A few ways that lead through the very meeting place with the wanted side ahead, however odd."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
@@ -152,7 +156,7 @@ def driving(option: Option) -> Motion:
     drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
-    penalty = _misfit(role, path, drift, begins)
+    penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
@@ -189,7 +193,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
     ahead, left = offset(line, turned, place.station_m)
     off = place.aside_m - left
     length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
-    end = place.station_m - ahead
+    end = place.station_m - ahead + place.ahead_m
     begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
     return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
 
@@ -199,7 +203,7 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = _outside(path.s_m, *_waiting_zone(role), 0.03)
+    penalty = outside(path.s_m, *waiting_zone(role), 0.03)
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
 
 
@@ -272,28 +276,3 @@ def _pace(role: Role, option: Option) -> Pace:
     if role.actor.maneuver == "slowing":
         return replace(pace, slow_at_m=role.place.station_m - 3.0, slow_mps=max(0.35 * speed, 1.5))
     return pace
-
-
-# ------------------------------------------------------------------ how ill a place fits
-def _misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
-    place = role.place.station_m
-    penalty = _outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
-    turned = path.heading_rad - np.interp(begins_m - 5.0, path.s_m, path.heading_rad)
-    maneuver = role.actor.maneuver
-    if maneuver in TURNING:
-        way = -1.0 if maneuver == "turn_right" else 1.0
-        penalty = penalty + 2.0 * (way * turned < math.radians(16))
-    elif maneuver == "straight":
-        penalty = penalty + 2.0 * (np.abs(turned) > math.radians(28))
-    if maneuver in _DRIFTING and drift.left_m:
-        penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
-    return penalty
-
-
-def _outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
-    return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
-
-
-def _waiting_zone(role: Role) -> tuple[float, float]:
-    line, place = line_m(role), role.place.station_m
-    return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

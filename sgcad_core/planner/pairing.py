@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from sgcad_core.planner.encounter import Meeting, meet
 from sgcad_core.planner.options import Option
-from sgcad_core.specs import Area
+from sgcad_core.specs import Area, Contact
 
 _GOOD = 1.95
 """What an encounter may cost in all before other kinds of driving are tried: less than a maneuver not shown."""
@@ -76,3 +76,12 @@ def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iter
     ranks = ((i, j) for i in range(min(len(first), most)) for j in range(min(len(second), most)))
     for i, j in nsmallest(most, ranks, key=lambda pair: ((pair[0] + 1) * (pair[1] + 1), pair)):
         yield first[i], second[j]
+
+
+def cannot(contact: Contact, found: Encounter | None) -> str:
+    """That a pair cannot touch as declared, and what would come of it as both drive."""
+    said = f"{contact.striker} and {contact.struck} cannot touch as declared in any driving"
+    if found is None:
+        return f"{said}: their ways never meet"
+    sides = found.meeting.sides
+    return f"{said}; as they drive, the {sides[0]} of {contact.striker} meets the {sides[1]} of {contact.struck}"

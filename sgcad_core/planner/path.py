@@ -18,7 +18,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 
 STEP_M = 0.5
 TURN_BACK_M = 5.6
-"""Of the rear axle in a turn back: a car's turning circle of 11 m (SAE J695, cars of 1990-2007: 10.5 to 12 m)."""
+"""Of the rear axle in a turn back: what a car with a turning circle of about 11 m between curbs can do."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
 _EXTENSION_STEP_M = 4.0
@@ -28,6 +28,7 @@ _TURN_HALF_M = 20.0
 _TURN_RAD = math.radians(25)
 """Over twice that length: less is no turn but a shift from lane to lane across a junction."""
 _WINDOWS_M = (2.0, 3.0, 4.5, 6.0, 9.0, 13.0, 18.0, 25.0)
+_EVEN_M = 6.0
 _TAPER = 0.35
 """Metres by which a smoothing window narrows per metre of distance."""
 
@@ -41,22 +42,26 @@ class Path:
     heading_rad: Floats
 
     def poses(self, s_m: ArrayLike) -> Floats:
-        """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between the points."""
+        """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between points."""
         at = np.clip(np.asarray(s_m, dtype=float), self.s_m[0], self.s_m[-1])
         i = np.clip(np.searchsorted(self.s_m, at) - 1, 0, len(self.s_m) - 2)
         step = self.s_m[i + 1] - self.s_m[i]
         t = (at - self.s_m[i]) / step
         t2, t3 = t * t, t * t * t
-        p, m = self.points, self._slopes
+        p, m = self._columns, self._slopes
         ends = (2 * t3 - 3 * t2 + 1)[:, None] * p[i] + (3 * t2 - 2 * t3)[:, None] * p[i + 1]
-        slopes = (t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1]
-        heading = self.heading_rad[i] + t * (self.heading_rad[i + 1] - self.heading_rad[i])
-        return np.column_stack((ends + step[:, None] * slopes, heading))
+        bent: Floats = ends + step[:, None] * ((t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1])
+        return bent
+
+    @cached_property
+    def _columns(self) -> Floats:
+        """(n, 3) x, y, heading at the points."""
+        return np.column_stack((self.points, self.heading_rad))
 
     @cached_property
     def _slopes(self) -> Floats:
-        """(n, 2) change of place per metre of station."""
-        slopes: Floats = np.gradient(self.points, self.s_m, axis=0)
+        """(n, 3) their change per metre of station."""
+        slopes: Floats = np.gradient(self._columns, self.s_m, axis=0)
         return slopes
 
     def lengths(self) -> Floats:
@@ -129,13 +134,12 @@ def draw(points: Floats, smooth_m: float = 3.0, speed_mps: float = 0.0) -> Path:
 def _spread(points: Floats, speed_mps: float, least_m: float) -> Floats:
     """(n,) half windows, in points, that turn a shift of a lane into a gentle one: narrow at turns, wide elsewhere.
 
-    A moving mean over 2 h, taken twice, bends a step of width d by d / (4 h^2): 3.6 m at 3 m/s2 need
+    A moving mean over 2 h, taken more than once, bends a step of width d by d / (4 h^2) at most: 3.6 m at 3 m/s2 need
     h = 0.55 s * speed.
     """
     turning = np.abs(swing(_tangents(points), arc_lengths(points))) >= _TURN_RAD
     free_m = _steps_to(turning) * STEP_M
-    half: Floats = np.minimum(least_m + _TAPER * free_m, max(0.55 * speed_mps, least_m)) / STEP_M
-    return half
+    return _even(np.minimum(least_m + _TAPER * free_m, max(0.55 * speed_mps, least_m)) / STEP_M)
 
 
 def swing(angle: Floats, at: Floats) -> Floats:
@@ -156,8 +160,16 @@ def tamed(line: Path, most_per_m: float) -> Path:
         if not over.any():
             break
         half = np.clip(window_m - _TAPER * np.maximum(_steps_to(over) * STEP_M - window_m, 0.0), 0.0, None)
-        points = _rounded(points, half / STEP_M)
+        points = _rounded(points, _even(half / STEP_M))
     return line if points is line.points else line.displaced(points - line.points)
+
+
+def _even(half: Floats) -> Floats:
+    """Windows without corners: where a window changes abruptly, so does the direction of the line."""
+    n = round(_EVEN_M / STEP_M)
+    for _ in range(2):
+        half = np.convolve(np.pad(half, n, mode="edge"), np.ones(2 * n + 1) / (2 * n + 1), mode="valid")
+    return half
 
 
 def _steps_to(marked: NDArray[np.bool_]) -> Floats:
@@ -221,7 +233,7 @@ def end_heading(points: Floats, *, at_end: bool, over_m: float = 8.0) -> float:
 
 
 def _rounded(points: Floats, half: Floats) -> Floats:
-    """Moving mean over `half` points to either side, twice; the ends stay (the window narrows towards them).
+    """Moving mean over `half` points to either side, three times; the ends stay (the window narrows towards them).
 
     Windows may be broken numbers, so that one that varies along the line leaves no steps in it.
     """
@@ -231,7 +243,7 @@ def _rounded(points: Floats, half: Floats) -> Floats:
     whole = reach.astype(int)
     part = (reach - whole)[:, None]
     low, high = np.maximum(index - whole - 1, 0), np.minimum(index + whole + 1, n - 1)
-    for _ in range(2):
+    for _ in range(3):
         total = np.vstack((np.zeros(2), np.cumsum(points, axis=0)))
         inner = total[index + whole + 1] - total[index - whole]
         points = (inner + part * (points[low] + points[high])) / (2 * reach + 1)[:, None]

@@ -1,7 +1,7 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
 The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
-lane, with a swerve or a skid; what was changed stands in the plan's notes. Boxes that slide against their way without
+lane, with a swerve; what was changed stands in the plan's notes. Boxes that slide against their way without
 a told loss of control are the last resort: noted, and doubted by the validator `drivable`.
 """
 
@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import LEAD_S, STEP_S
-from sgcad_core.planner.options import Option, aimed, forced, options, slid, spun
-from sgcad_core.planner.pairing import Encounter, Ways, search
+from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
+from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
-from sgcad_core.planner.role import Role, speed_there
+from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
@@ -27,11 +28,14 @@ from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
-_TRIES = (16, 26, 24, 45)
+_TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
 _LAST_TRIES = 90
 """Where boxes slide against their way, since nothing that can be driven brings the sides together."""
+_ONE_TURNS = 24
+"""Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
+_SPEED_SHOWS_S = 0.3
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 
@@ -54,12 +58,15 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) -> Plan:
+def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by_force: bool = True) -> Plan:
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
+    Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
-    cast = _Cast(behavior, {a.id: _course(graph, a) for a in behavior.actors}, tractors(behavior), may_skid)
+    gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
+    courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
+    cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -78,8 +85,8 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False) ->
     )  # fmt: skip
 
 
-def _course(graph: LaneGraph, actor: Actor) -> Course:
-    course = find_course(graph, actor)
+def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
+    course = find_course(graph, actor, gentle)
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
         return course.reversed()
     keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
@@ -88,6 +95,14 @@ def _course(graph: LaneGraph, actor: Actor) -> Course:
 
 def _facing(role: Role, other: Role) -> Role:
     return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
+
+
+def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
+    """How long before the contact the clock must begin to show a told speed; 0 where it is never driven."""
+    if motion.standing or role.actor.speed_mph is None:
+        return 0.0
+    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
+    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0
 
 
 def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool:
@@ -105,6 +120,7 @@ class _Cast:
     courses: dict[str, Course]
     tractors: dict[str, str]
     may_skid: bool = False
+    by_force: bool = True
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -129,19 +145,25 @@ class _Cast:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
         a, b = self._roles(contact)
         wanted = (contact.striker_area, contact.struck_area)
-        found = search(self._stages(a, b), wanted) or search([self._stage(a, b, slid, _LAST_TRIES)], wanted)
+        found = search(self._stages(a, b), wanted)
+        if found is None and self.by_force:
+            found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
         if found is None:
-            self.notes.append(f"{contact.striker} and {contact.struck} cannot touch as declared")
-            found = search([self._stage(a, b, forced, _TRIES[0])], None)
+            found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
+            self.notes.append(cannot(contact, found))
         return None if found is None else self._staged(found)
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, then with the wanted sides turned to each other, then by force."""
-        for ways, tries in zip((options, aimed, forced, spun), _TRIES, strict=True):
-            yield self._stage(a, b, ways, tries)
-
-    def _stage(self, a: Role, b: Role, ways: Callable[[Role], list[Option]], tries: int) -> tuple[Ways, int]:
-        return (self._options(a, b, ways), self._options(b, a, ways)), tries
+        """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
+        ways = {f: (self._options(a, b, f), self._options(b, a, f)) for f in (options, aimed)}
+        yield ways[options], _TRIES[0]
+        yield ways[aimed], _TRIES[1]
+        plain = self._options(a, b, plainly), self._options(b, a, plainly)
+        yield (plain[0], ways[aimed][1]), _ONE_TURNS
+        yield (ways[aimed][0], plain[1]), _ONE_TURNS
+        yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
+        if self.by_force:
+            yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]
@@ -202,6 +224,7 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
+        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)

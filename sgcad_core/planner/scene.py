@@ -12,10 +12,11 @@ import numpy as np
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.ground import Drag
+from sgcad_core.planner.hitch import Hitch, hitched
 from sgcad_core.planner.impact import body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.wreck import Mover, Touch, Wreck, hitch_of
+from sgcad_core.planner.wreck import Mover, Touch, Wreck
 from sgcad_core.records import ObservedContact, Trajectory
 from sgcad_core.specs import ActorKind, Area, Surface
 
@@ -97,10 +98,14 @@ class Scene:
     def settle(self) -> None:
         """Let everybody drive, and whatever touches push, until all stand."""
         movers = {name: self._mover(track) for name, track in self.tracks.items()}
-        hitches = [hitch_of(movers[a], movers[b], self.contact, behind) for a, b, behind in self.hitches]
+        hitches = [self._hitch(*coupled) for coupled in self.hitches]
         poses, self.touches = Wreck(tuple(movers.values()), self.count, hitches).settle()
         for name, track in self.tracks.items():
             track.poses, track.hit = poses[name], movers[name].hit
+
+    def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
+        first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))
+        return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
         mass = None if track.motion.fixed else mass_kg(track.kind, track.size)

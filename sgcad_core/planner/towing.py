@@ -42,12 +42,17 @@ def spacing_m(first: Size, second: Size) -> float:
 
 
 def ahead_of(motion: Motion, by_m: float, size: Size) -> Motion:
-    """The same motion on the same path with its box further ahead (behind where negative)."""
+    """The same motion on the same line with its box further ahead (behind where negative)."""
     if motion.standing:
         return replace(motion, path=_slid(motion, by_m), size=size, penalty=np.zeros_like(motion.penalty))
     if motion.axle is None:
         return replace(motion, station_m=motion.station_m + by_m, size=size)
     return _rolling(motion, motion.axle, by_m, size)
+
+
+def _slid(motion: Motion, by_m: float) -> Path:
+    poses = motion.path.poses(motion.path.s_m + by_m)
+    return replace(motion.path, points=poses[:, :2], heading_rad=poses[:, 2])
 
 
 def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
@@ -57,11 +62,6 @@ def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
     own, other = (float(np.hypot(*(p.points[0] - axle.points[0]))) for p in (motion.path, path))
     shift = by_m + (own - other) * (-1.0 if backing else 1.0)
     return replace(motion, path=replace(path, s_m=axle.s_m), station_m=motion.station_m + shift, size=size)
-
-
-def _slid(motion: Motion, by_m: float) -> Path:
-    poses = motion.path.poses(motion.path.s_m + by_m)
-    return replace(motion.path, points=poses[:, :2], heading_rad=poses[:, 2])
 
 
 def coupling_m(size: Size) -> float:

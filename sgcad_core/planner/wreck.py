@@ -9,7 +9,7 @@ B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import NamedTuple
@@ -19,18 +19,23 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
 from sgcad_core.planner.ground import Drag, slow
-from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, compliance, solve
+from sgcad_core.planner.hitch import Hitch, draw_together, pull
+from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
 
-SEEN_M = 0.015
+SEEN_M = 0.022
 """Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
 APART_M = 0.008
 """Gap that is left between bodies that touched."""
+_SHOWN_M = 0.008
+"""Overlap that is left for the sample behind a touch."""
 _SHORTEST_S, _LONGEST_S = 0.0005, 0.01
 _PARTING_MPS = 0.3
 """How fast bodies that sank into each other are moved apart."""
-_HELD_S = 0.06
-"""A touch stays as it is for more than one sample: who reads samples must see it."""
+_HELD_S = 0.11
+"""A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
+_DEEPEST_M = 0.03
+"""Deeper overlaps are parted at once."""
 _ROUNDS = 6
 """Of impulses over all touching pairs in one step."""
 _LEAST_LEFT_S = 0.1
@@ -52,15 +57,6 @@ class Mover:
     def fixed(self) -> bool:
         """Whether nothing moves it."""
         return self.body.inverse_mass == 0.0
-
-
-class Hitch(NamedTuple):
-    """A joint of two movers: the same place in the frame of either box."""
-
-    first: str
-    second: str
-    on_first: Point
-    on_second: Point
 
 
 class Touch(NamedTuple):
@@ -129,6 +125,14 @@ class Wreck:
                     self._advance(m, step)
             self.now += step
             self._resolve(near, k)
+        self._show(near, k)
+
+    def _show(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
+        """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
+        for a, b in near:
+            if self.touches.get(_key(a, b), -1.0) > sample * STEP_S:
+                seen = apart(a.body, b.body)
+                _shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
     def _step(self, near: Sequence[tuple[Mover, Mover]]) -> float:
         """The longest step after which no pair has sunk deeper than it may."""
@@ -164,12 +168,18 @@ class Wreck:
                 for (a, b, seen), points in zip(touching, corners, strict=True)
                 for at in points
             ]
-            if not any([*moved, *(self._pull(hitch) for hitch in self.hitches)]):
+            if not any([*moved, *(self._joined(hitch, pull) for hitch in self.hitches)]):
                 break
-        for a, b, seen in touching:
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            self._keep_seen(a, b, seen, mean(points), sample)
             self._part(a, b, seen)
         for hitch in self.hitches:
-            self._draw_together(hitch)
+            self._joined(hitch, draw_together)
+
+    def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
+        """What a hitch does to its two bodies, once both are free."""
+        a, b = self.named[hitch.first], self.named[hitch.second]
+        return a.free and b.free and act(hitch, a.body, b.body)
 
     def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
@@ -204,57 +214,32 @@ class Wreck:
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         return min(RESTITUTION, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
+    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> None:
+        """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
+        if self.touches[_key(a, b)] <= sample * STEP_S:
+            return
+        left = max((sample + 1) * STEP_S - self.now, 1e-3)
+        allowed = 0.5 * max(-seen.gap_m, 0.0) / left
+        parting = -approach(a.body, b.body, at, seen.normal)
+        if parting > allowed:
+            hold(a.body, b.body, at, seen.normal, parting - allowed)
+
     def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
         """Move two apart that sank into each other: places only, no motion comes of it."""
-        if seen.gap_m >= APART_M or self.now - self.touches[_key(a, b)] < _HELD_S:
+        held = self.now - self.touches[_key(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
+        if seen.gap_m >= APART_M or held:
             return
         by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
-        total = a.body.inverse_mass + b.body.inverse_mass
-        for one, sign in ((a.body, -1), (b.body, 1)):
-            share = sign * by * one.inverse_mass / total
-            one.x += share * seen.normal[0]
-            one.y += share * seen.normal[1]
-
-    # -------------------------------------------------------------- hitches
-    def _pull(self, hitch: Hitch) -> bool:
-        """An impulse after which both ends of a hitch move alike."""
-        a, b = self.named[hitch.first], self.named[hitch.second]
-        if not a.free or not b.free:
-            return False
-        at = _place(a.body, hitch.on_first)
-        (ax, ay), (bx, by) = a.body.velocity_at(*at), b.body.velocity_at(*at)
-        if math.hypot(ax - bx, ay - by) < 1e-4:
-            return False
-        jx, jy = solve(compliance(a.body, b.body, at), (ax - bx, ay - by))
-        a.body.push(-jx, -jy, *at)
-        b.body.push(jx, jy, *at)
-        return True
-
-    def _draw_together(self, hitch: Hitch) -> None:
-        """Take out what a hitch has come apart by, from its trailer's place."""
-        a, b = self.named[hitch.first], self.named[hitch.second]
-        if not a.free or not b.free:
-            return
-        (ax, ay), (bx, by) = _place(a.body, hitch.on_first), _place(b.body, hitch.on_second)
-        b.body.x += 0.2 * (ax - bx)
-        b.body.y += 0.2 * (ay - by)
+        _shift(a, b, seen, by)
 
 
-def hitch_of(first: Mover, second: Mover, k: int, behind_m: float) -> Hitch:
-    """The joint `behind_m` behind the first mover's center, as both stand at sample k."""
-    x, y, heading = first.script[k]
-    at = (float(x) - behind_m * math.cos(heading), float(y) - behind_m * math.sin(heading))
-    return Hitch(first.name, second.name, (-behind_m, 0.0), _local(second.script[k], at))
-
-
-def _local(pose: Floats, at: Point) -> Point:
-    c, s, dx, dy = math.cos(pose[2]), math.sin(pose[2]), at[0] - float(pose[0]), at[1] - float(pose[1])
-    return dx * c + dy * s, dy * c - dx * s
-
-
-def _place(one: Body, local: Point) -> Point:
-    c, s = math.cos(one.heading), math.sin(one.heading)
-    return one.x + local[0] * c - local[1] * s, one.y + local[0] * s + local[1] * c
+def _shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
+    """Move two apart along their axis (together where negative): places only, no motion comes of it."""
+    total = a.body.inverse_mass + b.body.inverse_mass
+    for one, sign in ((a.body, -1), (b.body, 1)):
+        share = sign * by_m * one.inverse_mass / total
+        one.x += share * seen.normal[0]
+        one.y += share * seen.normal[1]
 
 
 def _key(a: Mover, b: Mover) -> tuple[str, str]:

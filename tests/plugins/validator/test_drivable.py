@@ -108,3 +108,13 @@ def test_each_limit_is_held_by_itself(scenario: Scenario, word: str | None) -> N
 def test_roads_and_scenarios_without_a_plan_are_left_to_others() -> None:
     assert judged(CROSS) == []
     assert judged(Scenario(actors=(), routes_xml="<routes/>")) == []
+
+
+def test_boxes_that_come_to_rest_in_each_other_are_doubted_whatever_is_told() -> None:
+    scenario = crossed(("front", "left"))
+    first, second = scenario.planned
+    x, y = second.x_m.copy(), second.y_m.copy()
+    x[-1], y[-1] = first.x_m[-1] + 1.0, first.y_m[-1]
+    moved = scenario.model_copy(update={"planned": (first, second.model_copy(update={"x_m": x, "y_m": y}))})
+    for text in (CROSSED, SPUN):
+        assert [(f.what, f.where) for f in judged(moved, text)] == [("two boxes overlap at rest", "V1 and V2")]

@@ -740,3 +740,10 @@ def test_a_mistake_is_no_mist(told: str, weather: str | None) -> None:
 def test_letting_others_pass_is_not_overtaking() -> None:
     found = crash_facts("V1 was traveling north when it slowed to allow several vehicles to pass. V2 struck V1.")
     assert found.vehicles[0].maneuver != "overtaking"
+
+
+def test_a_corner_whose_flank_is_not_told_may_be_any_of_its_sides() -> None:
+    text = "V1 was northbound. V2 was northbound ahead of it. The right side of V1 struck the rear corner of V2."
+    first = crash_facts(text).contacts[0]
+    assert (first.struck_area, first.struck_may, first.areas_stated) == ("back", ("back", "left", "right"), False)
+    assert (first.striker_area, first.striker_may) == ("right", ("right",))

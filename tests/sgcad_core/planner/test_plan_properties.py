@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 
 from sgcad_core.formats.sumo.lane_graph import road_of
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
+from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.planner import Plan, plan
+from sgcad_core.planner.choices import SLIDES
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 
 STEP_S = 0.05
@@ -90,6 +92,19 @@ def check_contact(behavior: BehaviorSpec, made: Plan) -> None:
         assert {pair[0]: made.contact.actor_area, pair[1]: made.contact.other_area} == declared
 
 
+def check_driven(behavior: BehaviorSpec, made: Plan) -> None:
+    """Every wheeled actor keeps the limits of driving until it is touched; nothing lies in anything afterwards."""
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    touches = first_touches(made.trajectories, sizes)
+    for actor, track in zip(behavior.actors, made.trajectories, strict=True):
+        slides = any(note.startswith(actor.id) and SLIDES in note for note in made.notes)
+        if actor.kind in WHEELED and not slides:
+            seen = driven(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+            assert not seen.excesses(behavior.surface), (actor, made.notes)
+    assert deepest(made.trajectories, sizes)[0] < 0.06
+    assert deepest(made.trajectories, sizes, at_rest=True)[0] == 0
+
+
 @settings(max_examples=EXAMPLES, deadline=None)
 @given(behaviors())
 def test_any_behavior_gives_finite_continuous_motion_on_one_clock(case):
@@ -106,6 +121,13 @@ def test_drawn_crashes_keep_every_promise(seed):
     made = plan(behavior, network(layout))
     check(behavior, made)
     check_contact(behavior, made)
+    check_driven(behavior, made)
+
+
+@pytest.mark.parametrize("seed", range(3000, 3060))
+def test_drawn_crashes_can_be_driven(seed):
+    _, layout, behavior = draw_scene(seed)
+    check_driven(behavior, plan(behavior, network(layout)))
 
 
 @settings(max_examples=5, deadline=None)

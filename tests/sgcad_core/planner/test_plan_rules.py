@@ -11,6 +11,7 @@ from crash_scenes import network
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
+from sgcad_core.planner.choices import SLIDES
 from sgcad_core.records import Trajectory
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
 
@@ -115,6 +116,40 @@ def test_any_two_sides_can_be_brought_together_where_two_cross(own, other):
         "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "E"), contacts=(f"V1 {own} V2 {other}",)
     )
     assert made.realised, (made.contact, made.notes)
+    assert made.oddity >= 2 or not any(SLIDES in note for note in made.notes)
+
+
+def test_sides_that_no_driving_brings_together_are_named_with_those_that_would() -> None:
+    actors = (actor("V1", "straight", "S"), actor("V2", "straight", "E"))
+    behavior = BehaviorSpec(actors=actors, contacts=(contact("V1 back V2 back"),))
+    made = plan(behavior, network("four_leg"), by_force=False)
+    assert not made.realised
+    assert made.oddity == 0
+    assert any("as they drive, the right of V1 meets the front of V2" in note for note in made.notes)
+    assert any(SLIDES in note for note in plan(behavior, network("four_leg")).notes)
+
+
+@pytest.mark.parametrize(
+    ("mph", "maneuver", "exit_road"), [(20, "turn_left", "W"), (45, "straight", "N"), (5, "turn_right", "E")]
+)
+def test_a_told_speed_is_driven_before_the_contact(mph, maneuver, exit_road):
+    _, made = planned(
+        "four_leg", actor("V1", maneuver, "S", exit_road, speed_mph=mph), actor("V2", "straight", "E", speed_mph=30),
+        contacts=("V1 front V2 left",),
+    )  # fmt: skip
+    speed = track(made, "V1").speed_mps[: at_contact(made) + 1]
+    assert np.abs(speed - mph * MPH).min() < 0.05 * mph * MPH
+
+
+def test_nobody_turns_its_box_unless_control_was_lost() -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "straight", "S"), actor("V2", "straight", "S")), contacts=(contact("V1 right V2 back"),)
+    )
+    graph = network("straight")
+    assert not plan(behavior, graph, by_force=False).realised
+    made = plan(behavior, graph, may_skid=True)
+    assert made.realised
+    assert "V1 skids before contact" in made.notes
 
 
 def test_ordinary_crashes_need_no_notes():

@@ -1,4 +1,4 @@
-"""Paths, paces, impacts, routes and meetings, each by itself."""
+"""Paths, paces, routes and meetings, each by itself."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from crash_scenes import network
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.course import find_course
 from sgcad_core.planner.encounter import meet
-from sgcad_core.planner.ground import Drag, slow
-from sgcad_core.planner.impact import MASS_KG, Body, body, collide, mass_kg
 from sgcad_core.planner.motion import ACCELERATION_MPS2, BRAKING_MPS2, Motion, Pace, drive
-from sgcad_core.planner.path import bezier, draw, ramp
+from sgcad_core.planner.path import TURN_BACK_M, bezier, draw, ramp, tamed, turned_back
+from sgcad_core.planner.rolling import rolled, swung
 from sgcad_core.planner.route import find_route
 from sgcad_core.specs import Actor
 
@@ -69,7 +69,57 @@ def test_a_bezier_keeps_both_headings():
     assert math.atan2(last[1], last[0]) == pytest.approx(math.pi / 2, abs=0.1)
 
 
+@pytest.mark.parametrize("gap", [0.0, 3.6, 8.0, 14.0])
+def test_a_turn_back_ends_on_the_other_line_and_is_no_tighter_than_told(gap):
+    arc = turned_back(np.zeros(2), 0.3, gap * np.array([-math.sin(0.3), math.cos(0.3)]))
+    run = 30 * np.array([math.cos(0.3), math.sin(0.3)])
+    path = draw(np.vstack((-run, arc, arc[-1] - run)))
+    assert arc[-1] == pytest.approx(gap * np.array([-math.sin(0.3), math.cos(0.3)]), abs=0.01)
+    assert path.heading_rad[-1] - path.heading_rad[0] == pytest.approx(math.pi, abs=0.01)
+    assert np.abs(path.curvature()).max() < 1.25 / TURN_BACK_M
+
+
+def test_bends_that_are_too_tight_are_widened_and_no_others() -> None:
+    path = draw(corner(3.0))
+    easier = tamed(path, 1 / 9)
+    assert np.abs(path.curvature()).max() > 1 / 8
+    assert np.abs(easier.curvature()).max() <= 1 / 9
+    assert tamed(easier, 1 / 9) is easier
+
+
+@pytest.mark.parametrize("length", [4.7, 9.0, 20.0])
+def test_the_rear_axle_of_a_box_rolls_where_it_points(length):
+    line = tamed(draw(corner(10.0)), 1 / 25)
+    box = rolled(line, length)
+    axle = box.points - 0.3 * length * np.column_stack((np.cos(box.heading_rad), np.sin(box.heading_rad)))
+    way = np.diff(axle, axis=0)
+    slip = np.arctan2(way[:, 1], way[:, 0]) - (box.heading_rad[1:] + box.heading_rad[:-1]) / 2
+    assert np.degrees(np.abs(slip)).max() < 10
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-2.5, 2.5), st.floats(6, 40))
+def test_who_steers_aside_has_turned_by_the_angle_and_bends_no_tighter(angle, radius):
+    line = draw(np.array([[0.0, 0.0], [200.0, 0.0]]))
+    turned = swung(line, angle, 150.0, radius)
+    assert turned.poses([150.0])[0, 2] == pytest.approx(angle, abs=0.02)
+    assert np.abs(turned.curvature()).max() <= 1.1 / radius
+    assert turned.lengths()[-1] == pytest.approx(line.lengths()[-1], abs=0.01)
+
+
 # ------------------------------------------------------------------ pace
+@settings(max_examples=40, deadline=None)
+@given(st.floats(5, 35), st.floats(-3.6, 3.6), st.floats(3, 40), st.sampled_from(["dry", "wet", "snow", "ice"]))
+def test_speed_follows_the_curvature_of_the_driven_line(cruise, left, length, surface):
+    base = draw(corner(9.0))
+    line = base.moved(left * ramp(base.s_m, 10.0, length))
+    pace = Pace(cruise, grip_mps2=DRIVING.friction_mps2(surface), hard=True)
+    time, station = drive(line, pace, 20.0, (line, base))
+    speed = np.diff(np.interp(station, line.s_m, line.lengths())) / np.diff(time)
+    bend = np.interp((station[1:] + station[:-1]) / 2, line.s_m, np.abs(line.curvature()))
+    assert (speed**2 * bend)[speed > 1.2].max() < 0.7 * DRIVING.friction_mps2(surface)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.floats(3, 35), st.floats(2, 9), st.booleans())
 def test_a_drive_keeps_limits_and_usual_accelerations(cruise, curve, from_stop):
@@ -98,79 +148,6 @@ def test_a_standing_start_stands_before_it():
     time, station = drive(path, Pace(12.0, starts_at_m=20.0), 30.0)
     assert station[0] == 20.0
     assert np.interp(-50.0, time, station) == 20.0
-
-
-# ------------------------------------------------------------------ impact
-pose = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3))
-velocity = st.tuples(st.floats(-20, 20), st.floats(-20, 20))
-mass = st.floats(80, 15000)
-
-
-def moving(where: tuple[float, float, float], way: tuple[float, float], mass_kg: float, spin: float = 0.0) -> Body:
-    made = body(where, CAR, mass_kg)
-    made.vx, made.vy, made.spin = *way, spin
-    return made
-
-
-def momentum(*bodies: Body) -> tuple[float, float, float]:
-    """East, north, and about the origin."""
-    x, y = (sum(v / b.inverse_mass for b, v in zip(bodies, way, strict=True)) for way in (
-        [b.vx for b in bodies], [b.vy for b in bodies]))  # fmt: skip
-    turning = sum((b.x * b.vy - b.y * b.vx) / b.inverse_mass + b.spin / b.inverse_inertia for b in bodies)
-    return x, y, turning
-
-
-@settings(max_examples=150, deadline=None)
-@given(pose, velocity, mass, velocity, mass, st.floats(0, 6.2), st.floats(-4, 4), st.floats(0, 1))
-def test_an_impact_keeps_momentum_and_gains_no_energy(where, v1, m1, v2, m2, towards, spin, restitution):
-    normal = (math.cos(towards), math.sin(towards))
-    a = moving(where, v1, m1, spin)
-    b = moving((where[0] + 2.5 * normal[0], where[1] + 2.5 * normal[1], 0.4), v2, m2)
-    before, energy = momentum(a, b), a.energy + b.energy
-    collide(a, b, (where[0] + 1.2 * normal[0], where[1] + 1.2 * normal[1]), normal, restitution)
-    assert momentum(a, b) == pytest.approx(before, abs=1e-6 * (m1 + m2) * 20)
-    assert a.energy + b.energy <= energy * (1 + 1e-9) + 1e-6
-
-
-def test_two_that_part_exchange_nothing():
-    a, b = moving((0.0, 0.0, 0.0), (5.0, 0.0), 1500.0), moving((4.7, 0.0, 0.0), (9.0, 0.0), 1500.0)
-    assert not collide(a, b, (2.35, 0.0), (1.0, 0.0), 0.1)
-    assert (a.vx, b.vx) == (5.0, 9.0)
-
-
-def test_what_a_vehicle_tows_adds_to_its_mass():
-    assert mass_kg("car", CAR) == MASS_KG["car"]
-    assert mass_kg("pickup", (11.1, 2.0)) > MASS_KG["pickup"] + 400
-    assert mass_kg("truck", (20.0, 2.5)) > 15000
-
-
-def test_who_strikes_a_fixed_body_head_on_stops():
-    a, tree = moving((0.0, 0.0, 0.0), (15.0, 0.0), 1500.0), body((2.6, 0.0, 0.0), (0.5, 0.5), None)
-    assert collide(a, tree, (2.35, 0.0), (1.0, 0.0))
-    assert a.speed < 1e-9
-    assert tree.speed == 0
-    assert tree.energy == 0
-
-
-@settings(max_examples=60, deadline=None)
-@given(velocity, st.floats(-4, 4), st.floats(0.5, 8), st.floats(0.5, 8))
-def test_whatever_slides_is_at_rest_in_the_time_that_is_left(v, spin, along, across):
-    """Friction of any size: where the ground alone would not do it in four seconds, it is made to, but for a creep."""
-    one, step, energies = moving((0.0, 0.0, 0.3), v, 1500.0, spin), 0.01, [math.inf]
-    for k in range(420):
-        slow(one, Drag(along, across), step, max(4.0 - k * step, 0.1))
-        energies.append(one.energy)
-        assert energies[-1] <= energies[-2]
-    assert one.speed < 0.1
-    assert abs(one.spin) < 0.05
-
-
-def test_a_body_stops_as_soon_as_its_friction_says():
-    one = moving((0.0, 0.0, 0.0), (10.0, 0.0), 1500.0)
-    for _ in range(100):
-        slow(one, Drag(5.0, 7.0), 0.01, 4.0)
-    assert one.vx == pytest.approx(5.0)
-    assert one.vy == one.spin == 0
 
 
 # ------------------------------------------------------------------ routes and courses

@@ -70,3 +70,11 @@ def test_no_turn_on_the_spot_is_lost(rate):
     heading = rate * np.arange(80) * 0.05
     rows = rows_of(np.zeros(80), heading)
     assert np.abs(np.diff(heading[rows])).max() < 1.5
+
+
+def test_the_moment_of_a_blow_is_a_vertex():
+    """From 2.7 m/s to 0.6 m/s within a step: the last row before it is kept, whatever even motion would replace."""
+    for before in range(20, 26):
+        steps = np.concatenate((np.full(before, 0.135), np.full(30, 0.03)))
+        x = np.concatenate(([0.0], np.cumsum(steps)))
+        assert before in rows_of(x)
