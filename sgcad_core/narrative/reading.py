@@ -20,9 +20,12 @@ from sgcad_core.evidence import Fact
 from sgcad_core.narrative.clauses import Segment, Told, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.course import courses_told, cut_by_deeds
+from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.later_impacts import later_impacts
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.road_provenance import road_provenance
@@ -103,7 +106,10 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.told, cut, named.who), blows(named.told, named.who))
+    struck, deeds = blows(named.told, named.who), cut_by_deeds(named.told, named.who)
+    course = courses_told(named.told, deeds, named.who)
+    impacts = later_impacts(named.told, deeds, named.who, struck)
+    draft = Draft(named.who, motions(named.told, cut, named.who), struck, course, impacts)
     return Events(draft, conditions(found))
 
 
@@ -112,5 +118,6 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     settled = settle(seen.draft)
     roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
-    facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
+    course = course_provenance(telling, seen.draft)
+    facts = (*crash_provenance(telling, as_read), *course, *road_provenance(telling, roads))
     return Reading(narrative, found, roads.crash, roads, facts)
