@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal
 
 from sgcad_core.specs import Area, Compass
@@ -76,3 +77,4 @@ class ImpactTold:
 
 Courses = Mapping[str, CourseTold]
 """By vehicle id."""
+NOTHING_TOLD: Courses = MappingProxyType({})

@@ -9,6 +9,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses
 
 
 def compile_scenario(
@@ -18,6 +19,7 @@ def compile_scenario(
     encoding: Encoding = DEFAULT_ENCODING,
     *,
     may_skid: bool = False,
+    courses: Courses = NOTHING_TOLD,
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
@@ -25,11 +27,12 @@ def compile_scenario(
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
     for the validators to say. `may_skid`: the report tells that somebody lost control.
+    `courses`: what it tells of every vehicle's evasion and rest.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
+    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid, courses=courses)
     actors = actor_infos(behavior)
     handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
     return Scenario(

@@ -30,6 +30,9 @@ SWERVE_MPS2 = 6.0
 _CORNER_RUN_M = 10.0
 """Before and behind a junction in which one who cuts its corner is beside the lane."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
+_NOT_EVADING = 0.3
+"""Cost of the own line for one of whom it is told that he steered aside."""
+_EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
 _ASKEW, _STEERS = "stands askew", "steers aside before contact"
@@ -55,7 +58,26 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
         sharp = [_drift(role, wanted * k, cost + 0.4, 0.6) for k, cost in shares[:3]]
         return [*gentle, *hard, *sharp, Drift(0.8)]
     near = _in_lane(role) if fine else []
+    if evading := _evading(role):
+        return [
+            *evading,
+            Drift(_NOT_EVADING),
+            *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
+        ]
     return [Drift(0.0), *near, *_corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _evading(role: Role) -> list[Drift]:
+    """Swerves to the told hand; none where no steering is told, or where the maneuver is a way of its own."""
+    if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
+        return []
+    hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
+    ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
+    return [
+        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")
+        for left, cost, ease in ways
+        for hand in hands
+    ]
 
 
 def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:

@@ -19,12 +19,15 @@ from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
+from sgcad_core.planner.resting import Rests
 from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
+from sgcad_core.roads.surface import road_surface
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
@@ -58,15 +61,24 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by_force: bool = True) -> Plan:
+def plan(
+    behavior: BehaviorSpec,
+    graph: LaneGraph,
+    *,
+    may_skid: bool = False,
+    by_force: bool = True,
+    courses: Courses = NOTHING_TOLD,
+) -> Plan:
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
+
+    `courses`: what the report tells of evasion and rest, by actor.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
     Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
-    cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
+    lines = {a.id: _course(graph, a, gentle) for a in behavior.actors}
+    cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -76,6 +88,8 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
         cast.later(scene, contact)
     cast.rest(scene)
     scene.settle()
+    if courses:
+        cast.notes += Rests(scene, courses, road_surface(graph)).settle()
     observed = scene.first_contact()
     realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     order = tuple(a.id for a in behavior.actors)
@@ -121,6 +135,7 @@ class _Cast:
     tractors: dict[str, str]
     may_skid: bool = False
     by_force: bool = True
+    told: Courses = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -179,6 +194,7 @@ class _Cast:
                 side,
                 surface=self.behavior.surface,
                 may_skid=self.may_skid,
+                told=self.told.get(actor.id, CourseTold()),
             )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]
