@@ -22,7 +22,8 @@ COMPASS_DEG: dict[str, float] = {
 FACING_RAD = math.radians(45.0)
 """A facing is right within an eighth of the circle: half an eighth for the word, half for the fit."""
 SIDE_RAD = math.radians(68.0)
-"""A side is right where the point lies within so much of it, seen from the nearest lane or the junction's center."""
+"""A side is right where the point lies within so much of it, seen from the nearest lane or the junction's center; of
+what stands in the road no side is right."""
 SHOULDER_M = (-1.2, 4.0)
 """How far beyond the edge of the nearest lane the center of a box lies that stands on a shoulder."""
 OFF_M = 0.0
@@ -56,7 +57,7 @@ def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSur
     facing = None if told.facing_deg is None else _apart(poses[:, 2], compass_rad(told.facing_deg)) - FACING_RAD
     where = None if told.where is None else _misplaced(told, poses, off, surface)
     side = None if told.side is None or told.where in ("road", "intersection") else (
-        _beside(told.side, poses, bearing, came_rad, surface) - SIDE_RAD
+        np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
     )  # fmt: skip
     return RestErrors(facing, where, side)
 

@@ -62,7 +62,17 @@ class ImpactRead(NamedTuple):
 
 def cut_by_deeds(told: Sequence[Told], who: Roster) -> list[Segment]:
     """Segments of all sentences, each with those whose deed it is."""
-    return [part for t in told for part in own_deeds(segments([_of_the_impact(t)], who), t)]
+    return [part for t in told for part in _cut(_of_the_impact(t), who)]
+
+
+def _cut(told: Told, who: Roster) -> list[Segment]:
+    """One sentence; one that begins "Then rotated" goes on with the last one's subject."""
+    found = own_deeds(segments([told], who), told)
+    goes_on = rule("course_rest.then").match(told.text)
+    if not goes_on or not told.subject:
+        return found
+    end = len(told.text) - sum(len(part.text) for part in found)
+    return [Segment((told.subject,), told.text[goes_on.end() : end].lower(), told.role, told.number), *found]
 
 
 def courses_told(told: Sequence[Told], cut: Sequence[Segment], who: Roster) -> CoursesRead:
@@ -133,7 +143,7 @@ def _split(segment: Segment, impact: int) -> tuple[str, str]:
         return (text[: hit.start()], text[hit.start() :]) if hit else (text, "")
     if segment.number < impact:
         return (text[: rest.start()], text) if rest and segment.role == "rest" else (text, "")
-    if segment.role in ("interview", "avoidance"):
+    if segment.role == "interview" or (segment.role == "avoidance" and _if_evading(text)):
         return text[: hit.start()] if hit else text, text[rest.start() :] if rest else ""
     if segment.role in ("rest",):
         return "", text
@@ -142,7 +152,7 @@ def _split(segment: Segment, impact: int) -> tuple[str, str]:
 
 def _if_evading(text: str) -> str:
     """A text behind the impact that retells what somebody did before it."""
-    return text if rule("course_evasion.to_avoid").search(text) else ""
+    return text if rule("course_evasion.to_avoid").search(text) or rule("course_evasion.none").search(text) else ""
 
 
 # ------------------------------------------------------------------ before the contact
@@ -258,7 +268,7 @@ def _last_place(text: str) -> tuple[Rule, re.Match[str]] | None:
 def _side(text: str) -> Compass | Hand | None:
     found = None
     for m in rule("course_rest.side_named").finditer(text):
-        word = (m["side"] or m["to"] or m["other"]).lower()
+        word = (m["side"] or m["to"] or m["other"] or m["sent"]).lower()
         found = _HANDS.get(word) or WORDS.get(word)
         if m["bound"] and word in WORDS:  # a northbound shoulder lies east of its road
             found = turned(WORDS[word], 90)

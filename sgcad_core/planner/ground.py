@@ -19,7 +19,7 @@ from sgcad_core.planner.impact import Body
 _SLIP_LEVER = 0.25
 """Mean lever of ground friction against turning, as a share of the box's diagonal."""
 _STIFF_RAD = 0.14
-"""Slip at which rolling tires give all their side force (8 degrees; R. Rajamani, Vehicle Dynamics and Control, ch. 2)."""
+"""Slip at which rolling tires give all their side force (R. Rajamani, Vehicle Dynamics and Control, ch. 2)."""
 _STEERED_SHARE = 0.7
 """Of the side force, for a steered bend; the rest is for what it slides besides."""
 _STEERS_MPS = 1.0

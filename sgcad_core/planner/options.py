@@ -60,6 +60,8 @@ _STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
 _PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
+_UNBRAKED = 0.3
+"""Cost of a contact before a told braking shows."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
 
@@ -170,6 +172,8 @@ def driving(option: Option) -> Motion:
     penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
+    if pace.brakes and pace.slow_at_m is not None:
+        penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
 
 
@@ -286,6 +290,6 @@ def _pace(role: Role, option: Option) -> Pace:
     pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
     if role.actor.maneuver == "slowing" or role.told.brakes:
-        at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else 1.0)
+        at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0)
         return replace(pace, slow_at_m=at, slow_mps=max(slowed, 1.5), brakes=role.told.brakes)
     return pace

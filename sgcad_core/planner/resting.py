@@ -2,16 +2,17 @@
 
 Free are, within physical bounds, friction and restitution between the bodies, and for every vehicle its braking, its
 steering and its resistance to turning once it runs out. The blow itself is simulated once for each choice of friction
-and restitution, the ways of running out all at once (`ground.run_out`); the best few are then simulated whole, since
-wrecks meet again. What cannot be reached is said, with by how much. Deterministic; a fixed number of simulations.
+and restitution, the ways of running out all at once (`ground.run_out`); the best are then simulated whole, since wrecks
+meet again, and what that shows corrects the next choice. What cannot be reached is said, with by how much.
+Deterministic; a fixed number of simulations at most.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from itertools import product
 from typing import NamedTuple
 
@@ -36,8 +37,8 @@ _TURNING = (1.0, 0.6, 0.35)
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
 _COARSE_S = 0.1
-_WHOLE = 3
-"""Choices that are simulated whole."""
+_WHOLE = 6
+"""Choices that are simulated whole, at most."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
 _TOLD, _UNUSUAL = 1.0, 0.02
@@ -52,6 +53,58 @@ class Choice(NamedTuple):
     runs: Mapping[str, RunOut]
 
 
+@dataclass
+class _Runs:
+    """All ways in which one vehicle may run out from one blow, where each would end, and what that costs."""
+
+    runs: Sequence[RunOut]
+    ends: Floats
+    odd: Floats
+    judge: Callable[[Floats], Floats]
+    off: Floats = field(default_factory=lambda: np.zeros(3))
+    """How far the whole simulation ended from where the way alone would, at the last try."""
+    tried: set[int] = field(default_factory=set)
+
+    def costs(self) -> Floats:
+        """(n,) of each way, as far as is known from the last try."""
+        return self.judge(self.ends + self.off) + self.odd
+
+    def best(self) -> int:
+        """The way that promises most."""
+        return int(np.argmin(self.costs()))
+
+
+@dataclass
+class _Ways:
+    """One choice of friction and restitution with its vehicles' ways."""
+
+    friction: float
+    restitution: float
+    vehicles: dict[str, _Runs] = field(default_factory=dict)
+    tried: set[tuple[int, ...]] = field(default_factory=set)
+
+    def best(self) -> tuple[int, ...] | None:
+        """The most promising way of each vehicle; None where that was tried."""
+        found = tuple(v.best() for v in self.vehicles.values())
+        return None if found in self.tried or not found else found
+
+    def predicted(self) -> float:
+        """What the most promising ways cost."""
+        return sum(float(v.costs().min()) for v in self.vehicles.values())
+
+    def choice(self) -> Choice:
+        """The most promising ways, noted as tried."""
+        best = self.best() or ()
+        self.tried.add(best)
+        runs = {name: v.runs[i] for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
+        return Choice(self.friction, self.restitution, runs)
+
+    def learn(self, ends: Mapping[str, Floats]) -> None:
+        """Take in where the vehicles came to rest in the whole simulation of the last choice."""
+        for name, v in self.vehicles.items():
+            v.off = ends[name] - v.ends[v.best()]
+
+
 @dataclass(frozen=True)
 class Rests:
     """What the vehicles of a scene are to come to."""
@@ -62,19 +115,27 @@ class Rests:
 
     def settle(self) -> list[str]:
         """Choose, settle the scene so, and say what is missed by how much."""
-        wanted = self.wanted
-        if not wanted:
+        if not self.wanted:
             return []
         best, least = self._choice(), self.cost()
-        for choice in self._choices():
-            if least <= _UNUSUAL * len(wanted):
+        ways = [self._ways(friction, restitution) for friction, restitution in IMPACTS] if least > self._well else []
+        for _ in range(_WHOLE):
+            open_ways = [w for w in ways if w.best() is not None]
+            if least <= self._well or not open_ways:
                 break
-            self._take(choice)
+            way = min(open_ways, key=lambda w: w.predicted())
+            self._take(way.choice())
+            way.learn({name: self.scene.tracks[name].poses[-1] for name in way.vehicles})
             if (cost := self.cost()) < least - 1e-9:
-                best, least = choice, cost
+                best, least = self._choice(), cost
         if self._choice() != best:
             self._take(best)
         return self.missed()
+
+    @property
+    def _well(self) -> float:
+        """A cost below which nothing is gained by further tries."""
+        return 0.35 * len(self.wanted)
 
     @cached_property
     def wanted(self) -> dict[str, CourseTold]:
@@ -95,36 +156,24 @@ class Rests:
         self.scene.runs = dict(choice.runs)
         self.scene.settle()
 
-    def _choices(self) -> list[Choice]:
-        """The most promising choices, best first."""
-        found = []
-        for friction, restitution in IMPACTS:
-            self.scene.friction, self.scene.restitution = friction, restitution
-            cost, runs = self._run_outs()
-            found.append((cost, len(found), Choice(friction, restitution, runs)))
-        return [choice for _, _, choice in sorted(found, key=lambda one: one[:2])[:_WHOLE]]
-
-    def _run_outs(self) -> tuple[float, dict[str, RunOut]]:
-        """For one choice of the impact the best ways of running out, each vehicle for itself, and what they cost."""
+    def _ways(self, friction: float, restitution: float) -> _Ways:
+        """For one choice of the impact all ways of running out, each vehicle for itself."""
         scene = self.scene
+        scene.friction, scene.restitution, scene.runs = friction, restitution, {}
         until = scene.contact + round(_BLOW_S / STEP_S)
-        scene.runs = {}
         wreck = scene.wreck()
         wreck.settle(until)
-        total, chosen = 0.0, {}
+        found = _Ways(friction, restitution)
         for name, course in self.wanted.items():
-            mover, track = wreck.named[name], scene.tracks[name]
-            if not mover.free or mover.fixed:
-                continue
-            grip = scene.drag(track).across
-            runs = [RunOut(until * STEP_S, share * grip, bend, turning)
-                    for share, bend, turning in product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING)]  # fmt: skip
-            released, end = Released(mover.body, until * STEP_S), (scene.count - 4) * STEP_S
-            ends = run_out(released, scene.drag(track), runs, end, _COARSE_S)
-            costs = self._costs(name, course, ends) + _oddities(runs, grip)
-            best = int(np.argmin(costs))
-            total, chosen[name] = total + float(costs[best]), runs[best]
-        return total, chosen
+            mover = wreck.named[name]
+            if mover.free and not mover.fixed:
+                drag = scene.drag(scene.tracks[name])
+                runs = _runs(until * STEP_S, drag.across)
+                end_s = (scene.count - 4) * STEP_S
+                ends = run_out(Released(mover.body, until * STEP_S), drag, runs, end_s, _COARSE_S)
+                odd = _oddities(runs, drag.across)
+                found.vehicles[name] = _Runs(runs, ends, odd, partial(self._costs, name, course))
+        return found
 
     # -------------------------------------------------------------- how well
     def cost(self) -> float:
@@ -161,6 +210,12 @@ class Rests:
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
         errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
         yield from (f"{name} {words}" for words in _in_words(rest, errors))
+
+
+def _runs(from_s: float, grip_mps2: float) -> list[RunOut]:
+    """All ways of running out."""
+    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING)
+    return [RunOut(from_s, share * grip_mps2, bend, turning) for share, bend, turning in ways]
 
 
 def _oddities(runs: Sequence[RunOut], grip: float) -> Floats:
