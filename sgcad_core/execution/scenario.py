@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.editable import write_editable
 from sgcad_core.formats.openscenario.events import Handover
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -31,9 +32,13 @@ def compile_scenario(
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
     planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
     actors = actor_infos(behavior)
-    handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
+    plan_of = actors, planned.trajectories, behavior
+    if encoding == "events":
+        xosc = write_editable(*plan_of, Handover(planned.contact, network.xodr), version)
+    else:
+        xosc = write_xosc(*plan_of, version=version)
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior, version=version, handover=handover),
+        xosc=xosc,
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,

@@ -124,6 +124,9 @@ class _Timed:
     def start(self) -> xosc.WorldPosition:
         return positions(self.move, [0])[0]
 
+    def init_actions(self) -> tuple[object, ...]:
+        return ()
+
     def group(self) -> xosc.ManeuverGroup:
         name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
         path = xosc.Trajectory(f"{name}_path", False)
@@ -155,5 +158,7 @@ def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.En
     step = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0.0)
     for actor in actors:
         init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
+        for action in actor.init_actions():
+            init.add_init_action(actor.move.actor, action)
         init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(number(actor.first_mps), step))
     return init
