@@ -141,8 +141,10 @@ def _motion(name: str, number: int) -> Trajectory:
     t_s = np.arange(121) * 0.05
     share = np.clip((t_s - 1.0) / 3.0, 0.0, 1.0)
     smooth = share * share * (3 - 2 * share)
-    speed = 15.0 - (2.0 * share if number in (1, 4) else 0.0)
-    x_m = 12.0 * number + np.concatenate(([0.0], np.cumsum((speed * np.ones(121))[1:] * 0.05)))
+    speed = (18.0 if number == 0 else 15.0) - (2.0 * share if number in (1, 4) else 0.0)
+    x_m = (80.0 if number == 2 else 15.0 * number) + np.concatenate(
+        ([0.0], np.cumsum((speed * np.ones(121))[1:] * 0.05))
+    )
     aside = (0.0 * t_s, 0.0 * t_s, -4.0 * smooth, 0.5 * smooth - 4.0, 0.0 * t_s - 4.0)
     y_m = aside[number] if number < len(aside) else 0.0 * t_s + 9.0 * number
     heading = np.arctan2(np.gradient(y_m), np.gradient(x_m))
