@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sgcad_core.execution.contact import first_contact
+from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.events import Handover, Plainly
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.formats.openscenario.writer import Version, write_xosc
@@ -31,11 +32,13 @@ def write_editable(
     behavior: BehaviorSpec | None,
     handover: Handover,
     version: Version,
+    signals: Sequence[Controller] = (),
 ) -> str:
     """The .xosc of a plan as events, near the plan until the contact. Raises InvalidOutput as the writer does."""
     told = handover.plainly
     while True:
-        text = write_xosc(actors, trajectories, behavior, version=version, handover=replace(handover, plainly=told))
+        way = replace(handover, plainly=told)
+        text = write_xosc(actors, trajectories, behavior, version=version, handover=way, signals=signals)
         astray = _astray(actors, trajectories, handover.contact, play(text, handover.xodr))
         if not astray or (plainer := _plainer(told, astray, text)) == told:
             return text

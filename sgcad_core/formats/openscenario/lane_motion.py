@@ -139,11 +139,16 @@ def _backwards(move: Trajectory) -> bool:
 
 
 # ------------------------------------------------------------------ the way
-def _route(move: Trajectory, roads: XodrRoads, place: LanePlace, further_m: float) -> tuple[LanePlace, ...]:
-    """The start and a place beyond the last junction that the motion reaches; empty where it comes to none."""
+def driven_way(move: Trajectory, roads: XodrRoads, place: LanePlace) -> Way:
+    """The lanes from a motion's first place to its last and on from there. Raises ValueError where none lead there."""
     end = roads.nearest(_pose(move, -1))
     sense = roads.road(place.road).sense(place.lane)
-    way = roads.drive(place, sense, roads.route([place, end], sense) if end else None)
+    return roads.drive(place, sense, roads.route([place, end], sense) if end else None)
+
+
+def _route(move: Trajectory, roads: XodrRoads, place: LanePlace, further_m: float) -> tuple[LanePlace, ...]:
+    """The start and a place beyond the last junction that the motion reaches; empty where it comes to none."""
+    way = driven_way(move, roads, place)
     gone, at_m = arc_lengths(way.points), arc_lengths(np.column_stack((move.x_m, move.y_m)))[-1] + further_m
     inner = np.array([roads.road(road).junction != "-1" for road, _, _ in way.lanes])[way.which]
     if not inner[gone <= at_m].any():
