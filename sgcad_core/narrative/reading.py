@@ -17,8 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from sgcad_core.evidence import Fact
-from sgcad_core.narrative.clauses import Segment, Told, segments, tell
+from sgcad_core.facts import Fact
+from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
 from sgcad_core.narrative.draft import Draft
@@ -74,7 +74,7 @@ class Mentions(NamedTuple):
     """Who is in the report, and its sentences with everybody named by number."""
 
     who: Roster
-    told: tuple[Told, ...]
+    statements: tuple[Statement, ...]
 
 
 class Events(NamedTuple):
@@ -103,19 +103,19 @@ def mentions(found: tuple[Sentence, ...]) -> Mentions:
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
     """Stretches of sentences with their subjects."""
-    return segments(named.told, named.who)
+    return segments(named.statements, named.who)
 
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.told, cut, named.who), blows(named.told, named.who))
+    draft = Draft(named.who, motions(named.statements, cut, named.who), blows(named.statements, named.who))
     return Events(draft, conditions(found), signal_states(cut))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     settled = settle(seen.draft)
-    roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
+    roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
     facts = (*crash_provenance(telling, as_read), *lights, *road_provenance(telling, roads))
