@@ -9,6 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from flows import fitting
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
@@ -75,15 +76,18 @@ def describe_config(config: Config) -> None:
     table = Table("kind", "plugin", "fields")
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:
-            table.add_row(kind, *_row(plugin))
-    for plugin in config.validators:
-        table.add_row(f"validator ({plugin.stage})", *_row(plugin))
+            table.add_row(kind, *_row(config.raw[kind], plugin))
+    for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
+        table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)
+    if line := fitting.told(config):
+        console.print(escape(line), soft_wrap=True)
 
 
-def _row(plugin: Plugin) -> tuple[str, str]:
-    fields = plugin.model_dump(mode="json")
-    return escape(type(plugin).__name__), escape(", ".join(f"{k}={v}" for k, v in fields.items()))
+def _row(entry: Any, plugin: Plugin) -> tuple[str, str]:
+    """The plugin's name in the YAML, and its fields."""
+    name, fields = entry["name"] if isinstance(entry, dict) else entry, plugin.model_dump(mode="json")
+    return escape(str(name)), escape(", ".join(f"{k}={v}" for k, v in fields.items()))
 
 
 def _console() -> Console:

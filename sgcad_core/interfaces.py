@@ -112,6 +112,10 @@ class Backbone(Plugin):
         What it raises the first question raises again.
         """
 
+    def weights_gb(self) -> float | None:
+        """Memory that its weights will take on this machine, decimal GB; None: none here, or nobody can tell."""
+        return None
+
 
 class RoadWriter(Plugin):
     """Evidence to a road network."""

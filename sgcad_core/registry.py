@@ -5,13 +5,13 @@ Built-ins come through the same door as strangers (`sgcad.<kind>` groups). Knows
 
 from __future__ import annotations
 
-import difflib
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING
 
 from sgcad_core import interfaces
 from sgcad_core.errors import ConfigError
+from sgcad_core.names import nearest
 
 if TYPE_CHECKING:
     from sgcad_core.interfaces import Plugin
@@ -38,9 +38,7 @@ def plugin_class(kind: str, name: str) -> type[Plugin]:
     """Import one plugin. Raises ConfigError naming the nearest and all installed names."""
     known = catalogue(kind)
     if name not in known:
-        near = difflib.get_close_matches(name, known, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"unknown {kind} {name!r}.{hint} Installed: {', '.join(known) or 'none'}")
+        raise ConfigError(f"unknown {kind} {name!r}.{nearest(name, known)} Installed: {', '.join(known) or 'none'}")
     try:
         found = known[name].load()
     except (ImportError, AttributeError) as fault:
