@@ -228,11 +228,18 @@ app.command()(report)
 
 
 def main() -> None:
+    """The command."""
+    guarded(app)
+
+
+def guarded(command: Callable[[], object]) -> None:
     """The edge: every error becomes one message on stderr and an exit code."""
     try:
-        app()
+        command()
     except SgcadError as fault:
         _end(str(fault), 2)
+    except KeyboardInterrupt:
+        _interrupted()
     except Exception as fault:  # noqa: BLE001 - the command line's edge
         import traceback
 
