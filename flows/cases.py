@@ -20,6 +20,7 @@ from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
 from sgcad_core.report_files import is_regular
+from sgcad_core.strangers import code_of
 
 TEXTS = {"report.txt", "narrative.txt"}
 SUFFIXES = {".txt", ".xml", ".pdf"}
@@ -122,7 +123,7 @@ def config_digest(config: Config) -> str:
     about = {
         "raw": raw,
         "name": config.name,
-        "plugins": {qualified(p): (type(p).version, p.stamp) for p in _plugins(config)},
+        "plugins": {qualified(p): identity(p) for p in _plugins(config)},
         "files": sorted(set(named_digests(raw))),
         "package": version("sg-cadvlm"),
         "code": code_digest(asks_model=config.backbone is not None),
@@ -159,6 +160,12 @@ def _folder_digest(folder: Path) -> str:
     sizes = [(str(f.relative_to(folder)), f.stat().st_size) for f in files]
     small = sum(size for _, size in sizes) <= MAX_READ_BYTES
     return _files_digest(files, folder) if small else hashlib.sha256(repr(sizes).encode()).hexdigest()
+
+
+def identity(plugin: Plugin) -> tuple[str, ...]:
+    """What makes a plugin's results its own beside its fields: version, stamp, and a stranger's code."""
+    stranger = code_of(type(plugin))
+    return (type(plugin).version, plugin.stamp, *([stranger] if stranger else []))
 
 
 def qualified(plugin: Plugin) -> str:

@@ -14,18 +14,25 @@ from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
-from sgcad_core.registry import KINDS, catalogue, plugin_class
+from sgcad_core.registry import KINDS, catalogue, installed, plugin_class
 
 TRAITS = ("asks_model", "needs_prior", "gives_logits", "stage")
 
 
 def list_plugins() -> None:
-    """All installed names with where they come from; imports none of them."""
-    table = Table("kind", "name", "from")
+    """All installed names with where they come from, and which entry points lead nowhere; imports none of them."""
+    table, gone = Table("kind", "name", "from"), []
     for kind in KINDS:
+        there = installed(kind)
         for name, point in catalogue(kind).items():
-            table.add_row(kind, name, f"{point.dist.name if point.dist else '?'}: {point.value}")
+            origin = f"{point.dist.name if point.dist else '?'}: {point.value}"
+            if name in there:
+                table.add_row(kind, escape(name), escape(origin))
+            else:
+                gone.append(f"{kind}/{name} is registered by {origin}, which does not exist: install that package anew")
     _console().print(table)
+    for line in gone:
+        _console().print(escape(line), soft_wrap=True)
 
 
 def show_plugin(name: str) -> None:

@@ -1,6 +1,6 @@
 """`make demo`: the bundled reports become scenarios under the default config; says what happens and what to do next.
 
-    python -m flows.demo [OUT]
+python -m flows.demo [OUT]
 """
 
 from __future__ import annotations
@@ -24,8 +24,10 @@ def main(arguments: Sequence[str] = ()) -> int:
     """Run the demo; its exit code."""
     out = Path(arguments[0]) if arguments else DEFAULT_OUT / "demo"
     batch = batch_of(cases_in([REPORTS]), [DEFAULT_CONFIG], out)
-    _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay for")
-    _say(f"each, with configs/{DEFAULT_CONFIG}: rules, no model. The first start makes two databases and takes longest.")
+    _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
+    _say(
+        f"for each, with configs/{DEFAULT_CONFIG}: rules, no model. The first start makes two databases: half a minute."
+    )
     tally = summary.Tally(batch)
     with watching.watching(tally) as watch:
         start.evaluate(batch, watch.ended, on_turn=watch.turn)
