@@ -110,6 +110,8 @@ def batch_over(
     out = out.resolve()
     store.check_writable(out)
     for config in configs:
+        config.tracker.ready(out)
+    for config in configs:
         store.check_writable(out / config.name)
         store.clear_partial(out / config.name)
     asks = any(config.backbone for config in configs)

@@ -185,6 +185,10 @@ class Tracker(Plugin):
 
     kind = "tracker"
 
+    def ready(self, out: Path) -> None:
+        """Called before anything starts, quick. Raises ConfigError where it can never log; the default is ready."""
+        return
+
     def begin(self, arm: Arm) -> None:
         """Told before the first case of a config; the default keeps nothing."""
         return

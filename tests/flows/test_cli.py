@@ -86,6 +86,34 @@ def test_a_model_that_this_machine_cannot_hold_is_told_before_anything_starts():
     assert "will not fit" not in sgcad("check", "mini").stdout
 
 
+def test_a_tracker_that_can_never_log_starts_nothing(reports, config_file, tmp_path):
+    (tmp_path / "out" / "mlflow.db").mkdir(parents=True)
+    started = time.monotonic()
+    ended = sgcad("evaluate", reports(a=""), "--config", config_file(tracker="mlflow"), "--out", tmp_path / "out")
+    assert ended.returncode == 2
+    assert "mlflow.db: is a folder, where MLflow's database would be" in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert not (tmp_path / "out" / "kit" / "a").exists()
+    assert time.monotonic() - started < 30
+
+
+def test_an_interpreter_that_cannot_be_started_is_named(monkeypatch):
+    from sgcad_core.errors import MissingTool
+    from sgcad_core.workers import Worker
+
+    monkeypatch.setattr(sys, "executable", "/no/such/python")
+    with pytest.raises(MissingTool, match=r"python cannot be started \(No such file"):
+        Worker("flows.worker:run_in_worker").call("x", timeout_s=1)
+
+
+def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
+    ended = sgcad("doctor", "--out", "/proc/runs", PREFECT_HOME="/proc/prefect")
+    assert ended.returncode == 1
+    assert "wrong output: --out /proc/runs: cannot be written" in ended.stdout
+    assert "not looked at flow: mend home, output first" in ended.stdout
+    assert "not looked at tracking: mend output first" in ended.stdout
+
+
 def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
     (tmp_path / "bad.yaml").write_text("a: [1, 2")
     ended = sgcad("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")
