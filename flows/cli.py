@@ -166,10 +166,10 @@ def study(
     if hosts:
         meeting = away.Away(hosts, deployment)
         code, submitted = _carry_out(made.batch, lambda watch: away.run(made, meeting, watch.ended))
-        typer.echo(away.told(submitted))
+        typer.echo(away.resubmitted_lines(submitted))
         raise typer.Exit(code)
     code, cost = _carry_out(made.batch, lambda watch: running.run(made, watch.ended, watch.turn))
-    typer.echo(running.told(made, cost))
+    typer.echo(running.cost_line(made, cost))
     raise typer.Exit(code)
 
 

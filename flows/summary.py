@@ -42,7 +42,7 @@ class Tally:
         """1 if a case failed or was exhausted, else 0."""
         return int(any(e.result["status"] in ("failed", "exhausted") for _, e in self.endings))
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """Counts of the statuses so far, in words."""
         counts = {s: sum(e.result["status"] == s for _, e in self.endings) for s in STATUSES}
         return ", ".join(f"{n} {status}" for status, n in counts.items() if n)

@@ -46,11 +46,11 @@ class Watch:
             self._parts.pop(job.name, None)
             self.tally.add(job, ending, untracked)
             if self.bar:
-                self._move(self.tally.told())
+                self._move(self.tally.in_words())
             elif self._is_time():
                 status, spent = ending.result["status"], sum(ending.result["seconds"].values())
                 about = f"{job.name}: {status}" + (", done before" if ending.reused else f" ({spent:.1f} s)")
-                self._say(about if self.total <= LINES_AT_ONCE else self.tally.told())
+                self._say(about if self.total <= LINES_AT_ONCE else self.tally.in_words())
 
     def turn(self, job: Job, attempt: str) -> None:
         """An attempt begins, such as "road[2]"."""
@@ -60,7 +60,7 @@ class Watch:
         with self._lock:
             self._parts[job.name] = start + room * (1 - (2 / 3) ** (int(number or 1) - 1))
             if self.bar:
-                self._move(f"{self.tally.told() or 'working'}; {job.case.id}: {stage}, attempt {number or 1}")
+                self._move(f"{self.tally.in_words() or 'working'}; {job.case.id}: {stage}, attempt {number or 1}")
 
     def _move(self, told: str) -> None:
         if self.bar and self.task is not None:
