@@ -20,6 +20,7 @@ from sgcad_core.evidence import Fact
 from sgcad_core.narrative.clauses import Segment, Told, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
@@ -112,5 +113,6 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     settled = settle(seen.draft)
     roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
-    facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
+    roles = role_facts(telling, named.told, roads.crash)
+    facts = (*crash_provenance(telling, as_read), *roles, *road_provenance(telling, roads))
     return Reading(narrative, found, roads.crash, roads, facts)
