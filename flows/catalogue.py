@@ -76,6 +76,8 @@ def describe_config(config: Config) -> None:
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:
             table.add_row(kind, *_row(plugin))
+    for entry in config.drive.drivers if config.drive else ():
+        table.add_row("driver", *_row(entry.driver))
     for plugin in config.validators:
         table.add_row(f"validator ({plugin.stage})", *_row(plugin))
     console.print(table)

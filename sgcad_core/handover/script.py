@@ -139,7 +139,7 @@ def _cut(script: Script, ego: str, track: Trajectory) -> int | None:
 
 def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
     """An actor's line: its script up to the cut, then on as before."""
-    table = poses(track)
+    table: Floats = poses(track)
     last = len(table) - 1 if cut is None else min(cut, len(table) - 1)
     table = table[: last + 1].copy()
     table[:, 2] = np.unwrap(table[:, 2])
@@ -148,7 +148,8 @@ def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
         table = np.vstack((table, _beyond(script, track.actor, table[-1], start, speed)))
     s = arc_lengths(table[:, :2])
     rate: Floats = np.gradient(s, STEP_S) if len(s) > 1 else np.zeros(1)
-    return Way(np.arange(len(table)) * STEP_S, table, s, rate)
+    t_s: Floats = np.arange(len(table)) * STEP_S
+    return Way(t_s, table, s, rate)
 
 
 def _start(table: Floats) -> tuple[Start, float]:

@@ -1,7 +1,7 @@
 """How hard a contact is: closing speed, change of velocity of both, energy, and the risk of injury that goes with it.
 
-One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.impact`); masses are typical of
-kind and length. The same for the script and for a drive, so that they can be compared. SI units.
+One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.impact`); masses are typical
+of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
 """
 
 from __future__ import annotations

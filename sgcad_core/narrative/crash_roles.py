@@ -10,7 +10,7 @@ Reconstructed Fatal Crashes, 2021. Knows no road.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from sgcad_core.evidence import Fact
 from sgcad_core.language import rule
@@ -19,10 +19,8 @@ from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.provenance import Telling, default
 from sgcad_core.narrative.vehicles import MENTION
+from sgcad_core.seat import CrashRole
 from sgcad_core.specs import Maneuver
-
-CrashRole = Literal["initiator", "responder", "bystander"]
-CRASH_ROLES: tuple[CrashRole, ...] = ("initiator", "responder", "bystander")
 
 _REASON, _EVENT, _BROKE, _CITED, _MANEUVER = 8.0, 4.0, 2.0, 2.0, 1.0
 """What a telling weighs. The codes are given after an inquiry, by people who know all that a report tells."""
@@ -76,7 +74,7 @@ def _fact(
     telling: Telling, field: str, name: str, first: str | None, signs: Sequence[Sign], pair: tuple[str, str]
 ) -> Fact:
     """The role with the sign that weighs most for it: one's own, else the other one's."""
-    role = "initiator" if name == first else "responder"
+    role: CrashRole = "initiator" if name == first else "responder"
     way = 1.0 if role == "initiator" else -1.0
     other = pair[1] if name == pair[0] else pair[0]
     for whose, sign_of in ((name, way), (other, -way)):
