@@ -16,6 +16,8 @@ from sgcad_core.records import Record
 from sgcad_core.seat import STEP_S, Way
 
 LOOK_BACK_S = 6.0
+GRAIN_S = 0.01
+"""Between two looks whether boxes touch: at 0.05 s crossing corners can miss each other by 0.5 m."""
 AFTER_S = 6.0
 """Behind the scripted contact: whoever has not met by then has avoided."""
 ASIDE_M = 3.5
@@ -77,7 +79,7 @@ def _others(staging: Staging) -> dict[str, Floats]:
 
 
 def _clock(staging: Staging) -> Floats:
-    return np.arange(0.0, staging.contact_s + AFTER_S, STEP_S)
+    return np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
 
 
 def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats]) -> bool:
@@ -94,8 +96,8 @@ def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats
 # ------------------------------------------------------------------ braking
 def _braked(way: Way, onset_s: float, deceleration: float) -> tuple[int, Floats]:
     """First sample, and poses from there on, of an ego that brakes at an onset."""
-    k = round(onset_s / STEP_S)
-    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, STEP_S)
+    k = round(onset_s / GRAIN_S)
+    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, GRAIN_S)
     speed = way.speed_at(onset_s)
     stops = speed / max(deceleration, 1e-9)
     braking = np.minimum(ran, stops)
@@ -127,8 +129,8 @@ def _steered_by(staging: Staging, others: dict[str, Floats], onsets: Floats) -> 
 
 def _aside(staging: Staging, onset_s: float, side: float) -> tuple[int, Floats]:
     """An ego that moves aside at an onset: half the way with the lateral acceleration, half against it."""
-    way, k = staging.way, round(onset_s / STEP_S)
-    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, STEP_S)
+    way, k = staging.way, round(onset_s / GRAIN_S)
+    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, GRAIN_S)
     poses = way.poses_at(np.interp(onset_s + ran, way.t_s, way.s_m))
     lateral = _STEER_SHARE * staging.script.friction_mps2
     half_s = float(np.sqrt(ASIDE_M / lateral))

@@ -148,7 +148,7 @@ def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
         table = np.vstack((table, _beyond(script, track.actor, table[-1], start, speed)))
     s = arc_lengths(table[:, :2])
     rate: Floats = np.gradient(s, STEP_S) if len(s) > 1 else np.zeros(1)
-    t_s: Floats = np.arange(len(table)) * STEP_S
+    t_s = np.arange(len(table), dtype=np.float64) * STEP_S
     return Way(t_s, table, s, rate)
 
 
