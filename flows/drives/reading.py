@@ -23,14 +23,21 @@ def case_folders(places: Iterable[Path]) -> list[Path]:
     """Folders of executed cases: the places themselves or any below them. Raises BadInput where there is none."""
     found: dict[Path, None] = {}
     for place in places:
-        below = [place] if (place / NEEDED[0]).is_file() else [f.parent for f in sorted(place.rglob(NEEDED[0]))]
-        executed = [f for f in below if all((f / name).is_file() for name in NEEDED)]
+        executed = [f for f in _below(place) if all((f / name).is_file() for name in NEEDED)]
         if not executed:
             raise BadInput(
                 f"{place}: no executed case ({', '.join(NEEDED)}); give a case's folder in runs/, or runs/ itself"
             )
         found |= dict.fromkeys(executed)
     return list(found)
+
+
+def _below(place: Path) -> list[Path]:
+    """The case itself, or those of a config or of several; not the copies that a tracker keeps deeper down."""
+    if (place / NEEDED[0]).is_file():
+        return [place]
+    files = sorted(file for depth in ("*", "*/*") for file in place.glob(f"{depth}/{NEEDED[0]}"))
+    return [file.parent for file in files if not any(part.startswith(".") for part in file.parts[-3:])]
 
 
 def script_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Script:

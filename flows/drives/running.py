@@ -15,7 +15,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from flows import store
 from flows.cases import code_digest
@@ -26,7 +26,7 @@ from sgcad_core.handover.avoidance import avoidance
 from sgcad_core.handover.clock import RELEASE_S
 from sgcad_core.handover.drive import Drive, drive
 from sgcad_core.handover.outcome import came, series
-from sgcad_core.handover.script import Script, staged
+from sgcad_core.handover.script import Script, Staging, staged
 
 FOLDER = "drive"
 
@@ -56,12 +56,29 @@ def drive_script(script: Script, order: Order, place: Path, content: str = "") -
     """Drive a script as ordered. `content`: digest of what the script is made of; "": nothing is reused."""
     found = []
     for ego, role in egos(script, order.ego, order.roles):
+        told: _Told | None = None
         for entry in order.drivers:
             target = place / entry.label / ego
             digest = _digest(content, entry, order, ego, role)
             done = _done(target, digest) if content and not order.fresh else None
-            found.append(done or _one(script, order, entry, ego, role, target, digest))
+            if done is None and told is None:
+                told = _Told.of(script, ego)
+            found.append(done or _one(cast("_Told", told), order, entry, role, target, digest))
     return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """An ego's staging with what could have been done: the same for all drivers."""
+
+    staging: Staging
+    avoidance: dict[str, Any] | None
+
+    @staticmethod
+    def of(script: Script, ego: str) -> _Told:
+        staging = staged(script, ego)
+        could = avoidance(staging)
+        return _Told(staging, could.model_dump(mode="json") if could else None)
 
 
 def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str) -> str:
@@ -77,22 +94,17 @@ def _done(target: Path, digest: str) -> dict[str, Any] | None:
     return told if isinstance(told, dict) and told.get("digest") == digest else None
 
 
-def _one(
-    script: Script, order: Order, entry: DriverEntry, ego: str, role: str, target: Path, digest: str
-) -> dict[str, Any]:
-    started = time.perf_counter()
+def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path, digest: str) -> dict[str, Any]:
+    started, staging = time.perf_counter(), told.staging
     about: dict[str, Any] = {
-        "case": script.case, "driver": entry.label, "fields": entry.raw, "ego": ego, "role": role,
+        "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
         "release_s": order.release_s, "factor": order.factor, "digest": digest,
     }  # fmt: skip
     try:
-        staging = staged(script, ego)
         driven = drive(staging, entry.driver, release_s=order.release_s, factor=order.factor)
     except SgcadError as fault:
         return about | {"outcome": "failed", "reason": str(fault)}
-    judged = came(driven).model_dump(mode="json")
-    could = avoidance(staging)
-    about |= judged | {"avoidance": could.model_dump(mode="json") if could else None}
+    about |= came(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
     about |= {"seconds": round(time.perf_counter() - started, 4)}
     _leave(driven, about | {"series": series(driven)}, target, order)
     return about

@@ -49,8 +49,7 @@ def avoidance(staging: Staging) -> Avoidance | None:
     others = _others(staging)
     full = staging.script.friction_mps2
     onsets = np.arange(staging.contact_s, max(staging.contact_s - LOOK_BACK_S, -1e-9), -STEP_S)
-    braked = [_clear(staging, others, _braked(staging.way, t, full)) for t in onsets]
-    brake = next((t for t, clear in zip(onsets, braked, strict=True) if clear), None)
+    brake = next((t for t in onsets if _clear(staging, others, _braked(staging.way, t, full))), None)
     steer = _steered_by(staging, others, onsets)
     asked = [f"{b:g}" for b in (0.5, 1.0, 1.5, 2.0, 3.0, 4.0) if b <= staging.contact_s]
     return Avoidance(
@@ -88,7 +87,10 @@ def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats
     size = staging.script.sizes
     for name, theirs in others.items():
         rows = theirs[start : start + len(mine)]
-        if (box_gaps(mine[: len(rows)], size[staging.ego], rows, size[name]) <= 0).any():
+        own = mine[: len(rows)]
+        reach = (np.hypot(*size[staging.ego]) + np.hypot(*size[name])) / 2
+        near = np.hypot(own[:, 0] - rows[:, 0], own[:, 1] - rows[:, 1]) <= reach
+        if near.any() and (box_gaps(own[near], size[staging.ego], rows[near], size[name]) <= 0).any():
             return False
     return True
 
