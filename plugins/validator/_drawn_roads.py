@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.narrative.compass import angle_of
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Compass
 
 MPS_PER_MPH = 0.44704

@@ -15,7 +15,7 @@ from sgcad_core.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
 
 def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     """Road id -> what is told of it. A limit counts as posted where the report tells it of a road of that axis."""
-    return {road.id: _told(road, _facts_of(road, facts)) for road in spec.roads}
+    return {road.id: _as_told(road, _facts_of(road, facts)) for road in spec.roads}
 
 
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
@@ -27,7 +27,7 @@ def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
     return [r for r in facts.roads if r.kind in kinds and (r.axis is None or r.axis == axis_of(bearing))]  # type: ignore[arg-type]
 
 
-def _told(road: Road, facts: list[RoadFact]) -> ToldRoad:
+def _as_told(road: Road, facts: list[RoadFact]) -> ToldRoad:
     limits = {fact.speed_limit_mph for fact in facts} - {None}
     area: RoadArea = (
         "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else ""

@@ -14,9 +14,9 @@ from itertools import count
 from typing import NamedTuple
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.planner.path import end_heading
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 
 AHEAD_M = 120.0

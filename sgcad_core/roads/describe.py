@@ -14,8 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]

@@ -14,7 +14,7 @@ from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
