@@ -28,9 +28,9 @@ from sgcad_core.interfaces import (
     Tracker,
     Validator,
 )
+from sgcad_core.kinds import CrashRole
 from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
-from sgcad_core.seat import CrashRole
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings")

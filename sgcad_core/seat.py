@@ -8,15 +8,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.specs import ActorKind
-
-CrashRole = Literal["initiator", "responder", "bystander"]
-CRASH_ROLES: tuple[CrashRole, ...] = ("initiator", "responder", "bystander")
 
 STEP_S = 0.05
 """From one view to the next: 20 Hz."""

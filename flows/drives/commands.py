@@ -68,7 +68,7 @@ def _yaml(text: str) -> Any:
 
 
 def _roles(role: str) -> tuple[str, ...]:
-    from sgcad_core.seat import CRASH_ROLES
+    from sgcad_core.kinds import CRASH_ROLES
 
     if role == "both":
         return ("initiator", "responder")

@@ -11,8 +11,8 @@ from flows import store
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.handover.script import Script
+from sgcad_core.kinds import CRASH_ROLES
 from sgcad_core.records import ActorInfo
-from sgcad_core.seat import CRASH_ROLES
 from sgcad_core.specs import Contact, Surface
 
 NEEDED = ("result.json", "trajectories.csv", "road.net.xml")

@@ -13,8 +13,8 @@ from rich.table import Table
 
 from flows.terminal import escape
 from sgcad_core.handover.outcome import OUTCOMES
+from sgcad_core.kinds import CRASH_ROLES
 from sgcad_core.metrics.statistics import wilson
-from sgcad_core.seat import CRASH_ROLES
 
 WIDTH = 118
 MAX_TOLD = 10

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import Connection, Direction, Lane, LaneGraph
 from sgcad_core.geometry.plane import Floats, arc_lengths, headings, resample
+from sgcad_core.roads.lane_graph import Connection, Direction, Lane, LaneGraph
 
 _NEAR_M = 3.5
 _TURNED_RAD = math.radians(40)

@@ -15,11 +15,11 @@ import numpy as np
 
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_contact, poses
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
 from sgcad_core.handover.beyond import Start, gone_on
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records import ActorInfo, ObservedContact, Trajectory
+from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.seat import STEP_S, Way
 from sgcad_core.specs import Contact, Surface
 

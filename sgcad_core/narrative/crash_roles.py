@@ -12,14 +12,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from sgcad_core.evidence import Fact
+from sgcad_core.facts import Fact
+from sgcad_core.kinds import CrashRole
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.provenance import Telling, default
 from sgcad_core.narrative.vehicles import MENTION
-from sgcad_core.seat import CrashRole
 from sgcad_core.specs import Maneuver
 
 _REASON, _EVENT, _BROKE, _CITED, _MANEUVER = 8.0, 4.0, 2.0, 2.0, 1.0
@@ -43,10 +43,10 @@ class Sign(NamedTuple):
     cue: Cue | None = None
 
 
-def role_facts(telling: Telling, told: Sequence[Told], crash: CrashFacts) -> Iterator[Fact]:
+def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
     """`vehicles.<id>.role` (and `others.<id>.role`) of everybody in the crash."""
     ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
-    signs = [*_told_signs(told, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
+    signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
     pair = _pair(crash)
     first = _initiator(pair, signs) if pair else None
     for name in ids:
@@ -86,15 +86,15 @@ def _fact(
 
 
 # ------------------------------------------------------------------ what sentences tell
-def _told_signs(told: Sequence[Told], known: set[str]) -> Iterator[Sign]:
-    for sentence in told:
+def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Sign]:
+    for sentence in statements:
         named = [v for v in MENTION.findall(sentence.text) if v in known]
         owner = named[0] if named else sentence.subject
         if owner in known and owner is not None:
             yield from _of_sentence(sentence, owner)
 
 
-def _of_sentence(sentence: Told, owner: str) -> Iterator[Sign]:
+def _of_sentence(sentence: Statement, owner: str) -> Iterator[Sign]:
     text = sentence.text.lower()
     if (read := _read(text, sentence.subject == owner)) is not None:
         weight, name = read

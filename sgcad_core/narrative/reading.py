@@ -113,6 +113,6 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     settled = settle(seen.draft)
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
-    roles = role_facts(telling, named.told, roads.crash)
+    roles = role_facts(telling, named.statements, roads.crash)
     facts = (*crash_provenance(telling, as_read), *roles, *road_provenance(telling, roads))
     return Reading(narrative, found, roads.crash, roads, facts)

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.handover.script import Script
 from sgcad_core.records import ActorInfo, Trajectory
+from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.specs import Contact
 
 EMPTY = LaneGraph({}, (), {})
