@@ -21,6 +21,7 @@ from sgcad_core.facts import Fact
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
@@ -118,6 +119,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
-    facts = (*crash_provenance(telling, as_read), *lights, *road_provenance(telling, roads))
+    roles = role_facts(telling, named.statements, roads.crash)
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
     states = {vehicle: told.state for vehicle, told in seen.signals.items()}
     return Reading(narrative, found, roads.crash, roads, states, facts)
