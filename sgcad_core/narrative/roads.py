@@ -14,7 +14,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Told
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
-from sgcad_core.narrative.junction import JunctionFacts, junction_of
+from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
@@ -130,8 +130,13 @@ def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
 
 def _telling(told: tuple[Told, ...]) -> list[Told]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
-    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [_without_circle(t) for t in told if t.role in CRASH_ROLES or t.role == "other"]
     return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
+
+
+def _without_circle(told: Told) -> Told:
+    """The sentence without the lanes of a roundabout, which are those of no road."""
+    return told._replace(text=CIRCLE_LANES.sub("roundabout", told.text))
 
 
 def _road(

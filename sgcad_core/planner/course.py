@@ -26,12 +26,16 @@ _SMOOTH_MPS = 26.0
 
 
 class Passage(NamedTuple):
-    """A node on the way: stations where its area begins and ends, and whether roads really meet there."""
+    """A node on the way: stations where its area begins and ends, and whether roads really meet there.
+
+    `around`: behind it the way goes on around a roundabout.
+    """
 
     node: str
     entry_m: float
     exit_m: float
     is_junction: bool
+    around: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +199,9 @@ def _measured(
         if not piece.is_crossing:
             roads.append((way.road, float(a), float(b)))
             continue
-        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3))
+        onward = route.ways[piece.way + 1].id if piece.way + 1 < len(route.ways) else ""
+        around = onward in graph.edges and graph.is_around(graph.edges[onward])
+        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around))
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
     opposite, left, right = _room(graph, route.ways[route.start], lane)

@@ -49,6 +49,7 @@ class _Way:
     heading_rad: float
     turns: tuple[Turn, ...] = ()
     center_lane: bool = False
+    circle: bool = False
 
     @property
     def edge(self) -> str:
@@ -83,9 +84,9 @@ def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tupl
             turns = road.turns_forward if inward == "forward" else road.turns_backward
             center = has_center_lane(road)
             if count := lanes(road, inward):
-                arriving.append(_Way(road.id, inward, road.kind, count, h_in, turns, center))
+                arriving.append(_Way(road.id, inward, road.kind, count, h_in, turns, center, road.circle))
             if count := lanes(road, outward):
-                leaving.append(_Way(road.id, outward, road.kind, count, h_out, (), center))
+                leaving.append(_Way(road.id, outward, road.kind, count, h_out, (), center, road.circle))
     return arriving, leaving
 
 
@@ -103,6 +104,8 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
     exits = _drivable([_Exit(w, _angle_deg(approach, w)) for w in leaving if w.road != approach.road], approach)
     if not exits:
         return []
+    if approach.circle:
+        return _around(approach, exits)
     by_movement = _movements(exits)
     uses = _lane_uses(approach, by_movement)
     found = []
@@ -111,6 +114,17 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
         for target in targets:
             found += _join(approach, serving, movement, target, arriving)
     return found + _center_lane_link(approach, by_movement)
+
+
+def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:
+    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit opens behind it."""
+    found = []
+    for way, _ in exits:
+        shared = min(approach.lanes, way.lanes)
+        pairs = [(lane, lane) for lane in range(shared)]
+        pairs += [(shared - 1, lane) for lane in range(shared, way.lanes if not way.circle else 0)]
+        found += [Link(approach.edge, lane, way.edge, goal) for lane, goal in pairs]
+    return found
 
 
 def _drivable(exits: list[_Exit], approach: _Way) -> list[_Exit]:

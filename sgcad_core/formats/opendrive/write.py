@@ -93,6 +93,11 @@ class _Document:
                 add(made, "control", signalId=signal, type="0")
         for node, name in self.junctions.items():
             self._junction(root, node, name)
+        for i, circle in enumerate(self.graph.circles, 1):
+            group = add(root, "junctionGroup", id=str(i), name=min(circle), type="roundabout")
+            for node, name in self.junctions.items():
+                if node in circle:
+                    add(group, "junctionReference", junction=name)
         return root
 
     def _header(self, root: Element) -> None:

@@ -21,6 +21,7 @@ from sgcad_core.formats.sumo.lane_graph import (
     NetworkFigures,
     Phase,
     Program,
+    contracted,
     edge_id,
     network_figures,
     road_of,
@@ -47,7 +48,7 @@ def parse_net(net_xml: str) -> LaneGraph:
     edges = {e.get("id", ""): _edge(e) for e in root.iterfind("edge") if e.get("function", "normal") == "normal"}
     nodes = {j.get("id", ""): _node(j) for j in root.iterfind("junction") if j.get("type") != "internal"}
     _check_ends(edges, nodes)
-    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes, _programs(root))
+    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes, _programs(root), _circles(root))
 
 
 def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
@@ -56,12 +57,19 @@ def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
     Raises InvalidOutput where it is no XML.
     """
     found: dict[tuple[str, str], int] = {}
-    for edge in parse_xml(net_xml, "net_xml").iterfind("edge"):
+    root = parse_xml(net_xml, "net_xml")
+    for edge in root.iterfind("edge"):
         ends = edge.get("from", ""), edge.get("to", "")
         lanes = sum(map(_allows_cars, edge.iterfind("lane")))
         if edge.get("function", "normal") == "normal" and lanes and ends[0] != ends[1]:
             found[ends] = found.get(ends, 0) + lanes
-    return found
+    return contracted(found, {node: min(circle) for circle in _circles(root) for node in circle})
+
+
+def _circles(root: Element) -> tuple[frozenset[str], ...]:
+    """Nodes of every roundabout that has some."""
+    found = (frozenset(circle.get("nodes", "").split()) for circle in root.iterfind("roundabout"))
+    return tuple(circle for circle in found if circle)
 
 
 def _edge(element: Element) -> Edge:

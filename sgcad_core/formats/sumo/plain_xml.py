@@ -7,7 +7,7 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 
 from lxml import etree
@@ -31,8 +31,10 @@ from sgcad_core.roads.road_spec import spec_findings
 from sgcad_core.specs import Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
-SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
+SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15, "circle": 20}
 """Where the report states no limit."""
+CIRCLE = "circle"
+"""Of a piece of a roundabout, where others tell their kind."""
 MAX_LANES = 16
 """Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
 DRIVEWAY_RADIUS_M = 1.5
@@ -94,7 +96,23 @@ def _edges(drawn: Mapping[str, Roadway], told: Mapping[str, ToldRoad]) -> str:
         for direction in directions:
             if lanes(way.road, direction):
                 _edge(root, way, direction, told.get(way.road.id, ToldRoad()))
+    for nodes, edges in roundabouts(drawn[name].road for name in drawn):
+        etree.SubElement(root, "roundabout", nodes=" ".join(nodes), edges=" ".join(edges))
     return to_text(root)
+
+
+def roundabouts(roads: Iterable[Road]) -> list[tuple[list[str], list[str]]]:
+    """Nodes and edges of each closed circle."""
+    onward = {road.from_node: road for road in roads if road.circle}
+    found = []
+    while onward:
+        road, ring = next(iter(onward.values())), list[Road]()
+        while road.from_node in onward:
+            ring.append(onward.pop(road.from_node))
+            road = onward.get(road.to_node, road)
+        if ring[-1].to_node == ring[0].from_node:
+            found.append(([r.from_node for r in ring], [r.id for r in ring]))
+    return found
 
 
 def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> None:
@@ -107,14 +125,15 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     edge.set("to", ends[1])
     edge.set("priority", str(_priority(road)))
     edge.set("numLanes", str(count + center))
-    edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[road.kind]) * MPS_PER_MPH:.3f}")
+    kind = CIRCLE if road.circle else road.kind
+    edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[kind]) * MPS_PER_MPH:.3f}")
     edge.set("width", f"{lane_width_m(road):g}")
     edge.set("spreadType", "right")
     edge.set("shape", _shape(way.left_border(direction)))
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
-    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
+    _tell(edge, {KIND: kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
 
 
 def _tell(element: Element, told: Mapping[str, str]) -> None:
@@ -123,7 +142,7 @@ def _tell(element: Element, told: Mapping[str, str]) -> None:
 
 
 def _priority(road: Road) -> int:
-    return 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
+    return 6 if road.circle else 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
 
 
 def _shape(points: Floats) -> str:
