@@ -30,6 +30,8 @@ NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yie
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
+Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
+"""What lies beside the lanes of a road, in this order from the lanes outwards."""
 ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
@@ -116,6 +118,10 @@ class Road(Spec):
     minor: bool = Field(False, description="has the stop or yield sign where it meets a node so controlled")
     speed_limit_mph: SpeedLimitMph | None = None
     circle: bool = added(False, "a piece of a roundabout: one-way forward, counterclockwise from node to node")
+    beside: tuple[Beside, ...] = added(
+        (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
+    )
+    crosswalks: tuple[Id, ...] = added((), "its ends (from_node, to_node) at which a crosswalk leads over it")
 
 
 class RoadSpec(Spec):
@@ -147,6 +153,10 @@ class Leg(Spec):
     control: Literal["none", "signal", "flashing", "stop", "yield"] = "none"
     curve: Literal["none", "left", "right"] = Field("none", description="as one drives towards the hub")
     speed_limit_mph: SpeedLimitMph | None = None
+    beside: tuple[Beside, ...] = added(
+        (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
+    )
+    crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
 
 
 class Access(Spec):

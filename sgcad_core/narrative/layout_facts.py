@@ -50,6 +50,18 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
+        found = self._roads_alone()
+        return found.model_copy(update={"legs": tuple(self._with_edges(leg, found.legs) for leg in found.legs)})
+
+    def _with_edges(self, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
+        """A leg with what the story tells of its edges; a crosswalk leads over all legs, on a plain road once."""
+        if leg.kind != "road" or self.facts.junction.kind == "ramp":
+            return leg
+        walked = self.facts.crosswalk and (len(legs) > 2 or leg is legs[0])
+        sides = self.facts.beside if not self.facts.crosswalk else (*self.facts.beside, "sidewalk")
+        return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
+
+    def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()
         junction = self.facts.junction
         if junction.kind == "none":

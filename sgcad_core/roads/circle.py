@@ -29,6 +29,8 @@ class Rim(NamedTuple):
 
     radius_m: float
     lanes: int
+    walked: bool = False
+    """Whether a sidewalk runs around outside."""
 
     def at(self, angle_rad: float) -> tuple[float, float]:
         """A point of the rim."""
@@ -41,6 +43,7 @@ class Mouth(NamedTuple):
     name: str
     angle_rad: float
     width_m: float
+    walked: bool = False
 
 
 def rim_of(lanes: int, mouths: Sequence[Mouth]) -> Rim:
@@ -48,7 +51,7 @@ def rim_of(lanes: int, mouths: Sequence[Mouth]) -> Rim:
     needed = [
         (BETWEEN_M + SPLITTER_M + (a.width_m + b.width_m) / 2) / max(_gap(a, b), 1e-3) for a, b in _around(mouths)
     ]
-    return Rim(max(RADIUS_M[lanes], *needed), lanes)
+    return Rim(max(RADIUS_M[lanes], *needed), lanes, any(m.walked for m in mouths))
 
 
 def node_of(leg: str) -> str:
@@ -85,6 +88,7 @@ def _piece(rim: Rim, name: str, index: int, start: tuple[str, float], end: tuple
     return Road(
         id=f"{name}_{index}" if index else name, from_node=start[0], to_node=end[0],
         lanes_forward=rim.lanes, lanes_backward=0, via=tuple(_inner(rim, start[1], end[1])), circle=True,
+        beside=("sidewalk",) if rim.walked else (),
     )  # fmt: skip
 
 

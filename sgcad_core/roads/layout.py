@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
-from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M
+from sgcad_core.roads.road_geometry import BESIDE_M, LANE_M, MEDIAN_M
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -47,7 +47,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     A leg with an access far out is longer. A roundabout has a circle of nodes in place of the hub.
     """
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
-    mouths = [Mouth(leg.bearing, _angle(leg.bearing), _width(leg)) for leg in legs]
+    mouths = [Mouth(leg.bearing, _angle(leg.bearing), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
     nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
@@ -148,7 +148,8 @@ def _clearance(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> float:
 
 def _width(leg: Leg) -> float:
     """Lanes and median of a leg, metres."""
-    return (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
+    lanes = (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
+    return lanes + sum(BESIDE_M[what] for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
 
 
 def _crowd(layout: RoadLayout, leg: Leg) -> float:
@@ -215,13 +216,14 @@ class _LegDrawing:
         (inner, s_in), (outer, s_out) = places[index], places[index + 1]
         leg, last = self.leg, len(places) - 2
         suffix = "" if index == 0 else OUTER if index == last else f"_mid{_number(index - 1)}"
+        walked = leg.crosswalk and index == 0
         return Road(
             id=f"{leg.bearing}{suffix}", from_node=outer, to_node=inner,
             lanes_forward=leg.lanes_in, lanes_backward=leg.lanes_out,
             turns_forward=leg.turns_in if index == 0 else (), center_turn_lane=leg.center_turn_lane,
             median=leg.median, via=self.path.between(s_out, s_in), kind=leg.kind,
             minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road" or self.rim is not None),
-            speed_limit_mph=leg.speed_limit_mph,
+            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, crosswalks=(inner,) if walked else (),
         )  # fmt: skip
 
     def _access(self, access: Access, side: str, joint: str, s_m: float, so_far: list[Road]) -> tuple[Node, Road]:

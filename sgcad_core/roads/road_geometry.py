@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.specs import Node, Road, RoadSpec
+from sgcad_core.specs import Beside, Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]
 
@@ -25,8 +25,13 @@ CIRCLE_LANE_M = 4.9
 """Of a roundabout (16 ft, NCHRP 672)."""
 MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier": 1.8}
 """Gap between the directions. Grass medians are often wider; beyond this a junction no longer looks like one."""
+BESIDE_M: Mapping[Beside, float] = {"bike_lane": 1.5, "parking": 2.4, "shoulder": 2.4, "sidewalk": 1.8}
+"""Usual widths (AASHTO 2018: 5, 8, 8 and 6 ft)."""
+ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
+ISLAND_M = 40.0
+"""Length of a roundabout's splitter island."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +73,8 @@ class Roadway:
         (start, end), (at_start, at_end) = self.end_gaps_m, self.opens
         if direction == "backward":
             start, end, at_start, at_end = end, start, at_end, at_start
-        taper = max(min(TAPER_M, along[-1] / 2), 1e-9)
-        from_start, from_end = _ease(along / taper, at_start), _ease((along[-1] - along) / taper, at_end)
+        tapers = [max(min(ISLAND_M if opens else TAPER_M, along[-1] / 2), 1e-9) for opens in (at_start, at_end)]
+        from_start, from_end = _ease(along / tapers[0], at_start), _ease((along[-1] - along) / tapers[1], at_end)
         return start + (self.gap_m - start) * from_start + (end - self.gap_m) * (1 - from_end)
 
 
@@ -99,6 +104,11 @@ def lane_width_m(road: Road) -> float:
     if road.circle:
         return CIRCLE_LANE_M
     return DRIVEWAY_LANE_M if road.kind == "driveway" else LANE_M
+
+
+def beside(road: Road) -> tuple[Beside, ...]:
+    """What lies beside the lanes of either direction, from the lanes outwards, each once."""
+    return tuple(what for what in ORDER if what in road.beside)
 
 
 def roadways(spec: RoadSpec) -> dict[str, Roadway]:

@@ -32,6 +32,10 @@ def _road_faults(spec: RoadSpec, index: int, road: Road) -> Iterator[Finding]:
     if road.from_node == road.to_node:
         remedy = "let it end at another node; cut a loop into two roads"
         yield _finding(f"roads[{index}]", "the road ends where it begins", road.from_node, remedy)
+    for node in road.crosswalks:
+        if node not in (road.from_node, road.to_node):
+            remedy = f"use {road.from_node} or {road.to_node}"
+            yield _finding(f"roads[{index}].crosswalks", "the road does not end there", node, remedy)
     if not road.lanes_forward and not road.lanes_backward:
         yield _finding(f"roads[{index}]", "the road has no lanes", "0 and 0", "give one direction a lane")
 

@@ -42,6 +42,8 @@ class Lane:
     length_m: float
     speed_mps: float
     allows_cars: bool
+    type: str = ""
+    """Of a lane that is not for cars: biking, parking, shoulder, sidewalk; "" where the file names none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +85,15 @@ class Connection:
     link: int = -1
 
 
+class Crossing(NamedTuple):
+    """A crosswalk over edges where they meet a node; `shape`: its center line, (n, 2) metres, as one walks."""
+
+    node: str
+    edges: tuple[str, ...]
+    shape: Floats
+    width_m: float
+
+
 class Phase(NamedTuple):
     """One phase of a signal program: a letter a controlled connection (G g green, y yellow, r red, ...)."""
 
@@ -107,6 +118,7 @@ class LaneGraph:
     programs: Mapping[str, Program] = field(default_factory=dict)
     circles: tuple[frozenset[str], ...] = ()
     """Nodes of each roundabout."""
+    crossings: tuple[Crossing, ...] = ()
 
     @cached_property
     def center_of(self) -> Mapping[str, str]:

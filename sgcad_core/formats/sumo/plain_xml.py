@@ -9,26 +9,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from typing import NamedTuple
 
 from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.sumo.lane_graph import edge_id
 from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.road_geometry import (
+    BESIDE_M,
     Direction,
     Roadway,
+    beside,
     has_center_lane,
     lane_width_m,
     lanes,
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
-from sgcad_core.specs import Node, NodeControl, Road, RoadSpec, ToldRoad
+from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15, "circle": 20}
@@ -41,6 +45,21 @@ DRIVEWAY_RADIUS_M = 1.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
 """The vehicle class that alone may use a two-way left-turn lane, so that no one counts it as a through lane."""
+CROSSWALK_M = 3.0
+"""Width of a crosswalk (10 ft; MUTCD 3B.18 asks for 6 ft and more)."""
+
+
+class Use(NamedTuple):
+    """What a lane beside those for cars is: its type (OpenDRIVE's word) and the one vehicle class that may use it."""
+
+    type: str
+    allow: str
+
+
+BESIDE: Mapping[Beside, Use] = {
+    "bike_lane": Use("biking", "bicycle"), "parking": Use("parking", "custom1"),
+    "shoulder": Use("shoulder", "emergency"), "sidewalk": Use("sidewalk", "pedestrian"),
+}  # fmt: skip
 _TYPES: Mapping[NodeControl, str] = {
     "none": "priority", "yield": "priority", "signal": "traffic_light", "stop": "priority_stop",
     "all_way_stop": "allway_stop", "flashing": "priority_stop",
@@ -55,7 +74,8 @@ def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> Pla
     if findings := spec_findings(spec):
         raise InvalidOutput("\n".join(f.line() for f in findings), findings)
     drawn = roadways(spec)
-    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=_connections(links(spec, drawn)))
+    joined = _connections(links(spec, drawn), spec)
+    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=joined)
 
 
 # ------------------------------------------------------------------ nodes
@@ -119,7 +139,8 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     road, forward = way.road, direction == "forward"
     ends = (road.from_node, road.to_node) if forward else (road.to_node, road.from_node)
     center = forward and has_center_lane(road)
-    count = lanes(road, direction)
+    outer = beside(road)[::-1]
+    count = lanes(road, direction) + len(outer)
     edge = etree.SubElement(root, "edge", id=road.id if forward else f"-{road.id}")
     edge.set("from", ends[0])
     edge.set("to", ends[1])
@@ -130,6 +151,12 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     edge.set("width", f"{lane_width_m(road):g}")
     edge.set("spreadType", "right")
     edge.set("shape", _shape(way.left_border(direction)))
+    for index, what in enumerate(outer):
+        use = BESIDE[what]
+        lane = etree.SubElement(edge, "lane", index=str(index), width=f"{BESIDE_M[what]:g}", type=use.type)
+        lane.set("allow", use.allow)
+    for index in range(len(outer), count) if "sidewalk" in outer else ():
+        etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
@@ -154,7 +181,7 @@ def _m(value: float) -> str:
 
 
 # ------------------------------------------------------------------ connections
-def _connections(found: tuple[Link, ...]) -> str:
+def _connections(found: tuple[Link, ...], spec: RoadSpec) -> str:
     root = etree.Element("connections")
     for link in found:
         connection = etree.SubElement(root, "connection")
@@ -162,6 +189,11 @@ def _connections(found: tuple[Link, ...]) -> str:
         connection.set("to", link.to_edge)
         connection.set("fromLane", str(link.from_lane))
         connection.set("toLane", str(link.to_lane))
+    for road in spec.roads:
+        for node in dict.fromkeys(road.crosswalks):
+            ways: tuple[Direction, ...] = ("forward", "backward")
+            edges = " ".join(edge_id(road.id, way) for way in ways if lanes(road, way))
+            etree.SubElement(root, "crossing", node=node, edges=edges, width=f"{CROSSWALK_M:g}", priority="1")
     return to_text(root)
 
 
