@@ -145,10 +145,10 @@ def study(
     if hosts:
         meeting = away.Away(hosts, deployment)
         code, again = _carry_out(made.batch, lambda on_ending: away.run(made, meeting, on_ending))
-        typer.echo(away.told(again))
+        typer.echo(away.resubmitted_lines(again))
         raise typer.Exit(code)
     code, cost = _carry_out(made.batch, lambda on_ending: running.run(made, on_ending))
-    typer.echo(running.told(made, cost))
+    typer.echo(running.cost_line(made, cost))
     raise typer.Exit(code)
 
 

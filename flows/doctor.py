@@ -142,7 +142,7 @@ def _services(out: Path) -> str:
     if not api:
         return "none started here and no server named (PREFECT_API_URL); `make up` starts them"
     said = [(s.healthy(), f"{s.name} {'well' if s.healthy() else f'not well, see {s.log}'}") for s in there.values()]
-    said += health.told(api)
+    said += health.server_lines(api)
     line = "; ".join(text for _, text in said)
     if there and not all(fine for fine, _ in said):
         raise Trouble(f"{line}; `make down`, then `make up`")

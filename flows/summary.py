@@ -45,7 +45,7 @@ class Tally:
         """1 if a case failed or was exhausted, else 0."""
         return int(any(e.result["status"] in ("failed", "exhausted") for _, e in self.endings))
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """Counts of the statuses so far, in words."""
         counts = {s: sum(e.result["status"] == s for _, e in self.endings) for s in STATUSES}
         return ", ".join(f"{n} {status}" for status, n in counts.items() if n)
@@ -71,7 +71,7 @@ def progress(tally: Tally) -> Iterator[OnEnding]:
 
         def on_ending(job: Job, ending: Ending, untracked: str) -> None:
             tally.add(job, ending, untracked)
-            bar.update(cases, advance=1, description=escape(tally.told()))
+            bar.update(cases, advance=1, description=escape(tally.in_words()))
 
         yield on_ending
 

@@ -131,6 +131,17 @@ class RoadSpec(Spec):
     roads: Annotated[tuple[Road, ...], Field(min_length=1, max_length=60)]
 
 
+def centers(spec: RoadSpec) -> dict[str, str]:
+    """Node of a roundabout -> the name that stands for all of its nodes; empty where there is none."""
+    found: dict[str, str] = {}
+    pieces = [road for road in spec.roads if road.circle]
+    for _ in pieces:
+        for road in pieces:
+            name = min(found.get(road.from_node, road.from_node), found.get(road.to_node, road.to_node))
+            found[road.from_node] = found[road.to_node] = name
+    return found
+
+
 class ToldRoad(NamedTuple):
     """What a report tells of a drawn road that no field of a spec holds (specs are answers; this is read by rules)."""
 

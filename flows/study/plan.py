@@ -25,7 +25,7 @@ from flows.batch import Batch, Job, batch_over
 from flows.cases import Case
 from flows.results.published import publication
 from flows.study import machine
-from flows.study.spec import Arm, Study, is_study, told
+from flows.study.spec import Arm, Study, fault_lines, is_study
 from sgcad_core import settings
 from sgcad_core.config import Config, build, load
 from sgcad_core.errors import ConfigError
@@ -104,7 +104,7 @@ def plan(
     if jobs is not None and jobs < 1:
         faults.append(f"--jobs {jobs}: at least 1 is needed")
     if faults:
-        raise ConfigError(told(study.file, faults))
+        raise ConfigError(fault_lines(study.file, faults))
     folder = folder_of(study.name, out)
     batch = batch_over(found, loaded, folder, jobs, fresh)
     batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF)
@@ -127,7 +127,7 @@ def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Con
     faults = [*study.faults, *_unpublished(study)]
     configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
     if faults:
-        raise ConfigError(told(study.file, faults))
+        raise ConfigError(fault_lines(study.file, faults))
     return tuple(config for config in configs if config is not None)
 
 

@@ -34,7 +34,7 @@ def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding) -> Cost:
     return start.evaluate(plan.batch, on_ending, jobs)
 
 
-def told(plan: Plan, cost: Cost) -> str:
+def cost_line(plan: Plan, cost: Cost) -> str:
     """One line: how long, and what orchestration took of it (planning, Prefect, tracking)."""
     if not cost.done:
         return f"all cached: {cost.elapsed_s:.1f} s"

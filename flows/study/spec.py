@@ -120,7 +120,7 @@ def load_study(path: Path | str) -> Study:
         raise ConfigError(f"{file}: expected a mapping with `title` and `arms` or `cross`, found {type(raw).__name__}")
     parsed, faults = _parsed(raw)
     if parsed is None:
-        raise ConfigError(told(file, faults))
+        raise ConfigError(fault_lines(file, faults))
     arms = (*parsed.arms, *(parsed.cross.arms() if parsed.cross else ()))
     faults += _faults(parsed, arms)
     return Study(
@@ -146,7 +146,7 @@ def is_study(file: Path) -> bool:
     return isinstance(raw, dict) and bool({"arms", "cross"} & set(raw))
 
 
-def told(file: Path, faults: list[str] | tuple[str, ...]) -> str:
+def fault_lines(file: Path, faults: list[str] | tuple[str, ...]) -> str:
     """All faults of a study, one a line."""
     return "\n".join([f"{file}: {len(faults)} fault(s)", *(f"  {line}" for f in faults for line in f.splitlines())])
 

@@ -38,7 +38,7 @@ class MlflowTracker(Tracker):
         """Open the arm's parent run, with the data set, plugin versions, commit and hardware."""
         parent = self._store(Path(arm.out)).parent(arm.config, parameters(arm.params))
         about = {f"plugin.{name}": value for name, value in arm.plugins.items()}
-        about |= {f"hardware.{name}": _told(value) for name, value in arm.hardware.items()}
+        about |= {f"hardware.{name}": _param_text(value) for name, value in arm.hardware.items()}
         shared = {"sgcad.dataset": arm.dataset.digest[:16]}
         shared |= {"mlflow.source.git.commit": arm.git_commit} if arm.git_commit else {}
         parent.begin(about, shared, _dataset(arm))
@@ -142,7 +142,7 @@ def _dataset(arm: Arm) -> dict[str, str]:
     }
 
 
-def _told(value: Any) -> str:
+def _param_text(value: Any) -> str:
     return ", ".join(map(str, value)) or "none" if isinstance(value, (list, tuple)) else str(value)
 
 

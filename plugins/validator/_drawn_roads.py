@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.narrative.compass import angle_of
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Compass
 
 MPS_PER_MPH = 0.44704

@@ -14,6 +14,7 @@ from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, ne
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
 from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import junction_kind, unsupported_kind
@@ -24,6 +25,8 @@ from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.narrative.unsupported import not_drawn
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
+
+_finding = Finder("road_narrative")
 
 _ORDER = ("refuse", "repair", "doubt", "note")
 
@@ -282,12 +285,3 @@ def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Finding]:
         what = f"the crash happened at {record.called}, and the network has none"
         remedy = "draw its circle: one-way pieces around, counterclockwise (circle), every leg yields"
         yield _finding(what, "junction", "no roundabout", remedy)
-
-
-def _finding(
-    what: str, where: str, value: str, remedy: str, severity: Severity = "repair", holds: tuple[Hold, ...] = ()
-) -> Finding:
-    return Finding(
-        source="road_narrative", severity=severity,
-        what=what, where=where, value=value, remedy=remedy, holds=holds,
-    )  # fmt: skip

@@ -101,7 +101,7 @@ def parse_answer(text: str, model: type[Answer]) -> Answer:
     try:
         return model.model_validate(found)
     except ValidationError as fault:
-        findings = [_finding(error) for error in _root_causes(fault.errors(include_url=False))]
+        findings = [_at_fault(error) for error in _root_causes(fault.errors(include_url=False))]
         raise InvalidOutput("\n".join(f.line() for f in findings), findings) from fault
 
 
@@ -149,7 +149,7 @@ def _root_causes(errors: list[ErrorDetails]) -> list[ErrorDetails]:
     return [e for e in errors if not (e["type"] == "too_short" and e["loc"] in inner)]
 
 
-def _finding(error: ErrorDetails) -> Finding:
+def _at_fault(error: ErrorDetails) -> Finding:
     remedies = {"missing": "add this key", "extra_forbidden": "leave this key out"}
     missing = error["type"] == "missing"
     return Finding(

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import Finder
 from sgcad_core.formats.openscenario.events import Handover
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
-from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.records import ActorInfo, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
+
+_finding = Finder("scenario")
 
 
 def compile_scenario(
@@ -56,7 +59,9 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     """Raise InvalidOutput for actor ids used twice and for contacts of unknown actors or with oneself."""
     ids = [actor.id for actor in behavior.actors]
     findings = [
-        _finding(f"actors[{i}].id", "two actors have this id", name, "number them as the report does", _next(i, ids))
+        _finding(
+            "two actors have this id", f"actors[{i}].id", name, "number them as the report does", holds=_next(i, ids)
+        )
         for i, name in enumerate(ids)
         if name in ids[:i]
     ]
@@ -64,10 +69,14 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     for i, contact in enumerate(behavior.contacts):
         for role in ("striker", "struck"):
             if (name := getattr(contact, role)) not in ids:
-                findings.append(_finding(f"contacts[{i}].{role}", "no such actor", name, known, _in_place(name, ids)))
+                findings.append(
+                    _finding("no such actor", f"contacts[{i}].{role}", name, known, holds=_in_place(name, ids))
+                )
         if contact.striker == contact.struck:
             findings.append(
-                _finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known, _another(i, ids))
+                _finding(
+                    "an actor cannot strike itself", f"contacts[{i}]", contact.striker, known, holds=_another(i, ids)
+                )
             )
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
@@ -94,7 +103,3 @@ def _another(place: int, ids: list[str]) -> tuple[Hold, ...]:
 
 def _named(place: int, name: str) -> Hold:
     return Hold(items="actors", at=place, either=({"id": (name,)},))
-
-
-def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
-    return Finding(source="scenario", what=what, where=where, value=value, remedy=remedy, holds=holds)

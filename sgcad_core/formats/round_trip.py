@@ -19,11 +19,11 @@ from sgcad_core.formats.opendrive.controls import center_lanes, parking_lanes
 from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.signals import posted_mph
 from sgcad_core.formats.sumo.existing_map import plain_of_map
-from sgcad_core.formats.sumo.lane_graph import Connection, Edge, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
-from sgcad_core.formats.sumo.told import CONTROL
+from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.xml import parse_xml
+from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]
@@ -183,6 +183,6 @@ def signs_of(graph: LaneGraph) -> dict[str, str]:
         lower = any(e.to_node == edge.to_node and e.priority > edge.priority for e in graph.edges.values())
         if states & {"s", "w"}:
             found[edge.id] = "stop"
-        elif node.told.get(CONTROL) == "yield" and "m" in states and lower:
+        elif node.parameters.get(CONTROL) == "yield" and "m" in states and lower:
             found[edge.id] = "yield"
     return found

@@ -134,12 +134,6 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> float:
     return min(1.0, 2 * tail / (1 << differing))
 
 
-def sign_flip(first: ArrayLike, second: ArrayLike, seed: int = SEED) -> float:
-    """Paired permutation test on the mean difference: p that the arms' labels are exchangeable within a case."""
-    x, y = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
-    return swap_test((x, np.ones_like(x)), (y, np.ones_like(y)), seed)
-
-
 def swap_test(first: tuple[Floats, Floats], second: tuple[Floats, Floats], seed: int = SEED) -> float:
     """Two-sided paired permutation test on two ratios sum(a) / sum(b): the arms change places case by case.
 

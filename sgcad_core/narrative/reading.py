@@ -16,8 +16,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sgcad_core.evidence import Fact
-from sgcad_core.narrative.clauses import Segment, Told, segments, tell
+from sgcad_core.facts import Fact
+from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
 from sgcad_core.narrative.draft import Draft
@@ -70,7 +70,7 @@ class Mentions(NamedTuple):
     """Who is in the report, and its sentences with everybody named by number."""
 
     who: Roster
-    told: tuple[Told, ...]
+    statements: tuple[Statement, ...]
 
 
 class Events(NamedTuple):
@@ -98,19 +98,19 @@ def mentions(found: tuple[Sentence, ...]) -> Mentions:
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
     """Stretches of sentences with their subjects."""
-    return segments(named.told, named.who)
+    return segments(named.statements, named.who)
 
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.told, cut, named.who), blows(named.told, named.who))
+    draft = Draft(named.who, motions(named.statements, cut, named.who), blows(named.statements, named.who))
     return Events(draft, conditions(found))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     settled = settle(seen.draft)
-    roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
+    roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
     return Reading(narrative, found, roads.crash, roads, facts)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
@@ -74,7 +74,7 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
 
 
-def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions = road_mentions(_telling(told), who.ids)
     crash = _oriented(crash, mentions, told)
@@ -98,7 +98,7 @@ def _somebody_walks(crash: CrashFacts) -> bool:
     return any(other.kind == "pedestrian" for other in crash.others)
 
 
-def _rural(told: tuple[Told, ...]) -> Cue | None:
+def _rural(told: tuple[Statement, ...]) -> Cue | None:
     """Where the text says that the crash was in the country."""
     story = (t for t in told if t.role in CRASH_ROLES)
     return next((Cue(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
@@ -123,7 +123,7 @@ _CROSSWALK = rule("roads.crosswalk")
 _PLACE = rule("roads.place")
 
 
-def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Told, ...]) -> CrashFacts:
+def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
     """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
     streets = [m for m in mentions if m.axis and m.kind not in ("driveway", "ramp")]
     joined = [m for m in streets if m.relation == "other"] if any(m.kind == "ramp" for m in mentions) else []
@@ -144,13 +144,13 @@ def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
     return replace(v, heading=heading, exit_heading=turned(v.exit_heading, clockwise_deg) if v.exit_heading else None)
 
 
-def _telling(told: tuple[Told, ...]) -> list[Told]:
+def _telling(told: tuple[Statement, ...]) -> list[Statement]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
     story = [_without_circle(t) for t in told if t.role in CRASH_ROLES or t.role == "other"]
     return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
 
 
-def _without_circle(told: Told) -> Told:
+def _without_circle(told: Statement) -> Statement:
     """The sentence without the lanes of a roundabout, which are those of no road."""
     return told._replace(text=CIRCLE_LANES.sub("roundabout", told.text))
 

@@ -18,7 +18,7 @@ _IN_TOWN = ("bike_lane", "parking", "sidewalk")
 def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     """Road id -> what is told of it. A limit counts as posted where the report tells it of a road of that axis."""
     in_town = facts.urban or facts.crosswalk or any(what in _IN_TOWN for what in facts.beside)
-    return {road.id: _told(road, _facts_of(road, facts), in_town) for road in spec.roads}
+    return {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
 
 
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
@@ -30,7 +30,7 @@ def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
     return [r for r in facts.roads if r.kind in kinds and (r.axis is None or r.axis == axis_of(bearing))]  # type: ignore[arg-type]
 
 
-def _told(road: Road, facts: list[RoadFact], in_town: bool) -> ToldRoad:
+def _as_told(road: Road, facts: list[RoadFact], in_town: bool) -> ToldRoad:
     limits = {fact.speed_limit_mph for fact in facts} - {None}
     town: RoadArea = "town" if in_town and road.kind == "road" else ""
     area: RoadArea = (

@@ -9,8 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from sgcad_core.roads.circle import centers
-from sgcad_core.specs import Road, RoadSpec, Turn
+from sgcad_core.specs import Road, RoadSpec, Turn, centers
 
 
 class Way(NamedTuple):

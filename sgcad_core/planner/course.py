@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
+from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 
 _MADE_UP_RADIUS_M = 7.0

@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.planner.path import end_heading
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 
 AHEAD_M = 120.0

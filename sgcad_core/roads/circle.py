@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from sgcad_core.specs import Node, Point, Road, RoadSpec
+from sgcad_core.specs import Node, Point, Road
 
 RADIUS_M = {1: 18.0, 2: 26.0}
 """Of the middle of the circulating lanes."""
@@ -71,17 +71,6 @@ def circle(rim: Rim, mouths: Sequence[Mouth]) -> tuple[list[Node], list[Road]]:
         places = [(node_of(a.name), a.angle_rad), *stops, (node_of(b.name), a.angle_rad + gap)]
         roads += [_piece(rim, f"circle_{a.name}", i, *step) for i, step in enumerate(pairwise(places))]
     return nodes, roads
-
-
-def centers(spec: RoadSpec) -> dict[str, str]:
-    """Node of a roundabout -> the name that stands for all of its nodes; empty where there is none."""
-    found: dict[str, str] = {}
-    pieces = [road for road in spec.roads if road.circle]
-    for _ in pieces:
-        for road in pieces:
-            name = min(found.get(road.from_node, road.from_node), found.get(road.to_node, road.to_node))
-            found[road.from_node] = found[road.to_node] = name
-    return found
 
 
 def _piece(rim: Rim, name: str, index: int, start: tuple[str, float], end: tuple[str, float]) -> Road:

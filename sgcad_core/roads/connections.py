@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from sgcad_core.formats.sumo.lane_graph import edge_id, road_of
+from sgcad_core.roads.lane_graph import edge_id, road_of
 from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes
 from sgcad_core.specs import Beside, RoadSpec, Turn
 

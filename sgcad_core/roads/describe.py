@@ -14,10 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.roads.circle import centers
-from sgcad_core.specs import Node, Road, RoadSpec
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
+from sgcad_core.specs import Node, Road, RoadSpec, centers
 
 Direction = Literal["forward", "backward"]
 _COMPASS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")

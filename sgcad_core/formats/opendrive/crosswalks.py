@@ -11,8 +11,8 @@ import numpy as np
 
 from sgcad_core.formats.opendrive.reference import pose_at
 from sgcad_core.formats.opendrive.streets import Street
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.geometry.plane import Floats, parallel_polyline
+from sgcad_core.roads.lane_graph import LaneGraph
 
 
 class Crosswalk(NamedTuple):

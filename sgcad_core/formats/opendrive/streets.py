@@ -8,7 +8,7 @@ edge's. Metres; knows no XML.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -17,8 +17,8 @@ import numpy as np
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.reference import Piece, length_of, pieces, pose_at
 from sgcad_core.formats.opendrive.widths import Width, clean, fitted, offsets_at, offsets_or_end, stations_of
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, resample
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, road_of
 
 Side = Literal["left", "right"]
 SAME_M = 0.005
@@ -145,15 +145,6 @@ def _alone(edge: Edge, graph: LaneGraph) -> bool:
 
 
 # ------------------------------------------------------------------ one road
-@dataclass
-class _Draft:
-    """What a road is made from: the borders of both directions along the forward direction."""
-
-    forward: Edge
-    backward: Edge | None
-    ahead: Floats
-    back: Floats | None = None
-    trims: tuple[float, float] = field(default=(0.0, 0.0))
 
 
 def _street(name: str, forward: Edge, backward: Edge | None, trims: Mapping[tuple[str, bool], float]) -> Street | None:

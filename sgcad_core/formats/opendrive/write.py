@@ -24,11 +24,11 @@ from sgcad_core.formats.opendrive.elements import (
 from sgcad_core.formats.opendrive.furniture import add_objects, add_signals
 from sgcad_core.formats.opendrive.signals import control_of, posted_mph
 from sgcad_core.formats.opendrive.streets import Street, streets
-from sgcad_core.formats.sumo.lane_graph import Connection, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.formats.sumo.told import AREA, KIND
+from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 TOUCHING_M = 0.05
 TRIM_M = 0.1
@@ -128,7 +128,7 @@ class _Document:
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:
-        told = street.forward.told
+        told = street.forward.parameters
         kind = ROAD_TYPES.get(told.get(AREA, ""), ROAD_TYPES.get(told.get(KIND, ""), "unknown"))
         made = add(road, "type", s="0", type=kind)
         if (limit := posted_mph(street.forward)) is not None:

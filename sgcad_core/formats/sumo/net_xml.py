@@ -10,7 +10,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import (
+from sgcad_core.formats.xml import Element, parse_xml
+from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import (
     Connection,
     Crossing,
     Direction,
@@ -28,8 +30,6 @@ from sgcad_core.formats.sumo.lane_graph import (
     road_of,
     segments,
 )
-from sgcad_core.formats.xml import Element, parse_xml
-from sgcad_core.records import Finding
 
 __all__ = [
     "Connection", "Direction", "Edge", "Floats", "Lane", "LaneGraph", "NetNode", "NetworkFigures", "edge_id",
@@ -86,10 +86,10 @@ def _crossings(root: Element) -> Iterator[Crossing]:
 def _edge(element: Element) -> Edge:
     lanes = tuple(sorted((_lane(lane) for lane in element.iterfind("lane")), key=lambda lane: lane.index))
     ends = element.get("from", ""), element.get("to", "")
-    return Edge(element.get("id", ""), *ends, lanes, int(_number(element, "priority", -1)), _told(element))
+    return Edge(element.get("id", ""), *ends, lanes, int(_number(element, "priority", -1)), _parameters(element))
 
 
-def _told(element: Element) -> dict[str, str]:
+def _parameters(element: Element) -> dict[str, str]:
     return {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
 
 
@@ -112,7 +112,7 @@ def _allows_cars(lane: Element) -> bool:
 
 
 def _node(element: Element) -> NetNode:
-    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""), _told(element))
+    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""), _parameters(element))
 
 
 def _number(element: Element, name: str, default: float | None = None) -> float:

@@ -15,12 +15,12 @@ from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import edge_id
-from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
+from sgcad_core.roads.lane_graph import edge_id
 from sgcad_core.roads.road_geometry import (
     BESIDE_M,
     Direction,

@@ -27,7 +27,7 @@ class NetNode(NamedTuple):
     x_m: float
     y_m: float
     type: str
-    told: Mapping[str, str] = NOTHING
+    parameters: Mapping[str, str] = NOTHING
     """Parameters of the file: what was told of the node beyond its type (`plain_xml`)."""
 
 
@@ -55,7 +55,7 @@ class Edge:
     to_node: str
     lanes: tuple[Lane, ...]
     priority: int = -1
-    told: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, str] = field(default_factory=dict)
     """Parameters of the file: what was told of the road beyond its lanes (`plain_xml`)."""
 
     @property
