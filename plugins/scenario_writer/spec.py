@@ -58,7 +58,7 @@ class SpecScenario(ScenarioWriter):
         reading = context.reading
         return compile_scenario(
             behavior, network, self.openscenario, self.encoding,
-            may_skid=tells_lost_control(reading.narrative), courses=reading.crash.courses,
+            may_skid=tells_lost_control(reading.narrative), courses=reading.crash.courses, signals=reading.signals,
         )  # fmt: skip
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:

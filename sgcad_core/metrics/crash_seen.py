@@ -13,10 +13,10 @@ from itertools import combinations
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.geometry.plane import Floats, box_gaps, prolonged, wrap_angle
 from sgcad_core.metrics.rest import rest_errors
 from sgcad_core.metrics.truth_motion import Path
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.roads.surface import RoadSurface, road_surface
 from sgcad_core.told_course import RestTold
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.language import Rule, of_role, rule
-from sgcad_core.narrative.clauses import Segment, Told, segments
+from sgcad_core.narrative.clauses import Segment, Statement, segments
 from sgcad_core.narrative.compass import COMPASS, WORDS, turned
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
@@ -60,12 +60,12 @@ class ImpactRead(NamedTuple):
     cue: Cue
 
 
-def cut_by_deeds(told: Sequence[Told], who: Roster) -> list[Segment]:
+def cut_by_deeds(told: Sequence[Statement], who: Roster) -> list[Segment]:
     """Segments of all sentences, each with those whose deed it is."""
     return [part for t in told for part in _cut(_of_the_impact(t), who)]
 
 
-def _cut(told: Told, who: Roster) -> list[Segment]:
+def _cut(told: Statement, who: Roster) -> list[Segment]:
     """One sentence; one that begins "Then rotated" goes on with the last one's subject."""
     found = own_deeds(segments([told], who), told)
     goes_on = rule("course_rest.then").match(told.text)
@@ -75,7 +75,7 @@ def _cut(told: Told, who: Roster) -> list[Segment]:
     return [Segment((told.subject,), told.text[goes_on.end() : end].lower(), told.role, told.number), *found]
 
 
-def courses_told(told: Sequence[Told], cut: Sequence[Segment], who: Roster) -> CoursesRead:
+def courses_told(told: Sequence[Statement], cut: Sequence[Segment], who: Roster) -> CoursesRead:
     """What the text tells of every vehicle's course. `cut`: `cut_by_deeds`."""
     impact = min((t.number for t in told if t.role == "impact"), default=10_000)
     heard = {v: _Heard() for v in who.ids}
@@ -89,7 +89,7 @@ def courses_told(told: Sequence[Told], cut: Sequence[Segment], who: Roster) -> C
     return CoursesRead(courses, sources)
 
 
-def _of_the_impact(told: Told) -> Told:
+def _of_the_impact(told: Statement) -> Statement:
     """ "The impact caused V1 to rotate" as a deed of V1."""
     text = rule("course_rest.caused").sub(_caused, told.text)
     return told if text == told.text else told._replace(text=text)
@@ -100,7 +100,7 @@ def _caused(m: re.Match[str]) -> str:
     return f"{m['who']} {'were' if m['who'].startswith('both') else 'was'} {verb}"
 
 
-def own_deeds(cut: Sequence[Segment], told: Told) -> list[Segment]:
+def own_deeds(cut: Sequence[Segment], told: Statement) -> list[Segment]:
     """Segments of one sentence, with what an onlooker did himself given back to him.
 
     "V2 noticed V1 turning into her path and steered right": she did; so did who "avoided V2 by steering left".

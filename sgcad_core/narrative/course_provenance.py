@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.evidence import Fact, Value
+from sgcad_core.facts import Fact, Value
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.provenance import Telling
 from sgcad_core.told_course import CourseTold

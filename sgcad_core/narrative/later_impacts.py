@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Segment, Told
+from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.course import UNREAD, ImpactRead
 from sgcad_core.narrative.draft import end_of
@@ -25,7 +25,7 @@ GROUND = ("curb", "island", "median", "ditch", "ground")
 
 
 def later_impacts(
-    told: Sequence[Told], cut: Sequence[Segment], who: Roster, blows: Sequence[Blow]
+    told: Sequence[Statement], cut: Sequence[Segment], who: Roster, blows: Sequence[Blow]
 ) -> tuple[ImpactRead, ...]:
     """Contacts with things and second contacts of the same pair, in the order of the text. `cut`: `cut_by_deeds`."""
     first = next((b for b in blows if b.other in who.ids), None)
@@ -74,7 +74,7 @@ def _word(thing: str) -> str:
 
 
 # ------------------------------------------------------------------ the same two again
-def _again(told: Sequence[Told], who: Roster, blows: Sequence[Blow], first: Blow) -> Iterator[ImpactRead]:
+def _again(told: Sequence[Statement], who: Roster, blows: Sequence[Blow], first: Blow) -> Iterator[ImpactRead]:
     """Second contacts of the pair that touched first."""
     pair = {first.actor, first.other}
     by_number = {t.number: t for t in told}
@@ -95,7 +95,7 @@ def _again(told: Sequence[Told], who: Roster, blows: Sequence[Blow], first: Blow
             return
 
 
-def _slap(told: Told, first: Blow) -> ImpactRead:
+def _slap(told: Statement, first: Blow) -> ImpactRead:
     """Both sides, in the order in which they are told, or given to the vehicles by name."""
     sides: list[Area | None] = [None, None]
     named = rule("course_impacts.side_of").finditer(told.text)

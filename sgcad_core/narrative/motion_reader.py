@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Segment, Told
+from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
@@ -28,7 +28,7 @@ _THROWN = rule("motion_reader.thrown")
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
 
 
-def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
+def motions(told: Sequence[Statement], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
     """Motion of every vehicle of the roster."""
     found = {v: Motion() for v in who.ids}
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))

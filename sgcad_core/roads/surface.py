@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import Floats, LaneGraph, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
+from sgcad_core.roads.lane_graph import Floats, LaneGraph, road_of
 
 _LONGEST_M = 8.0
 """Center lines are told by pieces no longer than this."""
