@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from sgcad_core.language import rule
+from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.course import UNREAD, ImpactRead
+from sgcad_core.narrative.course import UNREAD, CoursesRead, ImpactRead
 from sgcad_core.narrative.draft import end_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.vehicles import Roster
@@ -32,7 +32,19 @@ def later_impacts(
     start = first.number if first else -1
     things = [read for segment in cut for read in _things(segment, start)]
     again = list(_again(told, who, blows, first)) if first else []
-    found = sorted([*_once(things), *again], key=lambda read: read.cue.number)
+    people = list(_people(who, blows, first)) if first else []
+    found = sorted([*_once(things), *again, *people], key=lambda read: read.cue.number)
+    return tuple(found)
+
+
+def with_props(impacts: Sequence[ImpactRead], read: CoursesRead) -> tuple[ImpactRead, ...]:
+    """The contacts with those that a rest tells: who came to rest against a tree has struck it last."""
+    struck = {(one.impact.actor, _word(one.impact.other)) for one in impacts}
+    found = list(impacts)
+    for vehicle, course in read.courses.items():
+        prop = course.rest.against
+        if prop and prop not in GROUND and (vehicle, _word(prop)) not in struck:
+            found.append(ImpactRead(ImpactTold(vehicle, _word(prop)), read.sources[f"{vehicle} rest.against"]))
     return tuple(found)
 
 
@@ -71,6 +83,16 @@ def _hit(segment: Segment, m: re.Match[str], thing: str, before: bool) -> Impact
 def _word(thing: str) -> str:
     """ "light-pole", "utility box" -> "pole", "box"."""
     return thing.replace("-", " ").split()[-1]
+
+
+def _people(who: Roster, blows: Sequence[Blow], first: Blow) -> Iterator[ImpactRead]:
+    """People who are struck once the vehicles have met."""
+    seen: set[str] = set()
+    for b in blows:
+        told = b.other not in who.ids and b.number > first.number and b.role not in ("interview", "injury")
+        if told and b.other not in seen and any(user.search(b.other) for user in of_role("road_user")):
+            seen.add(b.other)
+            yield ImpactRead(ImpactTold(b.actor, b.other, end_of(b.actor_area)), b.cue)
 
 
 # ------------------------------------------------------------------ the same two again

@@ -27,7 +27,7 @@ from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
-from sgcad_core.narrative.later_impacts import later_impacts
+from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.road_provenance import road_provenance
@@ -114,7 +114,7 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     """Motions, contacts, conditions."""
     struck, deeds = blows(named.statements, named.who), cut_by_deeds(named.statements, named.who)
     course = courses_told(named.statements, deeds, named.who)
-    impacts = later_impacts(named.statements, deeds, named.who, struck)
+    impacts = with_props(later_impacts(named.statements, deeds, named.who, struck), course)
     draft = Draft(named.who, motions(named.statements, cut, named.who), struck, course, impacts)
     return Events(draft, conditions(found), signal_states(cut))
 

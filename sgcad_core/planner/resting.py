@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
 from typing import NamedTuple
@@ -42,6 +42,8 @@ _WHOLE = 6
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
 _TOLD, _UNUSUAL = 1.0, 0.02
+_USUAL_SHARE = 0.6
+"""Of the friction: one brakes, some wheels drag."""
 _SPIN_RAD = math.radians(15.0)
 
 
@@ -105,6 +107,12 @@ class _Ways:
             v.off = ends[name] - v.ends[v.best()]
 
 
+def leaving(course: CourseTold) -> CourseTold:
+    """The course of one who strikes something beside the road: where no place is told, it leaves the road."""
+    where = course.rest.where or "off_road"
+    return replace(course, rest=replace(course.rest, where=where))
+
+
 @dataclass(frozen=True)
 class Rests:
     """What the vehicles of a scene are to come to."""
@@ -112,11 +120,13 @@ class Rests:
     scene: Scene
     told: Courses
     surface: RoadSurface
+    rolling: frozenset[str] = frozenset()
+    """Vehicles that are to reach something: of two ways the one that leads further is taken."""
 
-    def settle(self) -> list[str]:
-        """Choose, settle the scene so, and say what is missed by how much."""
+    def fit(self) -> None:
+        """Choose, and settle the scene so."""
         if not self.wanted:
-            return []
+            return
         best, least = self._choice(), self.cost()
         ways = [self._ways(friction, restitution) for friction, restitution in IMPACTS] if least > self._well else []
         for _ in range(_WHOLE):
@@ -130,7 +140,6 @@ class Rests:
                 best, least = self._choice(), cost
         if self._choice() != best:
             self._take(best)
-        return self.missed()
 
     @property
     def _well(self) -> float:
@@ -171,7 +180,7 @@ class Rests:
                 runs = _runs(until * STEP_S, drag.across)
                 end_s = (scene.count - 4) * STEP_S
                 ends = run_out(Released(mover.body, until * STEP_S), drag, runs, end_s, _COARSE_S)
-                odd = _oddities(runs, drag.across)
+                odd = _oddities(runs, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
                 found.vehicles[name] = _Runs(runs, ends, odd, partial(self._costs, name, course))
         return found
 
@@ -218,10 +227,10 @@ def _runs(from_s: float, grip_mps2: float) -> list[RunOut]:
     return [RunOut(from_s, share * grip_mps2, bend, turning) for share, bend, turning in ways]
 
 
-def _oddities(runs: Sequence[RunOut], grip: float) -> Floats:
+def _oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
     """A little for every departure from braking straight: of two that do as well the plainer one is taken."""
     return _UNUSUAL * np.array(
-        [abs(r.along_mps2 / grip - 0.6) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 for r in runs]
+        [abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 for r in runs]
     )
 
 

@@ -48,6 +48,8 @@ class Track:
     """The motion's own time at world time 0 (its place where it is standing)."""
     hit: int | None = None
     """Index of its first impact."""
+    mass: float | None = None
+    """Its mass, where it is not that of its kind, kg."""
     driven: Floats = field(init=False)
     """Its poses where nobody touches it."""
 
@@ -118,7 +120,7 @@ class Scene:
         return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
-        mass = None if track.motion.fixed else mass_kg(track.kind, track.size)
+        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)
         start = body((0.0, 0.0, 0.0), track.size, mass)
         return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
