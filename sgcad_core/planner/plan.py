@@ -30,6 +30,8 @@ from sgcad_core.roads.surface import road_surface
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
 from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
+_FURTHER_S = 3.0
+"""More time behind the first contact where somebody goes on far."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 400)
@@ -104,7 +106,9 @@ def _run_out(scene: Scene, cast: _Cast, later: Sequence[Contact], graph: LaneGra
     """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be."""
     strikes = [strike for contact in later if (strike := cast.strike(contact)) is not None]
     told = {name: course for name, course in cast.told.items() if name in cast.actors}
-    if not told and not strikes:
+    first = cast.behavior.contacts[:1]
+    scene.again = frozenset(p for c in later if (p := frozenset((c.striker, c.struck))) in map(_pair, first))
+    if not told and not strikes and not scene.again:
         return []
     for strike in strikes:
         told[strike.by] = leaving(told.get(strike.by, CourseTold()))
@@ -112,6 +116,10 @@ def _run_out(scene: Scene, cast: _Cast, later: Sequence[Contact], graph: LaneGra
     rests.fit()
     missed = strike_things(scene, strikes, rests.surface, rests.cost)
     return [*missed, *rests.missed()]
+
+
+def _pair(contact: Contact) -> frozenset[str]:
+    return frozenset((contact.striker, contact.struck))
 
 
 def _other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
@@ -265,7 +273,8 @@ class _Cast:
         lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
-        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
+        after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
+        scene = Scene(contact + round(after / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
@@ -274,6 +283,11 @@ class _Cast:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
         return scene
+
+    def _runs_on(self) -> bool:
+        """Whether anybody goes on far behind the first contact: off the road, or into something else."""
+        afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
+        return afar or len(self.behavior.contacts) > 1
 
     def _struck_again(self) -> frozenset[str]:
         return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
