@@ -74,7 +74,10 @@ def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
 def least_doubted(
     facts: CrashFacts, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph, first: Scenario
 ) -> Least:
-    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned."""
+    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned.
+
+    Where the text leaves a side open, one that is doubted less will do.
+    """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     if most <= 0.0:
         return Least(facts, "", ())
@@ -85,7 +88,7 @@ def least_doubted(
         if left is None:
             continue
         tried.append(Tried(other.words, left))
-        if left < ODD_FROM and left + other.price < best[0]:
+        if (left < ODD_FROM or other.open) and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
         if left <= 0.0:
             break

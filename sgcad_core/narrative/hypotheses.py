@@ -26,6 +26,11 @@ class Hypothesis(NamedTuple):
     words: str
     price: float
 
+    @property
+    def open(self) -> bool:
+        """Whether the text allows it as well as the first reading."""
+        return self.price <= _CORNER
+
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
     """All readings that differ in one fact, cheapest first; none where no contact of two vehicles is read."""

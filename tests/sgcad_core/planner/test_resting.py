@@ -64,7 +64,9 @@ def test_without_a_told_rest_nothing_is_chosen() -> None:
 
 
 def test_what_cannot_be_reached_is_said_with_by_how_much() -> None:
-    made, _ = planned({"V1": CourseTold(rest=RestTold(270.0, "off_road", "W"))})
+    slow = tuple(a.model_copy(update={"speed_mph": 8}) for a in crossing().actors)
+    behavior = crossing().model_copy(update={"actors": slow})
+    made, _ = planned({"V1": CourseTold(rest=RestTold(270.0, "off_road", "W"))}, behavior)
     assert any(note.startswith("V1 comes to rest") for note in made.notes)
 
 
