@@ -27,8 +27,8 @@ from sgcad_core.roads.surface import RoadSurface
 from sgcad_core.told_course import Courses, CourseTold, RestTold
 
 IMPACTS = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
-"""Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where they
-graze each other, more friction where they lock."""
+"""Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where
+they graze each other, more friction where they lock."""
 _BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
 """Of the friction: from rolling on with bent wheels to four locked ones."""
 _BENDS_PER_M = (0.0, 0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.15, -0.15)
@@ -37,7 +37,7 @@ _TURNING = (1.0, 0.6, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
-_COARSE_S = 0.1
+_COARSE_S = 0.2
 _WHOLE = 7
 """Choices that are simulated whole, at most."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
@@ -163,12 +163,16 @@ class Rests:
         if not self.wanted:
             return
         best, least = self._choice(), self.cost()
-        ways = [self._ways(friction, restitution) for friction, restitution in IMPACTS] if least > self._well else []
-        for _ in range(_WHOLE):
-            open_ways = [w for w in ways if w.best()]
-            if least <= self._well or not open_ways:
+        ways: list[_Ways] = []
+        for number in range(_WHOLE):
+            if least <= self._well:
                 break
-            way = min(open_ways, key=lambda w: w.predicted())
+            if number < len(IMPACTS):
+                ways.append(self._ways(*IMPACTS[number]))
+            left = [w for w in ways if w.best()]
+            if not left:
+                continue
+            way = min(left, key=lambda w: w.predicted())
             choice = way.choice()
             self._take(choice)
             way.learn(choice, {name: self.scene.tracks[name].poses[-1] for name in way.vehicles})
@@ -288,10 +292,6 @@ def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
         off = math.degrees(float(facing[0]) + FACING_RAD)
         yield f"comes to rest facing {off:.0f} degrees off what is told"
     if where is not None and where[0] > 0:
-        yield f"comes to rest {float(where[0]):.1f} m from the told place ({_words(rest)})"
+        yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
     if side is not None and side[0] > 0:
         yield f"comes to rest on another side than told ({rest.side})"
-
-
-def _words(rest: RestTold) -> str:
-    return (rest.where or "").replace("_", " ")
