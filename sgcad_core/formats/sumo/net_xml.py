@@ -6,6 +6,8 @@ Reading only; netconvert writes. Knows no OpenDRIVE.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -38,8 +40,12 @@ DEFAULT_WIDTH_M = 3.2  # SUMO's own, where a lane names none
 _DIRECTIONS: dict[str, Direction] = {"l": "left", "L": "left", "r": "right", "R": "right", "t": "u_turn"}
 
 
+@lru_cache(maxsize=8)
 def parse_net(net_xml: str) -> LaneGraph:
-    """Read a .net.xml. Raises InvalidOutput where it is no network or misses what it refers to."""
+    """Read a .net.xml; the last ones are kept, since every stage of a case asks for its own network's graph.
+
+    Raises InvalidOutput where it is no network or misses what it refers to.
+    """
     root = parse_xml(net_xml, "net_xml")
     if root.tag != "net":
         raise _invalid("no SUMO network", "/", f"<{root.tag}>", "the root element is <net>")
@@ -47,7 +53,8 @@ def parse_net(net_xml: str) -> LaneGraph:
     edges = {e.get("id", ""): _edge(e) for e in root.iterfind("edge") if e.get("function", "normal") == "normal"}
     nodes = {j.get("id", ""): _node(j) for j in root.iterfind("junction") if j.get("type") != "internal"}
     _check_ends(edges, nodes)
-    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes, _programs(root))
+    connections = tuple(_connections(root, edges, inner))
+    return LaneGraph(MappingProxyType(edges), connections, MappingProxyType(nodes), _programs(root))
 
 
 def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
@@ -116,6 +123,7 @@ def _shape(element: Element) -> Floats:
         points = np.empty((0,))
     if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 2 or not np.isfinite(points).all():
         raise _invalid("a lane needs a shape of two or more points", _path(element), text[:60], 'write "x,y x,y"')
+    points.setflags(write=False)  # graphs are shared, see `parse_net`
     return points
 
 
