@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
@@ -37,6 +38,8 @@ from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
 
+_LOST = rule("meeting.lost")
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -51,6 +54,8 @@ class Reading:
     roads: RoadFacts
     signals: Mapping[str, SignalState] = field(default_factory=dict)
     """What the traffic signal showed to a vehicle, by its id, where that is told."""
+    lost_control: bool = False
+    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -129,4 +134,4 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roles = role_facts(telling, named.statements, roads.crash)
     facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
     states = {vehicle: told.state for vehicle, told in seen.signals.items()}
-    return Reading(narrative, found, roads.crash, roads, states, facts)
+    return Reading(narrative, found, roads.crash, roads, states, bool(_LOST.search(narrative)), facts)
