@@ -25,7 +25,7 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
 _STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
 _STOPPED_THERE = rule("motion_reader.stopped_there")
 _THROWN = rule("motion_reader.thrown")
-_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
+_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
 def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
