@@ -57,7 +57,7 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
-    read_deeds(motion, before_hit, weight, segment.number)
+    read_deeds(motion, before_hit, weight, segment.number, segment.at)
     read_kin(motion, before_hit, weight, vehicle, who)
     if segment.role != "rest":
         read_lane(motion, before_hit)

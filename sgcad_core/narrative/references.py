@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 
 from sgcad_core.language import rule, values
-from sgcad_core.narrative.makes import BODY_WORDS, kind_of
+from sgcad_core.narrative.makes import kind_of
 from sgcad_core.narrative.traced import Traced, joined
 
 _PHRASE = rule("references.phrase")
@@ -137,9 +137,14 @@ def _may_be_subject(subject: _Actor, phrase: _Phrase) -> bool:
 
 
 # ------------------------------------------------------------------ numbering
+def numbers_somebody(text: str) -> bool:
+    """Whether a normalized report numbers anybody."""
+    return bool(rule("common.vehicle").search(text))
+
+
 def number_actors(text: Traced) -> Traced:
     """The normalized text with everybody named by number; unchanged if there is any number."""
-    if rule("common.vehicle").search(text.text):
+    if numbers_somebody(text.text):
         return text
     numbering = _Numbering(_Cast(), _automated(text.text))
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]

@@ -129,7 +129,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 
 
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
-    """The sentences of a normalized text."""
+    """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
     blocks = [block for block in number_actors(text).split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
