@@ -60,6 +60,8 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
+        if role == "rest" and who.counted and all(t.role != "impact" for t in told):
+            role = "approach"  # one account in order: nobody is at rest for good before the blow
         current = _main_subject(text, current, role, who)
         told.append(Told(text, role, s.number, current, several))
         several = _of_several(text, several)

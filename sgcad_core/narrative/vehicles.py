@@ -63,6 +63,11 @@ class Roster:
         rest = [v for v in self.ids if v != vehicle]
         return rest[0] if len(rest) == 1 else None
 
+    @property
+    def counted(self) -> bool:
+        """Whether the numbers were given here: the report numbers nobody and tells one account in order."""
+        return any(v.counted for v in self.vehicles)
+
     def without(self, bystanders: Iterable[str]) -> Roster:
         """The roster of those who take part."""
         gone = tuple(bystanders)
