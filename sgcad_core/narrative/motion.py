@@ -30,7 +30,7 @@ class Deed(NamedTuple):
     words: str = ""
     rule: str = ""
     at: int = 0
-    """Where in its sentence."""
+    """Where in its sentence it ends."""
 
     @property
     def cue(self) -> Cue:
