@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from sgcad_core.execution.contact import realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
-from sgcad_core.formats.sumo.lane_graph import network_figures, segments
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import (
     ActorInfo,
@@ -23,6 +22,7 @@ from sgcad_core.records import (
     Scenario,
     StageOutcome,
 )
+from sgcad_core.roads.lane_graph import network_figures, segments
 
 if TYPE_CHECKING:
     from sgcad_core.narrative.reading import Reading
