@@ -157,12 +157,16 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
-    behind = rule("clauses.located").sub("", behind)
     if _BESIDE.search(before):
         return bool(rule("clauses.relative").match(behind))
     if _DRIVER_OF.search(before):
-        return bool(_VERB.match(behind))
+        return _acts(behind)
     if _PREPOSITION.search(before):
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
-    return bool(_VERB.match(behind))
+    return _acts(behind)
+
+
+def _acts(behind: str) -> bool:
+    """Whether a verb follows a mention, at once or behind words that say where the vehicle is."""
+    return bool(_VERB.match(behind) or _VERB.match(rule("clauses.located").sub("", behind)))

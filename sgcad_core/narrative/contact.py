@@ -166,6 +166,8 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
     pair = paired_areas(scope)
     scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
+    if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
+        own = None  # "made contact with the left door": whose door it is stands elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
     other, other_area = _object(told, actor, rest, who)
