@@ -18,7 +18,6 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.reading import Reading
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import RoadSpec
@@ -50,7 +49,7 @@ class Rules(ScenarioWriter):
         reading = context.reading
         scenario = self._compiled(reading.crash, spec, network, reading)
         said: list[str] = []
-        if self.try_others and network.net_xml and not tells_lost_control(reading.narrative):
+        if self.try_others and network.net_xml and not reading.lost_control:
             least = least_doubted(
                 reading.crash, lambda facts: behavior_of_facts(facts, spec), parse_net(network.net_xml), scenario
             )
@@ -66,7 +65,7 @@ class Rules(ScenarioWriter):
             network,
             self.openscenario,
             self.encoding,
-            may_skid=tells_lost_control(reading.narrative),
+            may_skid=reading.lost_control,
             courses=facts.courses,
             signals=reading.signals,
         )
