@@ -10,7 +10,7 @@ from mini.generator import clauses_scene as scene
 from mini.generator import conditions, words
 from mini.generator.grammar import choose, sided
 from mini.generator.junction_phrases import JunctionMixin
-from mini.generator.labels import has, plain
+from mini.generator.labels import has, mark, plain
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
 from mini.generator.records import Group, slots_of
@@ -111,9 +111,10 @@ class SceneMixin(JunctionMixin):
     def _of_road(self, options: Group | Sequence[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
         untrue = self._untrue() + ["two"] * (self.crash.alone and not self.held_out)
-        unset = [slot for slot in ("lim", "lim2") if self._limit_of(slot) is None]
-        clauses = sided(options, self.held_out)
-        true = [c for c in clauses if not (any(has(c, label) for label in untrue) or set(unset) & set(slots_of(c)))]
+        letters = [mark(label) for label in untrue]
+        unset = {slot for slot in ("lim", "lim2") if self._limit_of(slot) is None}
+        clauses = (c for c in sided(options, self.held_out) if not any(letter in c for letter in letters))
+        true = [c for c in clauses if not unset.intersection(slots_of(c))]
         if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
             true = [clause for clause in true if "axis" in slots_of(clause) or not has(clause, "last_road")]
         self.of_road = True
