@@ -84,6 +84,8 @@ def describe_config(config: Config) -> None:
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:
             table.add_row(kind, *_row(config.raw[kind], plugin))
+    for driven in config.drive.drivers if config.drive else ():
+        table.add_row("driver", *_row(driven.raw, driven.driver))
     for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
         table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)

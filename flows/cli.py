@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
+from flows.drives.commands import drive
 from flows.index import index_app
 from flows.plugin_commands import plugins_app
 from flows.results.commands import report, table
@@ -223,6 +224,7 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
     raise typer.Exit(0 if examine(out) else 1)
 
 
+app.command()(drive)
 app.command()(table)
 app.command()(report)
 

@@ -150,6 +150,8 @@ def params_of(config: Config) -> dict[str, Any]:
         plugin = getattr(config, kind)
         if plugin is not None and kind != "tracker":
             found[kind] = _fields(_name(config.raw[kind]), plugin)
+    if config.drive:
+        found["drive"] = {"drivers": [entry.raw for entry in config.drive.drivers], "roles": list(config.drive.roles)}
     return found | {"validators": [_fields(name, plugin) for name, plugin in _validators(config)]}
 
 

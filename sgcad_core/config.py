@@ -5,6 +5,8 @@ Flat: one mapping a plugin, its `name` and its fields. Knows the registry; no pl
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -16,6 +18,7 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
     Backbone,
     Decoder,
+    Driver,
     Plugin,
     ReportReader,
     Retriever,
@@ -25,6 +28,7 @@ from sgcad_core.interfaces import (
     Tracker,
     Validator,
 )
+from sgcad_core.kinds import CrashRole
 from sgcad_core.names import nearest
 from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
@@ -32,6 +36,26 @@ from sgcad_core.registry import plugin_class
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings")
 OPTIONAL = {"backbone", "decoder"}
+
+
+class DriverEntry(Record):
+    """A driver with the words that chose it; `label` names its results."""
+
+    label: str
+    driver: Driver
+    raw: dict[str, Any]
+
+
+class DriveStage(Record):
+    """The stage `drive`: who is put into the crash that was written, in whose place."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    drivers: tuple[DriverEntry, ...] = Field(min_length=1)
+    roles: tuple[CrashRole, ...] = ("initiator", "responder")
+    role_of: Mapping[str, CrashRole] = {}
+    """A person's word on who has which role, by actor; holds for every case."""
+    release_s: float = Field(4.0, ge=0, le=30)
 
 
 class Config(Record):
@@ -54,6 +78,8 @@ class Config(Record):
     scenario_writer: ScenarioWriter
     validators: tuple[Validator, ...] = ()
     simulator: Simulator
+    drive: DriveStage | None = None
+    """Drivers into whose hands the generated scenarios are given."""
     judge: Simulator | None = None
     """A second simulator, whose playing of the generated scenarios is compared with ours."""
     tracker: Tracker
@@ -93,7 +119,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
     """Build a Config from a mapping. Raises ConfigError listing every fault with its key path."""
     faults: list[str] = []
     fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
-    known = {*SINGLE, "judge", "validators", *SCALARS}
+    known = {*SINGLE, "judge", "drive", "validators", *SCALARS}
     faults += [f"{key}: {config_faults.unknown('key', str(key), sorted(known))}" for key in raw if key not in known]
     for kind in SINGLE:
         if raw.get(kind) is None:
@@ -103,6 +129,8 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
             fields[kind] = _plugin(kind, raw[kind], kind, faults)
     if raw.get("judge") is not None:
         fields["judge"] = _plugin("simulator", raw["judge"], "judge", faults)
+    if raw.get("drive") is not None:
+        fields["drive"] = _drive(raw["drive"], faults)
     validators = raw.get("validators") or []
     if not isinstance(validators, list):
         faults.append(f"validators: expected a list, found {validators!r}")
@@ -136,6 +164,41 @@ def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | Non
         return found(**{str(k): v for k, v in entry.items() if k != "name"})
     except ValidationError as fault:
         faults += config_faults.lines(path, fault, found)
+    return None
+
+
+def driver_entry(entry: Any) -> DriverEntry:
+    """A driver of its name, or of a mapping with name and fields (`label` names its results). Raises ConfigError."""
+    faults: list[str] = []
+    found = _driver(entry, "driver", faults)
+    if found is None:
+        raise ConfigError("\n".join(faults))
+    return found
+
+
+def _driver(entry: Any, path: str, faults: list[str]) -> DriverEntry | None:
+    raw = {"name": entry} if isinstance(entry, str) else dict(entry) if isinstance(entry, dict) else entry
+    given = raw.pop("label", None) if isinstance(raw, dict) else None
+    driver = _plugin("driver", raw, path, faults)
+    if driver is None:
+        return None
+    told = [str(v) for v in raw.values() if isinstance(v, str | int | float)]
+    label = re.sub(r"[^A-Za-z0-9_.=-]+", "_", str(given or "-".join(told)))[:60].strip(".") or raw["name"]
+    return DriverEntry(label=label, driver=cast("Driver", driver), raw=raw)
+
+
+def _drive(entry: Any, faults: list[str]) -> DriveStage | None:
+    """The stage `drive`: a mapping with `drivers` (one or a list), or just those."""
+    raw = dict(entry) if isinstance(entry, dict) and "drivers" in entry else {"drivers": entry}
+    named = raw.pop("drivers")
+    named = named if isinstance(named, list) else [named]
+    drivers = [_driver(e, f"drive.drivers[{i}]", faults) for i, e in enumerate(named)]
+    if None in drivers:
+        return None
+    try:
+        return DriveStage(drivers=tuple(cast("list[DriverEntry]", drivers)), **raw)
+    except ValidationError as fault:
+        faults += config_faults.lines("drive", fault, DriveStage)
     return None
 
 

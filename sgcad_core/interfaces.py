@@ -1,4 +1,4 @@
-"""The whole extension surface: nine plugin kinds, one abstract method each.
+"""The whole extension surface: ten plugin kinds, one abstract method each.
 
 A plugin is one frozen pydantic class in one file: its fields are its configuration, its method is its
 job, heavy state is a `functools.cached_property`. Register it under the entry-point group
@@ -27,6 +27,7 @@ from sgcad_core.records import (
     RoadNetwork,
     Scenario,
 )
+from sgcad_core.seat import Seat, Task
 
 Ask = Callable[[Context, Query], Generation]
 """How a writer speaks to the model: backbone and decoder are already chosen, the call is recorded."""
@@ -174,6 +175,16 @@ class Simulator(Plugin):
     @abstractmethod
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
         """Execute in a process that may die. Raises SimulationFailed."""
+
+
+class Driver(Plugin):
+    """Drives one road user of a reconstructed crash in the report's driver's place."""
+
+    kind = "driver"
+
+    @abstractmethod
+    def take_over(self, task: Task) -> Seat:
+        """A driver for one drive, asked 20 times a second. Raises ConfigError, MissingTool or SimulationFailed."""
 
 
 class Tracker(Plugin):

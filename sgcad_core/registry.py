@@ -24,7 +24,7 @@ BASES: dict[str, type[Plugin]] = {
     for base in (
         interfaces.ReportReader, interfaces.Retriever, interfaces.Backbone, interfaces.Decoder,
         interfaces.RoadWriter, interfaces.ScenarioWriter, interfaces.Validator, interfaces.Simulator,
-        interfaces.Tracker,
+        interfaces.Driver, interfaces.Tracker,
     )
 }  # fmt: skip
 KINDS: tuple[str, ...] = tuple(BASES)
