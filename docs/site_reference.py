@@ -32,8 +32,8 @@ def _commands() -> Iterator[str]:
     from flows.cli import app
 
     yield "# Command line\n"
-    yield "Exit codes: 0 done (a refusal is a result), 1 a case failed or was exhausted, 2 bad input or configuration and"
-    yield "nothing was started, 130 interrupted.\n"
+    yield "Exit codes: 0 done (a refusal is a result), 1 a case failed or was exhausted, 2 bad input or configuration,"
+    yield "and nothing was started, 130 interrupted.\n"
     yield from _command("sgcad", typer.main.get_command(app))
 
 
@@ -45,7 +45,7 @@ def _command(name: str, command: Any) -> Iterator[str]:
         yield "| argument or option | default | about |"
         yield "|---|---|---|"
         for parameter in command.params:
-            words = parameter.metavar or parameter.human_readable_name.upper()
+            words = parameter.metavar or str(parameter.name).upper()
             called = words if parameter.param_type_name == "argument" else ", ".join(parameter.opts)
             default = parameter.default if isinstance(parameter.default, str | int | float) else None
             shown = "" if default in (None, "", False) else str(default)
@@ -86,7 +86,8 @@ def _plugin(kind: str, name: str, plugin: type[Plugin]) -> Iterator[str]:
     yield "|---|---|---|---|"
     for field, schema in fields.items():
         default = json.dumps(schema["default"], ensure_ascii=False) if "default" in schema else "(required)"
-        yield f"| `{field}` | {_cell(_type(schema))} | `{_cell(default)}` | {_cell(str(schema.get('description', '')))} |"
+        about = _cell(str(schema.get("description", "")))
+        yield f"| `{field}` | {_cell(_type(schema))} | `{_cell(default)}` | {about} |"
     yield ""
 
 
