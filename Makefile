@@ -69,13 +69,11 @@ docs-serve: docs ## the same at http://127.0.0.1:8000, rebuilt while you write
 
 .venv-tools/.ready:
 	$(PYTHON) -m venv .venv-tools
-	.venv-tools/bin/python -m pip install --quiet --disable-pip-version-check pip-tools==7.6.2 pip-licenses==5.5.5 cyclonedx-bom==7.5.0
+	.venv-tools/bin/python -m pip install --quiet --disable-pip-version-check pip-licenses==5.5.5 cyclonedx-bom==7.5.0
 	@touch $@
 
-lock: .venv-tools/.ready ## deploy/requirements.lock: every package of the image with version and digests
-	.venv-tools/bin/pip-compile --quiet --generate-hashes --extra hosts --constraint deploy/constraints.txt --strip-extras \
-	  --unsafe-package torch --unsafe-package setuptools --unsafe-package pip --no-emit-index-url --no-emit-trusted-host \
-	  --no-emit-find-links --no-header --no-annotate --output-file deploy/requirements.lock pyproject.toml
+lock: setup ## deploy/requirements.lock: every package of the image with version and digest
+	$(BIN)/python -m deploy.lock
 
 licenses: setup .venv-tools/.ready ## licenses.csv: every installed package with version and licence
 	.venv-tools/bin/pip-licenses --python $(BIN)/python --format csv --with-urls --output-file licenses.csv
