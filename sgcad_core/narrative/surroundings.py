@@ -6,6 +6,7 @@ import re
 
 from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule, values
+from sgcad_core.narrative.limits import FASTEST_MPH, MILES
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.narrative.vehicles import Roster
@@ -67,11 +68,11 @@ _LIMIT = rule("surroundings.limit")
 def read_speed(motion: Motion, text: str, weight: int) -> None:
     if _LIMIT.search(text):
         return
-    for pattern, factor in ((_SPEED, 1.0), (_KMPH, 0.621)):
+    for pattern, factor in ((_SPEED, 1.0), (_KMPH, MILES)):
         m = pattern.search(text)
         if m:
             low, high = float(m.group("a")), float(m.group("b") or m.group("a"))
-            speed_mph = round(min(120.0, (low + high) / 2 * factor))
+            speed_mph = round(min(FASTEST_MPH, (low + high) / 2 * factor))
             motion.heard(motion.speeds_mph, weight, speed_mph, m.group(), pattern.id)
             return
 
