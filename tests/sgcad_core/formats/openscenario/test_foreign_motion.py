@@ -18,6 +18,7 @@ from tests.sgcad_core.formats.xosc_samples import (
     lane,
     row,
     scenario,
+    speed_action,
     timing,
     v1,
     when,
@@ -84,11 +85,7 @@ def test_an_action_across_the_road_needs_a_lane_in_our_files_and_is_left_out_of_
 def test_who_is_beside_has_no_headway():
     """V2 stands beside V1 (0 m ahead), then V1 drives away from it: never ahead, so never so many seconds away."""
     headway = '<TimeHeadwayCondition entityRef="V2" value="0.1" freespace="false" rule="greaterThan"/>'
-    stop = (
-        '<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape="step" dynamicsDimension="time" value="0"/>'
-        '<SpeedActionTarget><AbsoluteTargetSpeed value="0"/></SpeedActionTarget></SpeedAction></LongitudinalAction>'
-    )
-    text = scenario({"V1": world(0, 0), "V2": world(0, 3)}, event("e", stop, when(headway)), {"V1": 10})
+    text = scenario({"V1": world(0, 0), "V2": world(0, 3)}, event("e", speed_action(0), when(headway)), {"V1": 10})
     assert v1(text).speed_mps.min() == pytest.approx(10.0)
 
 
