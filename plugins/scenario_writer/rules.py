@@ -51,6 +51,7 @@ class Rules(ScenarioWriter):
             self.openscenario,
             self.encoding,
             may_skid=lost,
+            courses=facts.courses,
             signals=context.reading.signals,
         )
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})

@@ -55,10 +55,11 @@ class SpecScenario(ScenarioWriter):
             attempt=attempt,
         )
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        lost = tells_lost_control(context.reading.narrative)
+        reading = context.reading
         return compile_scenario(
-            behavior, network, self.openscenario, self.encoding, may_skid=lost, signals=context.reading.signals
-        )
+            behavior, network, self.openscenario, self.encoding,
+            may_skid=tells_lost_control(reading.narrative), courses=reading.crash.courses, signals=reading.signals,
+        )  # fmt: skip
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":
