@@ -108,11 +108,11 @@ DIFFERENCES: dict[str, str] = {
     "`AddEntityAction` in Init": "esmini leaves one that is placed relative to another added before it at the world's "
     "origin; ours places them in the order of the file",
     "`SpeedAction`, linear": "ours moves by the mean of the speeds at both ends of a step, which is exact; esmini by "
-    "the new speed: 0.05 m for a change by 10 m/s at steps of 0.01 s, more where a distance then triggers the next event",
-    "`SpeedProfileAction`, mode follow": "the standard names a limit of jerk and no profile; esmini rounds corners of the "
-    "speed with it, ours drives the pieces as they stand (noted)",
-    "`LateralDistanceAction`": "how the distance is reached is left open; esmini steers there along arcs or by a spring, "
-    "ours at the rate that maxSpeed allows",
+    "the new speed: 0.05 m for a change by 10 m/s at steps of 0.01 s, more where a distance triggers what follows",
+    "`SpeedProfileAction`, mode follow": "the standard names a limit of jerk and no profile; esmini rounds corners of "
+    "the speed with it, ours drives the pieces as they stand (noted)",
+    "`LateralDistanceAction`": "how the distance is reached is left open; esmini steers there along arcs or by a "
+    "spring, ours at the rate that maxSpeed allows",
     "`TeleportAction` in the story": "esmini holds an entity still in the step of its teleport; ours goes on at once: "
     "one step of motion, 0.6 m at 56 m/s and steps of 0.01 s",
     "`SynchronizeAction`": "esmini takes its own and the master's speed along the road's reference line, also where "
