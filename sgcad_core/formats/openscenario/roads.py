@@ -5,7 +5,7 @@ At junctions the straightest way is taken unless a route says otherwise. Knows n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -123,8 +123,8 @@ class XodrRoads:
         return bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
 
     def on_road(self, pose: Pose) -> bool:
-        """Whether a point lies on a drivable lane or a shoulder."""
-        x, y, _, _, _, half = self._shoulders
+        """Whether a point lies on a lane of any kind but "none": shoulders, borders and sidewalks are road."""
+        x, y, _, _, _, half = self._beside
         return self.covers(pose) or bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
 
     def lane_center(self, road: str, lane: int) -> Floats:
@@ -207,18 +207,18 @@ class XodrRoads:
         found = self._links.path(leg, length - here.s_m if leg.sense > 0 else here.s_m, self._goals(place))
         return found[0] if found else None
 
-    def _of_kind(self, *kinds: str) -> list[Step]:
+    def _of_kind(self, wanted: Callable[[str], bool]) -> list[Step]:
         return [
             Step(road.id, i, lane, road.sense(lane))
             for road in self._roads.values()
             for i, section in enumerate(road.sections)
             for lane, found in section.lanes.items()
-            if found.kind in kinds
+            if wanted(found.kind)
         ]
 
     @cached_property
     def _drivable(self) -> list[Step]:
-        return self._of_kind(*DRIVABLE)
+        return self._of_kind(DRIVABLE.__contains__)
 
     @cached_property
     def _centers(self) -> tuple[Floats, ...]:
@@ -226,8 +226,9 @@ class XodrRoads:
         return self._vertices(self._drivable)
 
     @cached_property
-    def _shoulders(self) -> tuple[Floats, ...]:
-        return self._vertices(self._of_kind("shoulder"))
+    def _beside(self) -> tuple[Floats, ...]:
+        """Of the other lanes that are road."""
+        return self._vertices(self._of_kind(lambda kind: kind not in (*DRIVABLE, "none")))
 
     def _vertices(self, lanes: Sequence[Step]) -> tuple[Floats, ...]:
         """x, y, driving heading, s, index into the lanes and half width of every vertex of every lane."""

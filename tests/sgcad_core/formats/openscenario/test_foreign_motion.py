@@ -115,17 +115,17 @@ def test_vertices_without_headings_face_along_each_piece():
     assert row(motion, 1.1)[2] == pytest.approx(np.pi / 2, abs=1e-6)
 
 
-def test_a_shoulder_is_road_and_no_lane_to_drive_in():
+@pytest.mark.parametrize("beside", ["shoulder", "border", "sidewalk"])
+def test_what_lies_beside_is_road_and_no_lane_to_drive_in(beside):
     lanes = "".join(
         f'<lane id="{number}" type="{kind}"><width sOffset="0" a="4" b="0" c="0" d="0"/></lane>'
-        for number, kind in ((-1, "driving"), (-2, "shoulder"))
+        for number, kind in ((-1, "driving"), (-2, beside), (-3, "none"))
     )
     roads = XodrRoads(
         '<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1"><planView>'
         '<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView><lanes><laneSection s="0">'
         f'<center><lane id="0" type="none"/></center><right>{lanes}</right></laneSection></lanes></road></OpenDRIVE>'
     )
-    shoulder, field = Pose(50.0, -6.0, 0.0), Pose(50.0, -12.0, 0.0)
-    assert roads.on_road(shoulder)
-    assert not roads.covers(shoulder)
-    assert not roads.on_road(field)
+    assert roads.on_road(Pose(50.0, -6.0, 0.0))
+    assert not roads.covers(Pose(50.0, -6.0, 0.0))
+    assert not roads.on_road(Pose(50.0, -10.0, 0.0))
