@@ -51,8 +51,10 @@ def _distance(node: Node) -> Begin:
             else:
                 body.next_mps = spring.speed(body.speed_mps, lead.speed_mps, error, scene.dt_s)
 
-        running = Running(body, ("speed",), lambda scene: state["over"], control=control)
-        return running.claim()
+        running = Running(body, ("speed",), lambda scene: state["over"], control=control).claim()
+        if math.isinf(limits.up) and math.isinf(limits.down):  # held exactly from the first moment
+            control(scene)
+        return running
 
     return begin
 

@@ -129,3 +129,23 @@ def test_what_lies_beside_is_road_and_no_lane_to_drive_in(beside):
     assert roads.on_road(Pose(50.0, -6.0, 0.0))
     assert not roads.covers(Pose(50.0, -6.0, 0.0))
     assert not roads.on_road(Pose(50.0, -10.0, 0.0))
+
+
+def test_a_distance_without_limits_is_held_from_the_first_moment():
+    motion = chase("")
+    assert row(motion, 0)[0] == pytest.approx(row(v1(scenario({"V1": world(50, 0)})), 0)[0])
+    assert row(motion, 2)[0] == pytest.approx(row(motion, 0)[0] + 20.0)
+
+
+@pytest.mark.parametrize("number", [-1, 1])
+def test_a_place_on_a_route_is_in_the_lane_that_is_named(number):
+    """Also in one whose traffic comes against the route."""
+    way = f"<Waypoint routeStrategy='shortest'>{lane('3', -1, 20)}</Waypoint>"
+    way += f"<Waypoint routeStrategy='shortest'>{lane('3', -1, 80)}</Waypoint>"
+    place = (
+        f'<Position><RoutePosition><RouteRef><Route name="r" closed="false">{way}</Route></RouteRef>'
+        f'<InRoutePosition><FromLaneCoordinates laneId="{number}" pathS="10"/></InRoutePosition>'
+        "</RoutePosition></Position>"
+    )
+    motions = [v1(scenario({"V1": where}), crossroads().xodr) for where in (place, lane("3", number, 30))]
+    assert row(motions[0], 0)[:3] == pytest.approx(row(motions[1], 0)[:3])
