@@ -168,8 +168,7 @@ def _plugins(config: Config) -> Iterator[tuple[str, str]]:
     named: list[tuple[str, Plugin | None]] = [(kind, getattr(config, kind)) for kind in SINGLE if kind != "tracker"]
     for name, plugin in [*named, *((f"validator.{name}", plugin) for name, plugin in _validators(config))]:
         if plugin is not None:
-            about = f"{cases.qualified(plugin)} {type(plugin).version} {plugin.stamp}"
-            yield name, about.strip()
+            yield name, " ".join(filter(None, [cases.qualified(plugin), *cases.identity(plugin)]))
 
 
 def _name(entry: Any) -> str:

@@ -13,7 +13,7 @@ from typing import Any, cast
 import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
-from sgcad_core import settings
+from sgcad_core import config_faults, settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
     Backbone,
@@ -29,6 +29,7 @@ from sgcad_core.interfaces import (
     Validator,
 )
 from sgcad_core.kinds import CrashRole
+from sgcad_core.names import nearest
 from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
 
@@ -119,7 +120,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
     faults: list[str] = []
     fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
     known = {*SINGLE, "judge", "drive", "validators", *SCALARS}
-    faults += [f"{key}: unknown key; known: {', '.join(sorted(known))}" for key in raw if key not in known]
+    faults += [f"{key}: {config_faults.unknown('key', str(key), sorted(known))}" for key in raw if key not in known]
     for kind in SINGLE:
         if raw.get(kind) is None:
             if kind not in OPTIONAL:
@@ -142,7 +143,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
         try:
             config = Config(name=name, raw=raw, **fields)
         except ValidationError as fault:
-            faults += _lines("", fault)
+            faults += config_faults.lines("", fault, Config)
     if config is None:
         raise ConfigError("\n".join([f"{where}: {len(faults)} fault(s)", *(f"  {f}" for f in faults)]))
     return config
@@ -155,11 +156,14 @@ def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | Non
         faults.append(f"{path}: expected a mapping with a `name`, found {entry!r}")
         return None
     try:
-        return plugin_class(kind, entry["name"])(**{k: v for k, v in entry.items() if k != "name"})
+        found = plugin_class(kind, entry["name"])
     except ConfigError as fault:
         faults.append(f"{path}: {fault}")
+        return None
+    try:
+        return found(**{str(k): v for k, v in entry.items() if k != "name"})
     except ValidationError as fault:
-        faults += _lines(path, fault)
+        faults += config_faults.lines(path, fault, found)
     return None
 
 
@@ -194,15 +198,8 @@ def _drive(entry: Any, faults: list[str]) -> DriveStage | None:
     try:
         return DriveStage(drivers=tuple(cast("list[DriverEntry]", drivers)), **raw)
     except ValidationError as fault:
-        faults += _lines("drive", fault)
+        faults += config_faults.lines("drive", fault, DriveStage)
     return None
-
-
-def _lines(path: str, fault: ValidationError) -> list[str]:
-    return [
-        f"{'.'.join([p for p in (path, *map(str, e['loc'])) if p])}: {e['msg']} (found {e['input']!r})"
-        for e in fault.errors(include_url=False)
-    ]
 
 
 def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
@@ -215,6 +212,12 @@ def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
         faults.append(f"backbone: missing, but {' and '.join(asking)} ask a model")
     if asking and decoder is None:
         faults.append("decoder: missing; use `decoder: {name: greedy}`")
+    if decoder and backbone is None and not asking:
+        faults.append(
+            f"decoder: {_name(raw['decoder'])!r} would decode nothing: road_writer {_name(raw['road_writer'])!r} and "
+            f"scenario_writer {_name(raw['scenario_writer'])!r} ask no model; leave it out, or choose a config with a "
+            "backbone, such as mini.yaml"
+        )
     if backbone and decoder and decoder.needs_prior and not backbone.gives_logits:
         faults.append(
             f"decoder {_name(raw['decoder'])!r} needs logits; backbone {_name(raw['backbone'])!r} gives none; "
@@ -232,8 +235,9 @@ def _find(path: Path) -> Path:
         if file.is_file():
             return file
     found = sorted(f.relative_to(settings.CONFIGS) for f in settings.CONFIGS.rglob("*.yaml"))
-    known = ", ".join(str(f) for f in found if f.parts[0] != "studies")
-    raise ConfigError(f"{path}: no such config; in configs/: {known}")
+    known = {str(f.with_suffix("")): str(f) for f in found if f.parts[0] != "studies"}
+    meant = nearest(str(path.with_suffix("")), known)
+    raise ConfigError(f"{path}: no such config.{meant} In configs/: {', '.join(known.values())}")
 
 
 def _override(raw: dict[str, Any], text: str) -> None:

@@ -113,6 +113,10 @@ class Backbone(Plugin):
         What it raises the first question raises again.
         """
 
+    def weights_gb(self) -> float | None:
+        """Memory that its weights will take on this machine, decimal GB; None: none here, or nobody can tell."""
+        return None
+
 
 class RoadWriter(Plugin):
     """Evidence to a road network."""
@@ -191,6 +195,10 @@ class Tracker(Plugin):
     """
 
     kind = "tracker"
+
+    def ready(self, out: Path) -> None:
+        """Called before anything starts, quick. Raises ConfigError where it can never log; the default is ready."""
+        return
 
     def begin(self, arm: Arm) -> None:
         """Told before the first case of a config; the default keeps nothing."""

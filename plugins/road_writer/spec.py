@@ -36,15 +36,17 @@ class SpecRoad(RoadWriter):
     form: Literal["road", "layout"] = "road"
     prompt: str = Field("", pattern=r"^[\w-]*$")
     """configs/prompts/<prompt>.md; empty: the one named like the form."""
+    places: bool = False
+    """Whether the answer may tell roundabouts and their like; the embedded model has not learned their fields."""
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Ask, read, draw, compile. Raises InvalidOutput with findings, Refused where the model declines."""
         query = Query(
-            task=load_prompt(self.prompt or self.form),
+            task=self._task(),
             passages=tuple(passages),
-            answer_schema=answer_schema(RoadSpec if self.form == "road" else RoadLayout),
+            answer_schema=answer_schema(RoadSpec if self.form == "road" else RoadLayout, places=self.places),
             attempt=attempt,
         )
         answer = ask(context, query).text
@@ -54,6 +56,10 @@ class SpecRoad(RoadWriter):
         layout = _layout(answer)
         spec = road_spec(layout)
         return compile_network(plain_xml(spec), spec).model_copy(update={"layout": layout})
+
+    def _task(self) -> str:
+        task = load_prompt(self.prompt or self.form)
+        return f"{task}\n\n{load_prompt(f'{self.form}_places')}" if self.places else task
 
 
 def _layout(answer: str) -> RoadLayout:

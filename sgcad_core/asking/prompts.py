@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.records import Finding
-from sgcad_core.specs import Refusal, Spec
+from sgcad_core.specs import Refusal, Spec, trained_schema
 
 Answer = TypeVar("Answer", bound=Spec)
 Json = dict[str, Any]
@@ -36,19 +36,20 @@ _SLOT = re.compile(r"\{([a-z_]+)\}")
 
 # ------------------------------------------------------------------ schema
 def answer_schema(
-    model: type[Spec], enums: Mapping[str, Sequence[str]] | None = None, refusal: bool = True
+    model: type[Spec], enums: Mapping[str, Sequence[str]] | None = None, refusal: bool = True, places: bool = False
 ) -> dict[str, Any]:
     """Strict JSON schema of a spec: every key required, in field order, nothing else allowed, no references.
 
     `enums` narrows string fields by name (`{"road": ["N", "S"]}`, null stays allowed where it was).
-    With `refusal` the answer may be a `Refusal` instead.
+    With `refusal` the answer may be a `Refusal` instead. `places`: with the fields of roundabouts and their like, which
+    the embedded model has not learned.
     """
-    answer = _inlined(model, enums or {})
+    answer = _inlined(model, enums or {}, places)
     return {"anyOf": [answer, _inlined(Refusal, {})]} if refusal else answer
 
 
-def _inlined(model: type[Spec], enums: Mapping[str, Sequence[str]]) -> Json:
-    schema = model.model_json_schema()
+def _inlined(model: type[Spec], enums: Mapping[str, Sequence[str]], places: bool = False) -> Json:
+    schema = model.model_json_schema() if places else trained_schema(model)
     return _strict(schema, schema.get("$defs", {}), enums)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import JUNCTIONS, JunctionKind
+from sgcad_core.kinds import JUNCTIONS, JunctionKind, junction_kind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
@@ -29,7 +29,7 @@ class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
     legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
     the text says by compass where the stem lies. `unsupported`: kinds of places at which the crash happened and which
-    cannot be drawn."""
+    cannot be drawn. `circle_lanes`: of a roundabout, as told."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
@@ -38,6 +38,7 @@ class JunctionFacts:
     stated: bool = False
     stem_stated: bool = False
     unsupported: tuple[str, ...] = ()
+    circle_lanes: int | None = None
     notes: tuple[str, ...] = field(default=())
     where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
@@ -47,6 +48,8 @@ _NUMBERED = rule("common.vehicle_begins")
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
 _NO_JUNCTION = rule("junction.no_junction")
+CIRCLE_LANES = rule("junction.roundabout_lanes")
+_CIRCLE_LANE = rule("junction.roundabout_lane")
 
 
 def junction_of(
@@ -58,11 +61,13 @@ def junction_of(
     if kind == "none":
         return JunctionFacts(stated=stated)
     control, control_at = control_of(told)
-    where = _where(kind=_named(story)[1] if kind in ("t", "four_leg") else None, control=control_at)
+    record = junction_kind(kind)
+    where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
-    halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
-    if kind == "four_leg":
-        return JunctionFacts(kind, None, control, halted, stated, where=where)
+    halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()
+    if record.crossing:
+        around = _circle_lanes(story) if record.round else None
+        return JunctionFacts(kind, None, control, halted, stated, circle_lanes=around, where=where)
     lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
     said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
     said = None if said and _contradicted(said, vehicles) else said
@@ -111,6 +116,13 @@ def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], 
         plain = _JUNCTION.search(text)
         some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
     return "some" if some else "none", some
+
+
+def _circle_lanes(story: Sequence[Statement]) -> int | None:
+    """How many lanes go around in a roundabout, where the story tells it."""
+    if match := next((m for t in story if (m := CIRCLE_LANES.search(t.text))), None):
+        return 1 if match["one"] else 2
+    return 2 if any(_CIRCLE_LANE.search(t.text) for t in story) else None
 
 
 def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:

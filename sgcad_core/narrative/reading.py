@@ -13,7 +13,8 @@ character offsets in the narrative that was given. Knows no road network and no 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
@@ -28,6 +29,7 @@ from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
+from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_states
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
@@ -44,6 +46,8 @@ class Reading:
     crash: CrashFacts
     """Headings that nobody tells are turned to fit the roads."""
     roads: RoadFacts
+    signals: Mapping[str, SignalState] = field(default_factory=dict)
+    """What the traffic signal showed to a vehicle, by its id, where that is told."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -75,10 +79,11 @@ class Mentions(NamedTuple):
 
 
 class Events(NamedTuple):
-    """What the text tells: every vehicle's motion, every contact; light, weather and surface."""
+    """What the text tells: every vehicle's motion, every contact; light, weather and surface; what signals showed."""
 
     draft: Draft
     sky: Conditions
+    signals: Mapping[str, SignalTold]
 
 
 def normalise(narrative: Traced) -> Traced:
@@ -105,7 +110,7 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
     draft = Draft(named.who, motions(named.statements, cut, named.who), blows(named.statements, named.who))
-    return Events(draft, conditions(found))
+    return Events(draft, conditions(found), signal_states(cut))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
@@ -113,6 +118,8 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     settled = settle(seen.draft)
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
+    lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
     roles = role_facts(telling, named.statements, roads.crash)
-    facts = (*crash_provenance(telling, as_read), *roles, *road_provenance(telling, roads))
-    return Reading(narrative, found, roads.crash, roads, facts)
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
+    states = {vehicle: told.state for vehicle, told in seen.signals.items()}
+    return Reading(narrative, found, roads.crash, roads, states, facts)

@@ -34,6 +34,10 @@ def _road_faults(spec: RoadSpec, index: int, road: Road) -> Iterator[Finding]:
     if road.from_node == road.to_node:
         remedy = "let it end at another node; cut a loop into two roads"
         yield _finding("the road ends where it begins", f"roads[{index}]", road.from_node, remedy)
+    for node in road.crosswalks:
+        if node not in (road.from_node, road.to_node):
+            remedy = f"use {road.from_node} or {road.to_node}"
+            yield _finding("the road does not end there", f"roads[{index}].crosswalks", node, remedy)
     if not road.lanes_forward and not road.lanes_backward:
         yield _finding("the road has no lanes", f"roads[{index}]", "0 and 0", "give one direction a lane")
 

@@ -11,7 +11,7 @@ from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.marks import LINE_M, NONE, Mark, center_mark, outer_mark
 from sgcad_core.formats.opendrive.reference import Piece
 from sgcad_core.formats.opendrive.signals import posted_mph
-from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.streets import BESIDE_TYPES, Street, Strip
 from sgcad_core.formats.opendrive.widths import Width
 from sgcad_core.formats.sumo.parameters import LIMIT, MEDIAN, USUAL
 from sgcad_core.formats.xml import Element
@@ -87,7 +87,8 @@ def _lane(side: Element, street: Street, strip: Strip, edge: Edge | None) -> Non
         _width(lane, width)
     _mark(lane, outer_mark(street, strip))
     if strip.lane is not None and edge is not None:
-        _speed(lane, edge, strip.lane.speed_mps)
+        if strip.type not in BESIDE_TYPES:
+            _speed(lane, edge, strip.lane.speed_mps)
         add(lane, "userData", code=LANE_CODE, value=strip.lane.id)
     elif strip.type == "median" and MEDIAN in street.forward.parameters:
         add(lane, "userData", code=MEDIAN, value=street.forward.parameters[MEDIAN])

@@ -51,7 +51,7 @@ def center_mark(street: Street) -> Mark:
 
 def outer_mark(street: Street, strip: Strip) -> Mark:
     """The marking along a lane's outer border."""
-    if _unmarked(street) or strip.type in ("shoulder", "sidewalk", "curb", "border"):
+    if _unmarked(street) or strip.type in ("shoulder", "sidewalk", "curb", "border", "parking"):
         return NONE
     if strip.type == "median":
         return DOUBLE if street.forward.parameters.get(MEDIAN) == "painted" else LEFT_EDGE
@@ -59,6 +59,8 @@ def outer_mark(street: Street, strip: Strip) -> Mark:
         return OUT_OF_CENTER_LANE
     side = street.strips("right" if strip.id < 0 else "left")
     outside = next((s for s in side if abs(s.id) == abs(strip.id) + 1), None)
+    if strip.type == "biking" and (outside is None or outside.type == "curb"):
+        return NONE
     return LANE if outside is not None and outside.type == "driving" else EDGE
 
 

@@ -134,7 +134,8 @@ def control_of(graph: LaneGraph, roads: Sequence[Street]) -> Control:
 def _approaches(graph: LaneGraph, roads: Sequence[Street]) -> Iterator[_Approach]:
     for street in roads:
         for edge in street.edges:
-            if links := graph.leaving(edge.id):
+            driven = {lane.index for lane in edge.lanes if not lane.type}
+            if links := tuple(link for link in graph.leaving(edge.id) if link.from_lane in driven):
                 yield _Approach(edge, street, links)
 
 

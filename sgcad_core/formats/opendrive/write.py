@@ -12,6 +12,7 @@ from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.connecting import Connector, way
+from sgcad_core.formats.opendrive.crosswalks import crosswalks_of
 from sgcad_core.formats.opendrive.elements import (
     add,
     add_connector_lanes,
@@ -69,6 +70,7 @@ class _Document:
         crossed = dict.fromkeys(graph.edges[c.from_edge].to_node for c in links)
         self.junctions = {node: str(i) for i, node in enumerate(crossed, 1)}
         self.control = control_of(graph, roads)
+        self.crosswalks = crosswalks_of(graph, roads, first_id=len(self.control.stop_lines) + 1)
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -93,6 +95,11 @@ class _Document:
                 add(made, "control", signalId=signal, type="0")
         for node, name in self.junctions.items():
             self._junction(root, node, name)
+        for i, circle in enumerate(self.graph.circles, 1):
+            group = add(root, "junctionGroup", id=str(i), name=min(circle), type="roundabout")
+            for node, name in self.junctions.items():
+                if node in circle:
+                    add(group, "junctionReference", junction=name)
         return root
 
     def _header(self, root: Element) -> None:
@@ -116,7 +123,8 @@ class _Document:
         self._type(road, street)
         add_pieces(add(road, "planView"), street.line)
         add_street_lanes(add(road, "lanes"), street)
-        add_objects(road, street, [line for line in self.control.stop_lines if line.road == street.id])
+        lines = [line for line in self.control.stop_lines if line.road == street.id]
+        add_objects(road, street, lines, [walk for walk in self.crosswalks if walk.road == street.id])
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:
