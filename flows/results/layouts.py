@@ -51,6 +51,12 @@ LAYOUTS = (
         "cases; TTC and PET of the cases that have one. Not comparable with published values.", m.EXACT,
     ),
     Layout(
+        "conflict", "What tells the scripted crashes apart", "Of generated cases that touch, in the script, nobody "
+        "reacting: a second before the contact, at it, and the last moment at which full braking (or moving aside) "
+        "still avoids it, of whichever had to act first. Drives by drivers stand in the tables of `sgcad drive`.",
+        m.CONFLICT,
+    ),
+    Layout(
         "robustness", "Robustness levels", "Network errors as share of generated reports with any error, percent (a "
         "refused case is no network error here).", m.ROBUSTNESS, True,
     ),

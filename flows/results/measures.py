@@ -109,6 +109,16 @@ EXACT = (
         ("critical", "critical"), ("high", "high"), ("moderate_low", "moderate and low"),
     )),
 )  # fmt: skip
+CONFLICT = (
+    Measure("c_ttc", "TTC 1 s before", "mean", "s", digits=2),
+    Measure("c_drac", "DRAC 1 s before", "mean", "m/s2", digits=2),
+    Measure("c_exposed", "TTC < 1.5 s", "mean", "s", digits=2),
+    Measure("c_closing", "closing speed", "mean", "m/s", digits=1),
+    Measure("c_delta_v", "larger delta-v", "mean", "m/s", digits=1),
+    Measure("c_risk", "risk of death", "mean", "%", digits=1),
+    Measure("c_brake", "last to brake", "mean", "s", digits=2),
+    Measure("c_steer", "last to steer", "mean", "s", digits=2),
+)
 ROBUSTNESS = (
     _right("generated", "GSR", "share"),
     Measure("refused", "refused"),
@@ -126,6 +136,11 @@ _EXACT = {
     "x_ttc": "time_to_collision_s", "x_pet": "post_encroachment_time_s", "x_ade": "average_displacement_error_m",
     "x_fde": "final_displacement_error_m",
 }  # fmt: skip
+_CONFLICT = {
+    "c_ttc": "ttc_1_s_before_s", "c_drac": "drac_1_s_before_mps2", "c_exposed": "time_exposed_ttc_s",
+    "c_closing": "collision_speed_mps", "c_delta_v": "delta_v_worst_mps", "c_risk": "fatality_risk",
+    "c_brake": "brake_by_s", "c_steer": "steer_by_s",
+}  # fmt: skip
 
 
 def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
@@ -136,6 +151,7 @@ def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
     if ran.generated:
         found |= dict(_reading(ran.metrics.get("paper", {}), _PAPER, "p"))
         found |= dict(_reading(ran.metrics.get("exact", {}), _EXACT, "x"))
+        found |= dict(_conflict(ran.metrics.get("exact", {})))
     return found
 
 
@@ -169,6 +185,16 @@ def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
             if generated:
                 found[f"made_{short}_wrong"] = marks[f"{field}_any"]
     return found
+
+
+def _conflict(figures: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """What tells crashes apart; of a figure by actor the one of whoever had to act first."""
+    for name, key in _CONFLICT.items():
+        value = figures.get(key)
+        if isinstance(value, Mapping):
+            value = max((v for v in value.values() if v is not None), default=None)
+        if value is not None:
+            yield name, float(value)
 
 
 def _reading(figures: Mapping[str, Any], names: Mapping[str, str], prefix: str) -> Iterator[tuple[str, float]]:
