@@ -52,8 +52,9 @@ LAYOUTS = (
     ),
     Layout(
         "conflict", "What tells the scripted crashes apart", "Of generated cases that touch, in the script, nobody "
-        "reacting: a second before the contact, at it, and the last moment at which full braking (or moving aside) "
-        "still avoids it, of whichever had to act first. Drives by drivers stand in the tables of `sgcad drive`.",
+        "reacting. TTC-1s, DRAC-1s: a second before the contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
+        "of both; death: risk; brake by, steer by: the last moment at which it still avoids, of whichever had to act "
+        "first. Drives by drivers stand in the tables of `sgcad drive`.",
         m.CONFLICT,
     ),
     Layout(

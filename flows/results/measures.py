@@ -110,14 +110,14 @@ EXACT = (
     )),
 )  # fmt: skip
 CONFLICT = (
-    Measure("c_ttc", "TTC 1 s before", "mean", "s", digits=2),
-    Measure("c_drac", "DRAC 1 s before", "mean", "m/s2", digits=2),
-    Measure("c_exposed", "TTC < 1.5 s", "mean", "s", digits=2),
-    Measure("c_closing", "closing speed", "mean", "m/s", digits=1),
-    Measure("c_delta_v", "larger delta-v", "mean", "m/s", digits=1),
-    Measure("c_risk", "risk of death", "mean", "%", digits=1),
-    Measure("c_brake", "last to brake", "mean", "s", digits=2),
-    Measure("c_steer", "last to steer", "mean", "s", digits=2),
+    Measure("c_ttc", "TTC-1s", "mean", "s", digits=2),
+    Measure("c_drac", "DRAC-1s", "mean", "m/s2", digits=2),
+    Measure("c_exposed", "exposed", "mean", "s", digits=2),
+    Measure("c_closing", "closing", "mean", "m/s", digits=1),
+    Measure("c_delta_v", "delta-v", "mean", "m/s", digits=1),
+    Measure("c_risk", "death", "mean", "%", digits=1),
+    Measure("c_brake", "brake by", "mean", "s", digits=2),
+    Measure("c_steer", "steer by", "mean", "s", digits=2),
 )
 ROBUSTNESS = (
     _right("generated", "GSR", "share"),

@@ -79,7 +79,8 @@ def write_case(folder, status="generated", net=NET, realised=True, story=STORY, 
     }  # fmt: skip
     exact = figures | {
         "emergency_level": "high", "ttc_1_s_before_s": 0.9, "drac_1_s_before_mps2": 5.0, "time_exposed_ttc_s": 1.4,
-        "delta_v_worst_mps": 6.0, "fatality_risk": 0.01, "brake_by_s": {"V1": 1.1, "V2": None}, "steer_by_s": {"V1": 0.8},
+        "delta_v_worst_mps": 6.0, "fatality_risk": 0.01, "brake_by_s": {"V1": 1.1, "V2": None},
+        "steer_by_s": {"V1": 0.8},
     }  # fmt: skip
     (folder / "metrics.json").write_text(json.dumps({"paper": figures, "exact": exact}))
 
