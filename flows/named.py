@@ -4,7 +4,7 @@
     template.yaml --set max_attempts=3           runs/template-max_attempts_3
 
 So runs with other overrides lie side by side. A YAML that was edited keeps its folder: what differs is told before
-its results are replaced. Trackers change no result and therefore no name.
+its results are replaced. Trackers and judges change no artifact and therefore no name.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from flows.study.crossing import name_of
 from sgcad_core.config import Config
 
 FILE = "config.yaml"
-NO_RESULT = "tracker"
+NO_ARTIFACT = ("judge", "tracker")
 _LOGIN = re.compile(r"//[^/@\s]+@")
 
 
 def named(config: Config, overrides: Sequence[str]) -> Config:
     """The config under a name of its own where overrides made it another one."""
     pairs = (text.partition("=") for text in overrides)
-    factors = {key: yaml.safe_load(value) for key, _, value in pairs if key.split(".")[0] != NO_RESULT}
+    factors = {key: yaml.safe_load(value) for key, _, value in pairs if key.split(".")[0] not in NO_ARTIFACT}
     if not factors:
         return config
     return config.model_copy(update={"name": safe_id(f"{config.name}-{name_of(factors)}")})
@@ -58,7 +58,7 @@ def replaced(folder: Path, config: Config) -> str:
 
 
 def _differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
-    for key in {*before, *now} - {NO_RESULT}:
+    for key in {*before, *now} - {*NO_ARTIFACT}:
         if _plain(before.get(key)) != _plain(now.get(key)):
             yield key
 

@@ -15,6 +15,7 @@ from sgcad_core.config import load
         (("report_reader.use_diagrams=false", "seed=1"), "kit-use_diagrams_false-seed_1"),
         (("tracker=none", "tracker.uri=http://x"), "kit"),
         (("retriever={name: none}",), "kit-none"),
+        (("judge.name=esmini",), "kit"),
     ],
 )
 def test_overrides_that_change_results_are_part_of_the_folders_name(config_file, overrides, name):
