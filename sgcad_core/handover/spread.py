@@ -2,7 +2,7 @@
 
 Each parameter has the fact that it rests on (or its lack) and the reason of its width. Values vary about those of the
 script; a stated fact is never left: its distribution ends where the report's rounding does. Latent values are standard
-normal and independent; a parameter's value is its distribution's quantile there. Knows scripts and facts; draws nothing.
+normal and independent; a parameter's value is its distribution's quantile there. Knows scripts and facts; draws none.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """One member of a family: the script with other speeds, times, offsets and sizes, and the same crash.
 
-Both of the declared pair keep their lines, run at another pace so that they come to the contact's place at the contact's
-time (the struck one later or earlier, if so drawn), beside their lines and in other sizes. A clock that begins earlier
+Both of the declared pair keep their lines, run at another pace so that they come to the contact's place at its time
+(the struck one later or earlier, if so drawn), beside their lines and in other sizes. A clock that begins earlier
 than the script goes back straight. What touches otherwise than declared is no member. Behind the contact everything is
 settled anew by the planner's wreck. Knows scripts and parameters; no file.
 """
@@ -43,7 +43,7 @@ class Basis:
 
 
 def basis_of(script: Script) -> Basis | None:
-    """The basis of a family; None where the script does not begin with its declared contact, or nobody can be driven."""
+    """The basis of a family; None where the script does not begin with its declared contact, or of nobody driven."""
     contact = first_contact(script.trajectories, script.sizes)
     if script.declared is None or contact is None or not realised(script.declared, contact):
         return None
@@ -77,6 +77,20 @@ def member(basis: Basis, values: Values) -> Script | None:
         return None
     settled = replace(made, trajectories=_settled(made, basis))
     return settled if realised(made.declared, first_contact(settled.trajectories, made.sizes)) else None
+
+
+def prolonged(made: Script, back_s: float) -> tuple[Trajectory, ...]:
+    """A member's motion with so much straight run before it: its contact comes that much later on its clock."""
+    n = round(back_s / STEP_S)
+    found = []
+    for t in made.trajectories:
+        pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+        step = pose[1, :2] - pose[0, :2]
+        run = np.repeat(pose[:1], n, axis=0)
+        run[:, :2] += np.arange(-n, 0)[:, None] * step
+        whole = np.vstack((run, pose))
+        found.append(_trajectory(t.actor, np.round(np.arange(len(whole)) * STEP_S, 3), whole))
+    return tuple(found)
 
 
 def _sized(info: ActorInfo, values: Values) -> ActorInfo:
