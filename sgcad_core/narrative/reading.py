@@ -18,13 +18,17 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.course import courses_told, cut_by_deeds
+from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.road_provenance import road_provenance
@@ -33,6 +37,8 @@ from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_s
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
+
+_LOST = rule("meeting.lost")
 
 
 @dataclass(frozen=True)
@@ -48,6 +54,8 @@ class Reading:
     roads: RoadFacts
     signals: Mapping[str, SignalState] = field(default_factory=dict)
     """What the traffic signal showed to a vehicle, by its id, where that is told."""
+    lost_control: bool = False
+    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -109,7 +117,10 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.statements, cut, named.who), blows(named.statements, named.who))
+    struck, deeds = blows(named.statements, named.who), cut_by_deeds(named.statements, named.who)
+    course = courses_told(named.statements, deeds, named.who)
+    impacts = with_props(later_impacts(named.statements, deeds, named.who, struck), course)
+    draft = Draft(named.who, motions(named.statements, cut, named.who), struck, course, impacts)
     return Events(draft, conditions(found), signal_states(cut))
 
 
@@ -119,7 +130,8 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
+    course = course_provenance(telling, seen.draft)
     roles = role_facts(telling, named.statements, roads.crash)
-    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
     states = {vehicle: told.state for vehicle, told in seen.signals.items()}
-    return Reading(narrative, found, roads.crash, roads, states, facts)
+    return Reading(narrative, found, roads.crash, roads, states, bool(_LOST.search(narrative)), facts)
