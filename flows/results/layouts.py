@@ -58,6 +58,12 @@ LAYOUTS = (
         m.CONFLICT,
     ),
     Layout(
+        "driven", "Handed over to a driver", "Arms whose config has one driver in its stage `drive`; shares of driven "
+        "cases, percent, initiators and responders apart (docs/drivers.md). Mitigated: delta-v 10 % and 0.5 m/s under "
+        "the script's; lost: the ego never came into the conflict, no credit. Scripted figures stand elsewhere.",
+        m.DRIVEN,
+    ),
+    Layout(
         "robustness", "Robustness levels", "Network errors as share of generated reports with any error, percent (a "
         "refused case is no network error here).", m.ROBUSTNESS, True,
     ),

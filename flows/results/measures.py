@@ -119,6 +119,16 @@ CONFLICT = (
     Measure("c_brake", "brake by", "mean", "s", digits=2),
     Measure("c_steer", "steer by", "mean", "s", digits=2),
 )
+DRIVEN = tuple(
+    measure
+    for role, short in (("initiator", "init."), ("responder", "resp."))
+    for measure in (
+        Measure(f"d_{role}_avoided", f"{short} avoided", better="high"),
+        Measure(f"d_{role}_mitigated", f"{short} mitigated"),
+        Measure(f"d_{role}_worse", f"{short} worse", better="low"),
+        Measure(f"d_{role}_lost", f"{short} lost"),
+    )
+)
 ROBUSTNESS = (
     _right("generated", "GSR", "share"),
     Measure("refused", "refused"),
@@ -152,6 +162,7 @@ def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
         found |= dict(_reading(ran.metrics.get("paper", {}), _PAPER, "p"))
         found |= dict(_reading(ran.metrics.get("exact", {}), _EXACT, "x"))
         found |= dict(_conflict(ran.metrics.get("exact", {})))
+        found |= dict(_driven(ran.metrics.get("drive") or {}))
     return found
 
 
@@ -195,6 +206,13 @@ def _conflict(figures: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
             value = max((v for v in value.values() if v is not None), default=None)
         if value is not None:
             yield name, float(value)
+
+
+def _driven(drivers: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Outcomes by role, of an arm with one driver; drives that failed are left out."""
+    for role, figures in next(iter(drivers.values())).items() if len(drivers) == 1 else ():
+        if not figures.get("failed"):
+            yield from ((f"d_{role}_{k}", float(figures[k])) for k in ("avoided", "mitigated", "worse", "lost"))
 
 
 def _reading(figures: Mapping[str, Any], names: Mapping[str, str], prefix: str) -> Iterator[tuple[str, float]]:

@@ -82,7 +82,9 @@ def write_case(folder, status="generated", net=NET, realised=True, story=STORY, 
         "delta_v_worst_mps": 6.0, "fatality_risk": 0.01, "brake_by_s": {"V1": 1.1, "V2": None},
         "steer_by_s": {"V1": 0.8},
     }  # fmt: skip
-    (folder / "metrics.json").write_text(json.dumps({"paper": figures, "exact": exact}))
+    driven = {"avoided": 1, "mitigated": 0, "unchanged": 0, "worse": 0, "lost": 0, "failed": 0}
+    drive = {"reference": {"initiator": driven, "responder": driven | {"avoided": 0, "mitigated": 1}}}
+    (folder / "metrics.json").write_text(json.dumps({"paper": figures, "exact": exact, "drive": drive}))
 
 
 @pytest.fixture
