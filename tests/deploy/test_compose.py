@@ -158,7 +158,7 @@ def test_the_lock_has_every_runtime_dependency_at_the_constrained_version_with_a
     locked = {}
     for line in lock.LOCK.read_text().splitlines():
         if not line.startswith("#"):
-            name, version, digest = re.fullmatch(r"([\w.-]+)==(\S+) --hash=sha256:([0-9a-f]{64})", line).groups()
+            name, version, _ = re.fullmatch(r"([\w.-]+)==(\S+) --hash=sha256:([0-9a-f]{64})", line).groups()
             locked[canonicalize_name(name)] = version
     assert {name: pins[name] for name in locked} == locked
     asked = map(Requirement, [*project["dependencies"], *project["optional-dependencies"]["hosts"]])
