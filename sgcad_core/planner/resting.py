@@ -31,14 +31,14 @@ IMPACTS = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
 they graze each other, more friction where they lock."""
 _BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
 """Of the friction: from rolling on with bent wheels to four locked ones."""
-_BENDS_PER_M = (0.0, 0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.15, -0.15)
+_BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
 """Down to a turning circle of 13 m."""
-_TURNING = (1.0, 0.6, 0.35)
+_TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
-_COARSE_S = 0.2
-_WHOLE = 7
+_COARSE_S = 0.1
+_WHOLE = 9
 """Choices that are simulated whole, at most."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
@@ -84,10 +84,6 @@ class _Runs:
         """(n,) of each way, as far as is known from the last try."""
         return self.judge(self.ends + self.off) + self.odd
 
-    def best(self) -> int:
-        """The way that promises most."""
-        return int(np.argmin(self.costs()))
-
 
 @dataclass
 class _Ways:
@@ -99,16 +95,16 @@ class _Ways:
     """Whether the two meet once more."""
     vehicles: dict[str, _Runs] = field(default_factory=dict)
     tried: set[tuple[int, ...]] = field(default_factory=set)
+    known: tuple[int, ...] | None = None
+    """What `best` found, until more is learned."""
 
     def best(self) -> tuple[int, ...]:
         """The most promising way of each vehicle that was not tried; () where none is left."""
-        each = [v.costs() for v in self.vehicles.values()]
-        if not each:
-            return ()
-        if self.again and len(each) == 2:
-            return self._meeting(each[0], each[1])
-        found = tuple(int(np.argmin(costs)) for costs in each)
-        return () if found in self.tried else found
+        if self.known is None:
+            each = [v.costs() for v in self.vehicles.values()]
+            meets = self.again and len(each) == 2
+            self.known = self._meeting(each[0], each[1]) if meets else tuple(int(np.argmin(costs)) for costs in each)
+        return () if self.known in self.tried else self.known
 
     def _meeting(self, first: Floats, second: Floats) -> tuple[int, ...]:
         """The cheapest pair of ways that part and meet again, among the best of each."""
@@ -140,6 +136,7 @@ class _Ways:
         """Take in where the vehicles came to rest in the whole simulation of a choice."""
         for name, v in self.vehicles.items():
             v.off = ends[name] - v.ends[v.runs.index(choice.runs[name])]
+        self.known = None
 
 
 def leaving(course: CourseTold) -> CourseTold:
