@@ -1,7 +1,7 @@
 """The ways in which wrecks may run out from one blow, and the choice among them.
 
-All ways of a vehicle are told at once (`ground.run_out`); whoever chooses learns from whole simulations how far they end
-elsewhere. Knows bodies and costs; no report and no roads.
+All ways of a vehicle are told at once (`ground.run_out`); whoever chooses learns from whole simulations how far they
+end elsewhere. Knows bodies and costs; no report and no roads.
 """
 
 from __future__ import annotations
