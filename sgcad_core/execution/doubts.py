@@ -22,8 +22,8 @@ from sgcad_core.specs import BehaviorSpec, size_m
 
 ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
-_UNMET, _OVER = 4.0, 1.0
-MOST = 5
+_UNMET, _OVER = 10.0, 1.0
+MOST = 4
 """Other readings that are planned."""
 
 

@@ -31,7 +31,7 @@ they graze each other, more friction where they lock."""
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
 _COARSE_S = 0.1
-_WHOLE = 9
+_WHOLE = 7
 """Choices that are simulated whole, at most."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
