@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
+from sgcad_core.narrative.gaps import Gap
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.others import OtherFacts, others
@@ -89,6 +90,8 @@ class CrashFacts:
     """Contacts behind the first one with things, and of the same pair once more, in order."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
+    gap: Gap | None = None
+    """Why no crash can be drawn from the text, if so."""
 
     def vehicle(self, id: str) -> VehicleFacts | None:
         """The vehicle of that number."""

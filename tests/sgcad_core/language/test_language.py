@@ -27,7 +27,7 @@ READERS = (ROOT / "sgcad_core/narrative", ROOT / "plugins/validator", ROOT / "pl
 OF_FILES = {"netconvert.py", "evidence_gate.py", "sumo_xsd.py", "nhtsa_xml.py", "evidence.py"}
 """Those that match fields of answers, lines of programs, bytes of files and names of cases, not what a report says."""
 
-HOMOGRAPHS = {"ram": ["make", "model_pickup"]}
+HOMOGRAPHS = {"ram": ["make", "model_pickup"], "parked": ["object", "state"]}
 """Words of two meanings."""
 
 
