@@ -114,7 +114,7 @@ def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
     """Those who touch nobody, where somebody touches the subject; nobody where that is not told."""
     met = {v for blow in told for v in (blow.actor, blow.other)}
     subject = who.ids[0] if who.ids else None
-    return tuple(v for v in who.ids if v not in met) if subject in met and len(met & set(who.ids)) > 1 else ()
+    return tuple(v for v in who.ids if v not in met) if subject in met and len(met) > 1 else ()
 
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
