@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from flows.drives.commands import drive
+from flows.drives.commands import drive, vary
 from flows.index import index_app
 from flows.plugin_commands import plugins_app
-from flows.results.commands import report, table
+from flows.results.commands import report, score, table
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
@@ -225,8 +225,10 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
 
 
 app.command()(drive)
+app.command()(vary)
 app.command()(table)
 app.command()(report)
+app.command()(score)
 
 
 def main() -> None:

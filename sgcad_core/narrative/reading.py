@@ -18,15 +18,19 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.course import courses_told, cut_by_deeds
+from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.references import numbers_somebody
@@ -36,6 +40,8 @@ from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_s
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
+
+_LOST = rule("meeting.lost")
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,8 @@ class Reading:
     roads: RoadFacts
     signals: Mapping[str, SignalState] = field(default_factory=dict)
     """What the traffic signal showed to a vehicle, by its id, where that is told."""
+    lost_control: bool = False
+    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -124,10 +132,13 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    who, hits = named.who, blows(named.statements, named.who)
+    who, struck = named.who, blows(named.statements, named.who)
+    deeds = cut_by_deeds(named.statements, who)
+    course = courses_told(named.statements, deeds, who)
+    impacts = with_props(later_impacts(named.statements, deeds, who, struck), course)
     subject = who.ids[0] if who.ids else None
-    first = next((b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids)), None)
-    draft = Draft(who, motions(named.statements, cut, who, first), hits)
+    met = (b.number for b in struck if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
+    draft = Draft(who, motions(named.statements, cut, who, next(met, None)), struck, course, impacts)
     return Events(draft, conditions(found), signal_states(cut))
 
 
@@ -138,12 +149,14 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
+    course = course_provenance(telling, seen.draft)
     roles = role_facts(telling, named.statements, roads.crash)
-    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
     states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named.who, roads.crash))
-    return Reading(narrative, found, crash, replace(roads, crash=crash), states, facts)
+    lost = bool(_LOST.search(narrative))
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts)
 
 
 def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashFacts) -> Gap | None:
