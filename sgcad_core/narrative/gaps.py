@@ -66,11 +66,11 @@ def without_actors(text: str, sentences: Sequence[Sentence]) -> Gap:
 
 
 def untold(text: str, met: Iterable[bool]) -> Gap | None:
-    """Whether no contact is told, where the vehicles have no numbers; `met`: of each contact, whether it is told."""
+    """Whether no contact of the subject is told; `met`: of each contact, whether it is told and the subject's."""
     known = tuple(met)
     if any(known):
         return None
     if not rule("gaps.crash_word").search(text):
         return _NO_CRASH
-    return Gap("the narrative's crash cannot be read: nobody is told to touch anybody or anything",
+    return Gap("the narrative's crash cannot be read: no contact of the report's subject is told",
                ("who struck whom or what", "with which sides"))  # fmt: skip
