@@ -124,7 +124,7 @@ def test_a_crash_of_others_beside_the_subject_is_refused() -> None:
 
 def test_the_contact_of_the_subject_comes_before_those_of_others() -> None:
     facts = crash_facts(
-        "The Acme AV was stopped behind a light. A van stopped behind the Acme AV. A bus struck the rear of the van, and "
+        "The Acme AV was at a red light. A van stopped behind the Acme AV. A bus struck the rear of the van, and "
         "the front of the van then made contact with the rear of the stopped Acme AV."
     )
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1"), ("V3", "V2")]
