@@ -37,6 +37,7 @@ def compile_scenario(
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
+        near_crash=None if behavior.contacts else behavior.near_crash,
         planned=planned.trajectories,
         oddity=planned.oddity,
         notes=planned.notes,
@@ -69,8 +70,30 @@ def _check_ids(behavior: BehaviorSpec) -> None:
             findings.append(
                 _finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known, _another(i, ids))
             )
+    findings += _near_crash(behavior, ids, known)
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
+
+
+def _near_crash(behavior: BehaviorSpec, ids: list[str], known: str) -> list[Finding]:
+    """What is wrong with a near crash: contacts beside it, unknown actors, one actor in conflict with itself."""
+    near = behavior.near_crash
+    if near is None:
+        return []
+    named = [("conflict.striker", near.conflict.striker), ("conflict.struck", near.conflict.struck)]
+    named += [(f"evasions[{i}].actor", evasion.actor) for i, evasion in enumerate(near.evasions)]
+    found = [
+        _finding(f"near_crash.{where}", "no such actor", name, known, _in_place(name, ids))
+        for where, name in named
+        if name not in ids
+    ]
+    if near.conflict.striker == near.conflict.struck:
+        what = "an actor cannot be in conflict with itself"
+        found.append(_finding("near_crash.conflict", what, near.conflict.striker, known))
+    if behavior.contacts:
+        remedy = "a crash has contacts and no near crash; where nobody touches, leave contacts empty"
+        found.append(_finding("near_crash", "contacts are declared as well", str(len(behavior.contacts)), remedy))
+    return found
 
 
 def _next(place: int, ids: list[str]) -> tuple[Hold, ...]:

@@ -8,7 +8,7 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.formats.sumo.lane_graph import LaneGraph
@@ -18,13 +18,14 @@ from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
+from sgcad_core.planner.parting import parted
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
-from sgcad_core.planner.role import Role, speed_there, usual_speed
+from sgcad_core.planner.role import Role, met_by, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
-from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
+from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, NearCrash, size_m
 
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
@@ -68,10 +69,9 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
     courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
     cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
     contacts = cast.usable_contacts()
-    first = contacts[0] if contacts else None
-    scene = cast.encounter(first) if first else None
-    if scene is None:
-        scene = Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
+    first, near = contacts[0] if contacts else None, behavior.near_crash
+    scene = cast.encounter(first) if first else cast.near_crash(near) if near else None
+    scene = scene or Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
     for contact in contacts[1:]:
         cast.later(scene, contact)
     cast.rest(scene)
@@ -91,10 +91,6 @@ def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
         return course.reversed()
     keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
     return at_the_edge(course) if keeps_right else course
-
-
-def _facing(role: Role, other: Role) -> Role:
-    return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
 
 
 def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
@@ -131,8 +127,11 @@ class _Cast:
 
     def usable_contacts(self) -> list[Contact]:
         """Declared contacts between two different actors of the behavior."""
-        found = []
-        for c in self.behavior.contacts:
+        return self._usable(self.behavior.contacts)
+
+    def _usable(self, contacts: Sequence[Contact]) -> list[Contact]:
+        found: list[Contact] = []
+        for c in contacts:
             known = c.striker in self.actors and c.struck in self.actors and c.striker != c.struck
             if known and self.tractors.get(c.striker) != c.struck and self.tractors.get(c.struck) != c.striker:
                 found.append(c)
@@ -143,6 +142,24 @@ class _Cast:
     # -------------------------------------------------------------- the first contact
     def encounter(self, contact: Contact) -> Scene | None:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
+        found = self._conflict(contact)
+        return None if found is None else self._staged(found)
+
+    def near_crash(self, near: NearCrash) -> Scene | None:
+        """The scene of a conflict with its evasion; None where the two cannot be brought near, or not be parted."""
+        apart = parted(self._course_of(near.conflict) if self._usable((near.conflict,)) else None, near)
+        self.notes += apart.notes
+        return self._staged(apart.encounter) if apart.encounter else None
+
+    def _course_of(self, conflict: Contact) -> Encounter | None:
+        """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
+        a, b = self._roles(conflict)
+        ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
+        found = search(ordinary, (conflict.striker_area, conflict.struck_area)) or search(ordinary, None)
+        return found or self._conflict(conflict)
+
+    def _conflict(self, contact: Contact) -> Encounter | None:
+        """How the declared pair comes to touch; None where they cannot be brought together."""
         a, b = self._roles(contact)
         wanted = (contact.striker_area, contact.struck_area)
         found = search(self._stages(a, b), wanted)
@@ -151,7 +168,7 @@ class _Cast:
         if found is None:
             found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
             self.notes.append(cannot(contact, found))
-        return None if found is None else self._staged(found)
+        return found
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
         """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
@@ -171,28 +188,17 @@ class _Cast:
             a = self._set_rolling(a, b)
         places = self._places(a, b)
         pair = [
-            Role(
-                actor,
-                self.courses[actor.id],
-                size_m(actor),
-                place,
-                side,
-                surface=self.behavior.surface,
-                may_skid=self.may_skid,
-            )
+            Role(actor, self.courses[actor.id], size_m(actor), place, side,
+                 surface=self.behavior.surface, may_skid=self.may_skid)
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
-        ]
+        ]  # fmt: skip
         first, second = pair
-        return (
-            _facing(first, second),
-            _facing(second, first),
-        )
+        return met_by(first, second), met_by(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
         self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
-        rolling = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
-        self.actors[mover.id] = rolling
+        self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
         return self.actors[a.id]
 
     def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:

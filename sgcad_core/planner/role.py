@@ -6,7 +6,7 @@ Knows one actor, its course and its meeting place.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
@@ -103,6 +103,11 @@ def speed_there(role: Role) -> float:
     if is_standing(role):
         return 0.0
     return min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+
+
+def met_by(role: Role, other: Role) -> Role:
+    """A role that knows how the other one comes."""
+    return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
 
 
 def mismatch(role: Role) -> float:
