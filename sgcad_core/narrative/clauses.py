@@ -25,6 +25,8 @@ class Segment(NamedTuple):
     role: Role
     number: int
     """Of the sentence."""
+    at: int = 0
+    """Where in the sentence it begins."""
 
 
 class Told(NamedTuple):
@@ -108,7 +110,7 @@ def _cut(told: Told, who: Roster) -> list[Segment]:
     starts = subject_starts(told, who)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
     return [
-        Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number)
+        Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number, begin)
         for (_, begin, subjects), end in zip(starts, ends, strict=True)
         if subjects
     ]
@@ -124,7 +126,8 @@ def subject_starts(told: Told, who: Roster) -> list[tuple[int, int, tuple[str, .
         starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
     for m in _SUBJECT.finditer(text):
         subjects = _whom(m, who)
-        if (subjects or m.group("stranger")) and _is_subject(text, m):
+        stranger = m.group("stranger") or (not subjects and m.group("one") in who.bystanders)
+        if (subjects or stranger) and _is_subject(text, m):
             starts.append((m.start(), m.end(), subjects))
     return starts
 

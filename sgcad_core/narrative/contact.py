@@ -48,7 +48,7 @@ def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
     crash: list[Blow] = []
     retold: list[Blow] = []
     for t in told:
-        if t.role in ("codes", "factors", "police", "health"):
+        if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
         into = (
             crash

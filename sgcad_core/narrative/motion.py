@@ -29,11 +29,18 @@ class Deed(NamedTuple):
     number: int
     words: str = ""
     rule: str = ""
+    at: int = 0
+    """Where in its sentence."""
 
     @property
     def cue(self) -> Cue:
         """Where it was read."""
         return Cue(self.number, self.words, self.rule)
+
+    @property
+    def when(self) -> tuple[int, int]:
+        """Its place in the order of the text."""
+        return self.number, self.at
 
 
 class Heard(NamedTuple):

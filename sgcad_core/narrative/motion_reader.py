@@ -25,7 +25,7 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
 _STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
 _STOPPED_THERE = rule("motion_reader.stopped_there")
 _THROWN = rule("motion_reader.thrown")
-_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
+_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
 def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
@@ -57,7 +57,7 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
-    read_deeds(motion, before_hit, weight, segment.number)
+    read_deeds(motion, before_hit, weight, segment.number, segment.at)
     read_kin(motion, before_hit, weight, vehicle, who)
     if segment.role != "rest":
         read_lane(motion, before_hit)

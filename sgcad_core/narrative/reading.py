@@ -19,12 +19,14 @@ from typing import NamedTuple
 from sgcad_core.evidence import Fact
 from sgcad_core.narrative.clauses import Segment, Told, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
-from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.contact import Blow, blows
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
+from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
+from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
@@ -50,8 +52,9 @@ class Reading:
 def read(narrative: str | Traced) -> Reading:
     """Read a report. Never raises; an empty or foreign text gives no vehicles and no roads."""
     text = Traced.of(narrative) if isinstance(narrative, str) else narrative
-    found = sentences(normalise(text))
-    named = mentions(found)
+    even = normalise(text)
+    found = sentences(even)
+    named = mentions(found, not numbers_somebody(even.text))
     return infer(text.text, found, named, events(found, named, clauses(named)))
 
 
@@ -90,10 +93,21 @@ def sentences(text: Traced) -> tuple[Sentence, ...]:
     return split_sentences(text)
 
 
-def mentions(found: tuple[Sentence, ...]) -> Mentions:
-    """The vehicles, and the sentences with all that refers to them resolved."""
-    who = roster(s.text for s in found)
-    return Mentions(who, tell(found, who))
+def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
+    """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
+    who = roster((s.text for s in found), counted)
+    told = tell(found, who)
+    if counted and (gone := bystanders(blows(told, who), who)):
+        who = who.without(gone)
+        told = tell(found, who)
+    return Mentions(who, told)
+
+
+def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
+    """Those who touch nobody, where somebody touches the subject; nobody where that is not told."""
+    met = {v for blow in told for v in (blow.actor, blow.other)}
+    subject = who.ids[0] if who.ids else None
+    return tuple(v for v in who.ids if v not in met) if subject in met and len(met & set(who.ids)) > 1 else ()
 
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
@@ -110,7 +124,9 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     settled = settle(seen.draft)
+    called = {old: new for old, new in named.who.called.items() if old != new}
     roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
+    roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     return Reading(narrative, found, roads.crash, roads, facts)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
 
@@ -36,6 +36,9 @@ class Identity:
     kind: ActorKind = "car"
     kind_stated: bool = False
     trailer: bool = False
+    animal: bool = False
+    counted: bool = False
+    """Whether it was numbered here, not by the report."""
     described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
     """Every description of it, in order."""
 
@@ -47,6 +50,8 @@ class Roster:
     vehicles: tuple[Identity, ...]
     aliases: dict[str, str] = field(default_factory=dict)
     """Lower-case word or phrase -> id, only where it names one vehicle."""
+    bystanders: tuple[str, ...] = ()
+    """Numbers of those who are in the text and take no part in the crash."""
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -57,6 +62,25 @@ class Roster:
         """The other one of two vehicles."""
         rest = [v for v in self.ids if v != vehicle]
         return rest[0] if len(rest) == 1 else None
+
+    def without(self, bystanders: Iterable[str]) -> Roster:
+        """The roster of those who take part."""
+        gone = tuple(bystanders)
+        stay = tuple(v for v in self.vehicles if v.id not in gone)
+        names = {name: id for name, id in self.aliases.items() if id not in gone}
+        return Roster(stay, names, (*self.bystanders, *gone))
+
+    @property
+    def called(self) -> dict[str, str]:
+        """Number in the text -> the actor's own id, where some are people, cyclists or animals: V1, B1, P1, A1."""
+        counts: dict[str, int] = {}
+        found: dict[str, str] = {}
+        for v in self.vehicles:
+            letter = _LETTERS.get(v.kind, "V") if v.counted else "V"
+            letter = "A" if v.animal else letter
+            counts[letter] = counts.get(letter, 0) + 1
+            found[v.id] = f"{letter}{counts[letter]}" if v.counted else v.id
+        return found
 
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
@@ -85,11 +109,14 @@ def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
     return match.group(2) if match.group(2) in ids else match.group(0)
 
 
-def roster(sentences: Iterable[str]) -> Roster:
-    """The vehicles that normalized sentences number, with what is said of them."""
+def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
+    """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    found = tuple(_identity(vehicle, told) for vehicle in _numbers(told))
-    return Roster(found, _aliases(found))
+    found = tuple(replace(_identity(vehicle, told), counted=counted) for vehicle in _numbers(told))
+    return Roster(found, {} if counted else _aliases(found))
+
+
+_LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
 
 
 _NO_NUMBER = rule("vehicles.no_number")
@@ -120,7 +147,7 @@ def _identity(vehicle: str, told: list[str]) -> Identity:
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer, described,
+        color.group().lower() if color else None, kind, stated, trailer, is_animal(words), described=described,
     )  # fmt: skip
 
 
