@@ -16,6 +16,8 @@ _LATER = rule("deeds.later")
 _TRY = rule("deeds.try")
 _EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
+_HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
+"""What a vehicle may wait or prepare to do and never does."""
 
 
 def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
@@ -28,11 +30,13 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
             continue
         later = _LATER.search(before) and not _TRY.search(before[-14:])
-        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.start()))
+        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end()))
     for deed in of_role("deed"):
         for m in deed.finditer(text):
-            if not _NOT.search(text[max(0, m.start() - 30) : m.start()]):
-                _note_deed(motion, deed, m, (weight, number, at + m.start()))
+            before = text[max(0, m.start() - 60) : m.start()]
+            hoped = motion.ordered and deed.yields["deed"] in _HOPED and _LATER.search(before)
+            if not _NOT.search(before[-30:]) and not hoped:
+                _note_deed(motion, deed, m, (weight, number, at + m.end()))
 
 
 def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:

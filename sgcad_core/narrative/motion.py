@@ -30,7 +30,7 @@ class Deed(NamedTuple):
     words: str = ""
     rule: str = ""
     at: int = 0
-    """Where in its sentence."""
+    """Where in its sentence it ends."""
 
     @property
     def cue(self) -> Cue:
@@ -57,6 +57,8 @@ class Motion:
 
     at: int = 0
     """The sentence that is being read."""
+    ordered: bool = False
+    """Whether the deeds are one account in order, up to the contact."""
     headings: list[Heard] = field(default_factory=list)
     """In the order of the text."""
     exits: list[Compass] = field(default_factory=list)

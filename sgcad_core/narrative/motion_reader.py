@@ -30,7 +30,7 @@ _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint"
 
 def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
     """Motion of every vehicle of the roster."""
-    found = {v: Motion() for v in who.ids}
+    found = {v: Motion(ordered=who.counted) for v in who.ids}
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
     for segment in cut:
         if segment.role in _UNREAD:
@@ -40,6 +40,8 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
             motion.at = segment.number
             after = segment.number > impact
             late = after and bool(motion.headings or motion.deeds)
+            if late and who.counted:
+                continue
             _read(motion, segment, vehicle, who, 2 if late else 4, after)
     for t in told:
         for motion in found.values():

@@ -146,7 +146,8 @@ def number_actors(text: Traced) -> Traced:
     """The normalized text with everybody named by number; unchanged if there is any number."""
     if numbers_somebody(text.text):
         return text
-    numbering = _Numbering(_Cast(), _automated(text.text))
+    automated = _automated(text.text)
+    numbering = _Numbering(_Cast([_Actor(1, "vehicle", set(), subject=True)] if automated else []), automated)
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from sgcad_core.language import rule
@@ -63,6 +63,11 @@ class Roster:
         rest = [v for v in self.ids if v != vehicle]
         return rest[0] if len(rest) == 1 else None
 
+    @property
+    def counted(self) -> bool:
+        """Whether the numbers were given here: the report numbers nobody and tells one account in order."""
+        return any(v.counted for v in self.vehicles)
+
     def without(self, bystanders: Iterable[str]) -> Roster:
         """The roster of those who take part."""
         gone = tuple(bystanders)
@@ -84,7 +89,8 @@ class Roster:
 
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), sentence)
+        text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(r"\1", text)
@@ -103,6 +109,7 @@ class Roster:
 
 _OCCUPIED = rule("vehicles.occupied")
 _BRACKETED = rule("vehicles.bracketed")
+_INTRODUCED = rule("references.introduced")
 
 
 def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
@@ -112,7 +119,7 @@ def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    found = tuple(replace(_identity(vehicle, told), counted=counted) for vehicle in _numbers(told))
+    found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
     return Roster(found, {} if counted else _aliases(found))
 
 
@@ -136,8 +143,9 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str]) -> Identity:
-    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in descriptions(text, vehicle))
+def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
+    found = introductions if counted else descriptions
+    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
     words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
@@ -147,7 +155,7 @@ def _identity(vehicle: str, told: list[str]) -> Identity:
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer, is_animal(words), described=described,
+        color.group().lower() if color else None, kind, stated, trailer, is_animal(words), counted, described,
     )  # fmt: skip
 
 
@@ -186,6 +194,11 @@ def descriptions(text: str, vehicle: str) -> list[str]:
         if end > mention.end():
             found.append(text[mention.end() : end])
     return found
+
+
+def introductions(text: str, vehicle: str) -> list[str]:
+    """The words that first describe an actor of a report that numbers nobody."""
+    return [m.group(1) for m in _INTRODUCED.finditer(text) if m.group(2) == vehicle]
 
 
 _LEAD = rule("vehicles.lead")
