@@ -30,7 +30,9 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
             continue
         later = _LATER.search(before) and not _TRY.search(before[-14:])
-        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end()))
+        motion.deeds.append(
+            Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
+        )
     for deed in of_role("deed"):
         for m in deed.finditer(text):
             before = text[max(0, m.start() - 60) : m.start()]

@@ -12,6 +12,7 @@ from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
+from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
@@ -82,6 +83,8 @@ class CrashFacts:
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    near_crash: NearFacts | None = None
+    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
 
@@ -132,5 +135,14 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
+        _near(draft) if contacts else None,
         bool(settled.stated),
     )
+
+
+def _near(draft: Draft) -> NearFacts | None:
+    near = draft.near
+    if near is None:
+        return None
+    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    return NearFacts(evasions, near.clearance_m, bool(near.blows))

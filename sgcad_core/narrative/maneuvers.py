@@ -49,7 +49,17 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
 
 
 _STANDING = ("stopped", "parked")
-_MOVING = ("moved_on", "came_on", "straight", "leaving_parking", "slowing", "turn_left", "turn_right", "overtaking", *_PLAIN)
+_MOVING = (
+    "moved_on",
+    "came_on",
+    "straight",
+    "leaving_parking",
+    "slowing",
+    "turn_left",
+    "turn_right",
+    "overtaking",
+    *_PLAIN,
+)
 
 
 def _last_state(motion: Motion) -> Decision | None:

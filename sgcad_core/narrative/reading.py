@@ -25,10 +25,12 @@ from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
+from sgcad_core.narrative.near_crash import near_miss, near_misses
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
+from sgcad_core.narrative.study import tells_study
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
@@ -55,7 +57,7 @@ def read(narrative: str | Traced) -> Reading:
     even = normalise(text)
     found = sentences(even)
     named = mentions(found, not numbers_somebody(even.text))
-    return infer(text.text, found, named, events(found, named, clauses(named)))
+    return infer(text.text, found, named, events(found, named, clauses(named), of_study=tells_study(even.text)))
 
 
 def crash_facts(narrative: str) -> CrashFacts:
@@ -97,7 +99,7 @@ def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
     """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
     who = roster((s.text for s in found), counted)
     told = tell(found, who)
-    if counted and (gone := bystanders(blows(told, who), who)):
+    if counted and (gone := bystanders(blows(told, who) or near_misses(told, who), who)):
         who = who.without(gone)
         told = tell(found, who)
     return Mentions(who, told)
@@ -115,9 +117,11 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
     return segments(named.told, named.who)
 
 
-def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
-    """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.told, cut, named.who), blows(named.told, named.who))
+def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...], *, of_study: bool = False) -> Events:
+    """Motions, contacts (of a near crash those that did not come about), conditions."""
+    struck = blows(named.told, named.who)
+    near = None if struck else near_miss(named.told, cut, named.who, of_study=of_study)
+    draft = Draft(named.who, motions(named.told, cut, named.who), near.blows if near else struck, near)
     return Events(draft, conditions(found))
 
 

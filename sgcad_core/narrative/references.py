@@ -18,7 +18,7 @@ from sgcad_core.narrative.traced import Traced, joined
 _PHRASE = rule("references.phrase")
 _STATES: dict[str, str] = values("state")
 _ORDERS: dict[str, int] = values("order")
-_PARTS: dict[str, str] = values("part")
+_PARTS: dict[str, str] = values("beside_part")
 _USERS: dict[str, str] = values("road_user")
 _MOST = 8
 """Actors of a report that numbers nobody; further ones stay as they are written."""
