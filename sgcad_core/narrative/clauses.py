@@ -157,7 +157,7 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
-    behind = rule("clauses.located").sub("", behind)
+    behind = rule("near_events.located").sub("", rule("clauses.located").sub("", behind))
     if _BESIDE.search(before):
         return bool(rule("clauses.relative").match(behind))
     if _DRIVER_OF.search(before):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.language import rule
+from sgcad_core.language import rule, values
 from sgcad_core.narrative.clauses import Segment, Told
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
@@ -16,12 +16,13 @@ from sgcad_core.narrative.headings import note_bound, read_heading
 from sgcad_core.narrative.motion import Motion
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
-from sgcad_core.narrative.vehicles import Roster
+from sgcad_core.narrative.vehicles import Identity, Roster
 
 _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
                           "rest": 2}  # fmt: skip
 
 
+_PARTS: dict[str, str] = values("beside_part")
 _STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
 _STOPPED_THERE = rule("motion_reader.stopped_there")
 _THROWN = rule("motion_reader.thrown")
@@ -31,6 +32,8 @@ _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint"
 def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
     """Motion of every vehicle of the roster."""
     found = {v: Motion(ordered=who.counted) for v in who.ids}
+    for identity in who.vehicles if who.counted else ():
+        _read_part(found[identity.id], identity, who)
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
     for segment in cut:
         if segment.role in _UNREAD:
@@ -51,6 +54,14 @@ def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[s
         if t.role in ("codes", "factors"):
             read_code(found, t, who)
     return found
+
+
+def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
+    """Where a vehicle drives beside the subject, as its first description says: "the lead vehicle"."""
+    words = " ".join(cue.words for cue in identity.described).lower().split()
+    part = next((_PARTS[word] for word in words if word in _PARTS), None)
+    if part and identity.id != who.ids[0]:
+        motion.kin.append((4, "opposite" if part == "opposite" else "same", who.ids[0], part))
 
 
 def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:

@@ -93,6 +93,20 @@ def _missed(told: Told, who: Roster) -> tuple[Blow, ...]:
     return ()
 
 
+def before_evasion(cut: Iterable[Segment]) -> tuple[Segment, ...]:
+    """An account in short: all that it tells of a vehicle is its approach, up to where somebody evades.
+
+    Braking to avoid a contact is no maneuver before it.
+    """
+    return tuple(map(_before_evasion, cut))
+
+
+def _before_evasion(segment: Segment) -> Segment:
+    act = rule("near_events.act").search(segment.text)
+    text = segment.text[: act.start()] if act else segment.text
+    return segment._replace(text=text, role="approach" if segment.role in _READ else segment.role)
+
+
 def _could_not(match: re.Match[str]) -> bool:
     return bool(rule("near_events.could_not").search(match.string[: match.start()]))
 

@@ -25,7 +25,7 @@ from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
-from sgcad_core.narrative.near_crash import near_miss, near_misses
+from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
@@ -121,7 +121,8 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     """Motions, contacts (of a near crash those that did not come about), conditions."""
     struck = blows(named.told, named.who)
     near = None if struck else near_miss(named.told, cut, named.who, of_study=of_study)
-    draft = Draft(named.who, motions(named.told, cut, named.who), near.blows if near else struck, near)
+    moved = motions(named.told, before_evasion(cut) if of_study else cut, named.who)
+    draft = Draft(named.who, moved, near.blows if near else struck, near)
     return Events(draft, conditions(found))
 
 
