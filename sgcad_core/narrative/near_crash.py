@@ -87,7 +87,7 @@ def near_misses(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
 def _missed(told: Told, who: Roster) -> tuple[Blow, ...]:
     text = told.text
     for near in of_role("near_miss"):
-        text = near.sub(lambda m, to=near.yields["to"]: m[0] if _could_not(m) else to, text)
+        text = near.sub(lambda m, to=near.yields["to"]: m[0] if _could_not(m) else m.expand(to), text)
     if text != told.text:
         return blows([told._replace(text=text, role="impact" if is_impact(text) else told.role)], who)
     return ()
