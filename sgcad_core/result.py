@@ -128,6 +128,8 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
             return outcome.status, f"{stage}: {outcome.reason}", outcome.missing
     if record.execution is None:
         return "failed", "the scenario was never executed", ()
+    if record.scenario and record.scenario.declared and record.execution.contact is None:
+        return "exhausted", "scenario: the declared contact does not come about when the scenario runs", ()
     return "generated", "", ()
 
 

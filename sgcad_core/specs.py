@@ -140,9 +140,7 @@ class RoadLayout(Spec):
 class Actor(Spec):
     """A road user or object and its pre-crash motion."""
 
-    id: ActorId = Field(
-        description="V<n> as the report numbers it, P pedestrian, B cyclist, A animal, T trailer, O object"
-    )
+    id: ActorId = Field(description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object")
     kind: ActorKind
     road: Id = Field(description="road on which it starts")
     direction: Literal["forward", "backward"] = Field(description="forward: from the road's from_node to its to_node")

@@ -22,7 +22,9 @@ _MOST_ACTORS, _MOST_CONTACTS = 12, 8
 
 
 def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
-    """The crash on that network. Raises Refused where the text names no vehicle at all."""
+    """The crash on that network. Raises Refused where the text tells no crash or names no vehicle."""
+    if facts.gap:
+        raise Refused(facts.gap.reason, list(facts.gap.missing))
     if not facts.vehicles:
         raise Refused("the narrative names no vehicle", ["which vehicles were involved", "how they traveled"])
     vehicles = facts.vehicles[:_MOST_ACTORS]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
+from sgcad_core.narrative.gaps import Gap
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.near_crash import NearFacts
@@ -87,6 +88,8 @@ class CrashFacts:
     """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
+    gap: Gap | None = None
+    """Why no crash can be drawn from the text, if so."""
 
     def vehicle(self, id: str) -> VehicleFacts | None:
         """The vehicle of that number."""

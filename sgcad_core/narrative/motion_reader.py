@@ -29,12 +29,15 @@ _THROWN = rule("motion_reader.thrown")
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
-def motions(told: Sequence[Told], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
-    """Motion of every vehicle of the roster."""
+def motions(
+    told: Sequence[Told], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
+) -> dict[str, Motion]:
+    """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
     found = {v: Motion(ordered=who.counted) for v in who.ids}
     for identity in who.vehicles if who.counted else ():
         _read_part(found[identity.id], identity, who)
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
+    impact = struck_at if who.counted and struck_at is not None else impact
     for segment in cut:
         if segment.role in _UNREAD:
             continue

@@ -13,7 +13,7 @@ character offsets in the narrative that was given. Knows no road network and no 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from sgcad_core.evidence import Fact
@@ -22,6 +22,7 @@ from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import Blow, blows
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
+from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
@@ -119,10 +120,13 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...], *, of_study: bool = False) -> Events:
     """Motions, contacts (of a near crash those that did not come about), conditions."""
-    struck = blows(named.told, named.who)
-    near = None if struck else near_miss(named.told, cut, named.who, of_study=of_study)
-    moved = motions(named.told, before_evasion(cut) if of_study else cut, named.who)
-    draft = Draft(named.who, moved, near.blows if near else struck, near)
+    who, struck = named.who, blows(named.told, named.who)
+    near = None if struck else near_miss(named.told, cut, who, of_study=of_study)
+    hits = near.blows if near else struck
+    subject = who.ids[0] if who.ids else None
+    first = next((b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids)), None)
+    moved = motions(named.told, before_evasion(cut) if of_study else cut, who, first)
+    draft = Draft(who, moved, hits, near)
     return Events(draft, conditions(found))
 
 
@@ -134,4 +138,14 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
-    return Reading(narrative, found, roads.crash, roads, facts)
+    crash = replace(roads.crash, gap=_gap(narrative, found, named.who, roads.crash))
+    return Reading(narrative, found, crash, replace(roads, crash=crash), facts)
+
+
+def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashFacts) -> Gap | None:
+    """What keeps the text from being drawn."""
+    gap = foreign(narrative) or several(narrative)
+    if gap or not crash.vehicles:
+        return gap or without_actors(narrative, found)
+    alone = len(crash.vehicles) == 1 and not crash.contacts
+    return untold(narrative, (c.stated for c in crash.contacts)) if who.counted or alone else None

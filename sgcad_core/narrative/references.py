@@ -43,6 +43,8 @@ class _Actor:
     """Where it was named last."""
     part: str | None = None
     """Where it is said to be beside the subject: ahead, behind, opposite, beside."""
+    stands: bool = False
+    """Whether it is told to be parked or stopped."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,12 @@ class _Phrase:
         return "vehicle" if self.head.endswith(_ANY) and not _is_car(self.head) else kind_of(words, None)[0]
 
     @property
+    def stands(self) -> bool:
+        """Whether the words before or behind say that it is parked or stopped."""
+        told = any(_STATES.get(m, "").endswith(("stopped", "parked")) for m in self.modifiers)
+        return told or bool(rule("references.stands").match(self.match.string, self.match.end()))
+
+    @property
     def clauses(self) -> str:
         """What its modifiers tell of its motion, as clauses behind it."""
         told = [_STATES[m] for m in self.modifiers if _STATES.get(m)]
@@ -101,6 +109,8 @@ class _Cast:
     """Everybody named so far."""
 
     actors: list[_Actor] = field(default_factory=list)
+    automated: bool = False
+    """Whether the subject has words of its own, so that no other phrase means it as long as another actor fits."""
 
     def subject(self) -> _Actor | None:
         return next((a for a in self.actors if a.subject), None)
@@ -114,9 +124,11 @@ class _Cast:
 
     def meant(self, phrase: _Phrase) -> _Actor | None:
         """Whom a definite phrase means: the last one that its words fit, best fit first; None: nobody so far."""
-        others = sorted((a for a in self.actors if not a.subject), key=lambda a: -a.at)
+        others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
         others = [a for a in others if phrase.part in (None, a.part)] or [a for a in others if not a.part]
         fitting = [a for a in others if phrase.head in a.heads] or [a for a in others if _fits(a, phrase)]
+        if phrase.stands and (standing := [a for a in fitting if a.stands]):
+            fitting = standing
         if phrase.order is not None:
             ordered = [a for a in fitting if a.order == phrase.order]
             return next(iter(ordered), None) or (fitting[0] if fitting and "other" in phrase.modifiers else None)
@@ -156,7 +168,8 @@ def number_actors(text: Traced) -> Traced:
     if numbers_somebody(text.text):
         return text
     automated = _automated(text.text)
-    numbering = _Numbering(_Cast([_Actor(1, "vehicle", set(), subject=True)] if automated else []), automated)
+    cast = _Cast([_Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
+    numbering = _Numbering(cast)
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 
@@ -182,8 +195,6 @@ class _Numbering:
     """Fills in numbers, phrase by phrase in the order of the text."""
 
     cast: _Cast
-    automated: bool
-    """Whether only a phrase of that class may be the subject."""
     announcing: bool = False
     at: int = 0
 
@@ -205,6 +216,7 @@ class _Numbering:
         if actor is None:
             return match.group()
         actor.at = self.at
+        actor.stands = actor.stands or phrase.stands
         actor.announced = actor.announced and self.announcing
         actor.heads.add(phrase.head)
         actor.part = actor.part or phrase.part
@@ -228,11 +240,11 @@ class _Numbering:
     def _is_subject(self, phrase: _Phrase) -> bool:
         if self.cast.subject():
             return False
-        return bool(phrase.match["automated"]) if self.automated else phrase.kind not in ("pedestrian", "animal")
+        return bool(phrase.match["automated"]) if self.cast.automated else phrase.kind not in ("pedestrian", "animal")
 
     def _known(self, phrase: _Phrase) -> _Actor | None:
         subject = self.cast.subject()
-        if phrase.match["automated"] and subject and phrase.order in (None, 1):
+        if phrase.match["automated"] and subject and phrase.order in (None, 1) and (phrase.definite or not subject.at):
             return subject
         if phrase.definite:
             return self.cast.meant(phrase) or self.cast.open(phrase)

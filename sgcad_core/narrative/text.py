@@ -94,6 +94,7 @@ def _spell(text: Traced) -> Traced:
         text = text.sub(spelling, spelling.yields["to"])
     text = text.sub(rule("text.first_vehicle"), "V1")
     text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
     text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
     text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
     return _spaces(text)

@@ -120,7 +120,7 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
     found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
-    return Roster(found, {} if counted else _aliases(found))
+    return Roster(found, _aliases(found))
 
 
 _LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
@@ -265,7 +265,7 @@ def _names(v: Identity) -> set[str]:
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
-    if v.kind_stated:
+    if v.kind_stated and not v.counted:
         names |= {
             word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
         }

@@ -27,7 +27,7 @@ READERS = (ROOT / "sgcad_core/narrative", ROOT / "plugins/validator")
 OF_FILES = {"netconvert.py", "evidence_gate.py", "sumo_xsd.py"}
 """Validators that match fields of answers and lines of programs, not what a report says."""
 
-HOMOGRAPHS = {"ram": ["make", "model_pickup"]}
+HOMOGRAPHS = {"ram": ["make", "model_pickup"], "parked": ["object", "state"]}
 """Words of two meanings."""
 
 
