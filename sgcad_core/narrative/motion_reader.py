@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.language import rule, values
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Told
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
 from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.references import PARTS
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
 from sgcad_core.narrative.vehicles import Identity, Roster
@@ -22,7 +23,6 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
                           "rest": 2}  # fmt: skip
 
 
-_PARTS: dict[str, str] = values("beside_part")
 _STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
 _STOPPED_THERE = rule("motion_reader.stopped_there")
 _THROWN = rule("motion_reader.thrown")
@@ -62,7 +62,7 @@ def motions(
 def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
     """Where a vehicle drives beside the subject, as its first description says: "the lead vehicle"."""
     words = " ".join(cue.words for cue in identity.described).lower().split()
-    part = next((_PARTS[word] for word in words if word in _PARTS), None)
+    part = next((PARTS[word] for word in words if word in PARTS), None)
     if part and identity.id != who.ids[0]:
         motion.kin.append((4, "opposite" if part == "opposite" else "same", who.ids[0], part))
 

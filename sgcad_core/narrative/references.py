@@ -18,7 +18,9 @@ from sgcad_core.narrative.traced import Traced, joined
 _PHRASE = rule("references.phrase")
 _STATES: dict[str, str] = values("state")
 _ORDERS: dict[str, int] = values("order")
-_PARTS: dict[str, str] = values("beside_part")
+_PART_OF = {"which was ahead": "ahead", "which was behind": "behind", "which was oncoming": "opposite"}
+PARTS: dict[str, str] = values("beside_part") | {w: _PART_OF[s] for w, s in _STATES.items() if s in _PART_OF}
+"""Words that tell where beside the subject a vehicle is: "the lead car" is ahead of it."""
 _USERS: dict[str, str] = values("road_user")
 _MOST = 8
 """Actors of a report that numbers nobody; further ones stay as they are written."""
@@ -76,7 +78,7 @@ class _Phrase:
     @property
     def part(self) -> str | None:
         """Where beside the subject: "the lead car" is ahead of it."""
-        return next((_PARTS[m] for m in self.match.group().lower().split() if m in _PARTS), None)
+        return next((PARTS[m] for m in self.match.group().lower().split() if m in PARTS), None)
 
     @property
     def kind(self) -> str:
