@@ -26,6 +26,8 @@ ONSETS_S = (0.8, 1.1, 1.4, 1.7, 2.0, 2.4, 2.8, 3.3, 3.9, 4.6, 5.4)
 """Times before the contact at which an evasion may begin; the latest that is enough is taken."""
 _HARD = 1.4
 """Factor on usual braking where that is not enough: emergency braking, 7 m/s2 on dry roads."""
+_GENTLE = 0.5
+"""Share of usual braking with which one slows for traffic: 2.5 m/s2 on dry roads."""
 _HALVINGS = 22
 _EXACT_M = 0.02
 _SHIFT_S, _MOST_SHIFT_S = 0.1, 4.0
@@ -67,11 +69,12 @@ class _Side(NamedTuple):
     def may_evade(self) -> bool:
         return not self.motion.standing and self.option.role.actor.kind != "object"
 
-    def velocity(self) -> tuple[float, float]:
-        """At the contact, m/s."""
+    def velocity(self, after_s: float = 0.0) -> tuple[float, float]:
+        """So long after the contact, m/s."""
         if self.motion.standing:
             return 0.0, 0.0
-        before, at = self.motion.poses([self.own_s - STEP_S, self.own_s])
+        at_s = self.own_s + after_s
+        before, at = self.motion.poses([at_s - STEP_S, at_s])
         return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
 
 
@@ -80,12 +83,23 @@ def parted(found: Encounter | None, near: NearCrash) -> Parted:
     if found is None:
         return Parted(None, ())
     meeting = found.meeting
+    found = found._replace(meeting=meeting._replace(
+        first=_stopping(found.first, meeting.first, meeting.first_s),
+        second=_stopping(found.second, meeting.second, meeting.second_s)))  # fmt: skip
+    meeting = found.meeting
     sides = (
         _Side(found.first, meeting.first, meeting.first_s),
         _Side(found.second, meeting.second, meeting.second_s),
     )
     none = Parted(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
     return _Parting(found, sides, near.closest_m).best(near) or none
+
+
+def _stopping(option: Option, motion: Motion, own_s: float) -> Motion:
+    """Who slows goes on to slow behind the conflict until it stands, as gently as it is usual."""
+    if option.role.actor.maneuver != "slowing" or motion.standing:
+        return motion
+    return reacted(option, motion, Reaction(own_s - STEP_S, braking=_GENTLE))
 
 
 @dataclass(frozen=True)
@@ -147,8 +161,8 @@ class _Parting:
         (ax, ay), (bx, by) = side.velocity(), other.velocity()
         if abs(math.remainder(math.atan2(ay, ax) - math.atan2(by, bx), 2 * math.pi)) > _ALONG_RAD:
             return 0.0
-        slower = math.hypot(bx, by) < math.hypot(ax, ay)
-        return _KEEPS * math.hypot(bx, by) if slower else 0.0
+        slowest = min(math.hypot(bx, by), math.hypot(*other.velocity(_AFTER_S)))
+        return _KEEPS * slowest if slowest < math.hypot(ax, ay) else 0.0
 
     def _share(self, most: dict[str, Reaction]) -> float | None:
         """The share of the reactions at which the boxes come as near as declared; None where there is none."""

@@ -64,9 +64,19 @@ def test_who_steers_goes_to_the_told_side_and_does_not_brake(how, sign):
 
 def test_who_follows_a_moving_one_goes_on_behind_it():
     made, closest = planned("straight", near(REAR, ("V1", "braking")),
+                            BEHIND, actor("V2", "straight", "S", lane=1, speed_mph=15))  # fmt: skip
+    assert closest == pytest.approx(CLEARANCE_M, abs=0.03)
+    assert 1.0 < track(made, "V1").speed_mps[-1] < track(made, "V2").speed_mps[-1]
+
+
+def test_who_slows_comes_to_a_stop_and_so_does_who_brakes_behind_it():
+    made, closest = planned("straight", near(REAR, ("V1", "braking")),
                             BEHIND, actor("V2", "slowing", "S", lane=1))  # fmt: skip
     assert closest == pytest.approx(CLEARANCE_M, abs=0.03)
-    assert track(made, "V1").speed_mps[-1] > 1.0
+    for name in ("V1", "V2"):
+        speed = track(made, name).speed_mps
+        assert speed[0] > 5.0
+        assert speed[-1] < 0.1
 
 
 def test_the_struck_one_may_evade():
