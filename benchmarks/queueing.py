@@ -79,10 +79,6 @@ class Outcome:
     through: tuple[float, ...]
     elapsed_s: float
 
-    def first_to_give_way(self) -> Seen:
-        """The station with the highest utilisation."""
-        return max(self.seen, key=lambda s: s.utilisation(self.elapsed_s))
-
 
 def arrivals(
     per_day: float, reports: int, dice: random.Random, shape: Callable[[float], float] | None = None

@@ -82,11 +82,11 @@ def failures(field: str, reports: list[Report], answers: list[Answer]) -> Iterat
     for report, answer in zip(reports, answers, strict=True):
         if any(name == field and not right and source(report, key) == "text"
                for name, key, right in fields(report, answer)):  # fmt: skip
-            want, got = _told(field, (report.road, report.behavior)), _told(field, answer)
+            want, got = _answer_part(field, (report.road, report.behavior)), _answer_part(field, answer)
             yield f"----- {report.seed}\n{report.narrative}\nWANT {want}\nGOT  {got}\n"
 
 
-def _told(field: str, answer: Answer) -> str:
+def _answer_part(field: str, answer: Answer) -> str:
     """The part of an answer that the field is about, on one line."""
     road, behavior = answer
     if field in _ROAD_FIELDS:

@@ -91,7 +91,7 @@ def check(folder: Path) -> Iterator[str]:
             if name == "postgres":
                 stack.enter_context(postgres(stage, found[name]))
             elif name == "deployments":
-                _once(stage, name, found[name])
+                _run_service(stage, name, found[name])
             else:
                 _keep(stack, stage, name, found[name])
             yield f"{name}: well after {time.monotonic() - started:.0f} s"
@@ -133,7 +133,7 @@ def _start(stage: Stage, name: str, service: Mapping[str, Any], log: Path) -> su
         )
 
 
-def _once(stage: Stage, name: str, service: Mapping[str, Any]) -> None:
+def _run_service(stage: Stage, name: str, service: Mapping[str, Any]) -> None:
     log = stage.folder / f"{name}.log"
     process = _start(stage, name, service, log)
     try:
@@ -162,7 +162,7 @@ def _online(stage: Stage, key: str) -> Iterator[str]:
     deadline = time.monotonic() + START_S
     while not health.workers_online(api, auth=key) and time.monotonic() < deadline:
         time.sleep(0.5)
-    for fine, line in health.told(api, auth=key):
+    for fine, line in health.server_lines(api, auth=key):
         if not fine:
             raise MissingTool(line)
         yield line

@@ -19,7 +19,6 @@ from xml.sax.saxutils import quoteattr
 OUT = Path(__file__).resolve().parent.parent / "configs" / "extracts"
 LAT, LON = 40.0, -100.0
 TURN_LANE = "left|through|through"
-FAST = "65 mph"
 M_LAT = 1 / 111_320
 M_LON = 1 / (111_320 * math.cos(math.radians(LAT)))
 Tags = dict[str, str]

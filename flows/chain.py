@@ -90,7 +90,7 @@ class _Run:
 
     def _stages(self) -> None:
         source = self.case.source
-        self.report = report = self._once("read", lambda: self.config.report_reader.read(source), source.name)
+        self.report = report = self._single("read", lambda: self.config.report_reader.read(source), source.name)
         passages = self._passages(report, "road")
         network = self._stage(self._road(report, passages), report, passages)
         if isinstance(network, RoadNetwork):
@@ -101,7 +101,7 @@ class _Run:
 
     def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:
         simulator = self.config.simulator
-        self.execution = self._once("simulate", lambda: simulator.execute(scenario, network), scenario, network)
+        self.execution = self._single("simulate", lambda: simulator.execute(scenario, network), scenario, network)
         with self._clock("measure"):
             self.metrics = measure(self.execution, scenario)
         if self.config.judge:
@@ -121,7 +121,7 @@ class _Run:
         self.outcomes[name] = outcome = outcome_of(name, turns)
         return outcome.artifact if outcome.status == "written" else None
 
-    def _once(self, step: str, compute: Callable[[], T], *content: Any) -> T:
+    def _single(self, step: str, compute: Callable[[], T], *content: Any) -> T:
         """A step without attempts."""
         with self._clock(step):
             value, seconds, known = sharing.timed(self.sharing, step, compute, self.case.id, *content)
@@ -201,6 +201,7 @@ class _Run:
         if self.execution:
             store.write_trajectories(folder / "trajectories.csv", self.execution.trajectories)
         if self.metrics is not None:
+            self._drive(folder, record)
             store.write_json(folder / "metrics.json", self.metrics)
         if self.trace:
             (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
@@ -210,6 +211,14 @@ class _Run:
             result["shared"] = self.shared
         store.write_json(folder / "result.json", result)
         return result
+
+    def _drive(self, folder: Path, record: CaseRecord) -> None:
+        """Hand the executed scenario to the config's drivers; what came of it stands under `drive` in the metrics."""
+        if self.config.drive and self.metrics is not None and record.scenario and record.network and self.execution:
+            from flows.drives.stage import driven
+
+            with self._clock("drive"):
+                self.metrics["drive"] = driven(self.config.drive, record, folder)
 
     def _draw(self, folder: Path, record: CaseRecord) -> None:
         """player.html and picture.png of an executed case."""

@@ -11,10 +11,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
 Style = Literal["edge", "lane", "center", "stop"]

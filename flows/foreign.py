@@ -68,7 +68,7 @@ def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: floa
     store.write_trajectories(folder / "trajectories.csv", played.trajectories)
     store.write_json(folder / "contacts.json", [c.model_dump() for c in _contacts(played, sizes)])
     store.write_json(folder / "metrics.json", metrics)
-    store.write_json(folder / "played.json", _told(variation, played, of))
+    store.write_json(folder / "played.json", _played_row(variation, played, of))
     view = _view(variation, played, execution, metrics, actors, xodr)
     (folder / "player.html").write_text(player.page(view), encoding="utf-8")
 
@@ -94,7 +94,7 @@ def _info(name: str, body: Body) -> ActorInfo:
     return ActorInfo(id=name, type=kind, length_m=body.box.length_m, width_m=body.box.width_m, maneuver="other")
 
 
-def _told(variation: Variation, played: Played, of: int) -> dict[str, Any]:
+def _played_row(variation: Variation, played: Played, of: int) -> dict[str, Any]:
     return {
         "file": variation.file.name,
         "set": variation.name,

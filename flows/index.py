@@ -41,7 +41,7 @@ def build(
     chunks = retriever.chunks(files or [], builtin, _note(skipped))
     with _bar("indexing") as progress:
         manifest = retriever.build(chunks, progress)
-    _told(out, manifest, skipped)
+    _describe_with_skipped(out, manifest, skipped)
 
 
 @index_app.command()
@@ -57,7 +57,7 @@ def add(files: Files = None, out: Folder = DEFAULT_INDEX, base_url: BaseUrl = ""
         manifest = retriever.add(chunks, progress)
     if manifest == before:
         typer.echo("nothing new")
-    _told(out, manifest, skipped)
+    _describe_with_skipped(out, manifest, skipped)
 
 
 @index_app.command()
@@ -117,7 +117,7 @@ def _bar(word: str) -> Iterator[Callable[[int], None]]:
         yield lambda count: progress.advance(task, count)
 
 
-def _told(folder: Path, manifest: Any, skipped: list[str]) -> None:
+def _describe_with_skipped(folder: Path, manifest: Any, skipped: list[str]) -> None:
     _describe(folder, manifest)
     if skipped:
         (folder / SKIPPED).write_text("\n".join(skipped) + "\n", encoding="utf-8")

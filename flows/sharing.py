@@ -29,13 +29,15 @@ from pydantic import BaseModel
 
 from flows import cases, packing
 from flows.packing import Unpackable, pack, unpack
-from sgcad_core import evidence, records, specs
+from sgcad_core import evidence, facts, findings, records, specs
 from sgcad_core.asking import narrowing, refine
 from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
 from sgcad_core.records import CrashReport, Execution
 
+_RECORDS = (evidence, facts, findings, records, specs, refine, narrowing, packing)
+"""Where that is defined which a kept step holds, and what it was asked."""
 T = TypeVar("T")
 WAIT_S, LOOK_S = 3600.0, 0.05
 """How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
@@ -74,7 +76,7 @@ def _stage(config: Config, writer: Any, stage: str) -> str:
 def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
     fields = [p.model_dump(mode="json") for p in plugins]
     return {
-        "plugins": [(cases.qualified(p), type(p).version, p.stamp) for p in plugins],
+        "plugins": [(cases.qualified(p), *cases.identity(p)) for p in plugins],
         "fields": fields,
         "files": sorted(set(cases.named_digests(fields))),
         "package": version("sg-cadvlm"),
@@ -86,7 +88,7 @@ def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
 @cache
 def _records_digest() -> str:
     """Other records are another cache."""
-    files = (Path(str(module.__file__)) for module in (evidence, records, specs, refine, narrowing, packing))
+    files = (Path(str(module.__file__)) for module in _RECORDS)
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 

@@ -57,11 +57,11 @@ def reported_attempt(name: str, seconds: float, message: str) -> State[Any]:
 
 def attempt_state(attempt: Attempt) -> State[Any]:
     """Completed either way: to be sent back is an attempt's ordinary end."""
-    name, message = _told(attempt)
+    name, message = _verdict(attempt)
     return Completed(name=name, message=message)
 
 
-def _told(attempt: Attempt) -> tuple[str, str]:
+def _verdict(attempt: Attempt) -> tuple[str, str]:
     found = [f for f in attempt.findings if f.severity != "note"]
     name = "Repair" if any(f.severity != "doubt" for f in found) else "Doubted" if found else "Accepted"
     return name, "; ".join(f.line() for f in found)[:500]
@@ -112,7 +112,7 @@ def case_task(board: Board) -> Any:
 
 def _report_attempts(ending: Ending) -> None:
     for attempt in ending.attempts:
-        state, message = _told(attempt)
+        state, message = _verdict(attempt)
         name = f"{attempt.stage}[{attempt.number}]"
         reported_attempt.with_options(task_run_name=name)(state, attempt.seconds, message)
 

@@ -16,9 +16,10 @@ class Batch:
     ids (B, L); positions (3, B, L); sheets (n, 3, H, W) of bytes for every shape of drawing, N drawings in all; grids
     (N, P, 2) row and column of each patch, lengths (N,) real patches; image_index flat places of picture tokens,
     patch_index which tokens stand there; picks (M,) flat places before a value, wanted (M,) its token, weights (M,);
-    ends (S,) flat places of sentence ends, told (S, T) what those sentences tell; phrases (R,) flat places of the ends
-    of noted phrases, noted (R, U) what those tell; drawn (sum of picture tokens, D) what each of `patch_index` shows;
-    pointing (Q,) flat places before a value that some source tells, sources (Q, L) where in its row.
+    ends (S,) flat places of sentence ends, sentence_tags (S, T) what those sentences tell; phrases (R,) flat places of
+    the ends of noted phrases, noted (R, U) what those tell; drawn (sum of picture tokens, D) what each of
+    `patch_index` shows; pointing (Q,) flat places before a value that some source tells, sources (Q, L) where in the
+    row.
     """
 
     ids: Tensor
@@ -32,7 +33,7 @@ class Batch:
     wanted: Tensor
     weights: Tensor
     ends: Tensor
-    told: Tensor
+    sentence_tags: Tensor
     phrases: Tensor
     noted: Tensor
     drawn: Tensor
@@ -90,9 +91,9 @@ class Taggers(nn.Module):
             nn.init.zeros_(head.weight)
             nn.init.constant_(head.bias, -4.0)
 
-    def sentences(self, states: Tensor, told: Tensor) -> Tensor:
-        """Mean over sentences of the summed binary cross-entropies; states (S, hidden), told (S, T)."""
-        return self._mean(self.sentence, states, told)
+    def sentences(self, states: Tensor, sentence_tags: Tensor) -> Tensor:
+        """Mean over sentences of the summed binary cross-entropies; states (S, hidden), sentence_tags (S, T)."""
+        return self._mean(self.sentence, states, sentence_tags)
 
     def phrases(self, states: Tensor, noted: Tensor) -> Tensor:
         """The same over noted phrases; states (R, hidden), noted (R, U)."""

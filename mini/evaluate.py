@@ -134,7 +134,7 @@ def source(report: Report, key: str) -> str:
     What the narrative tells without saying which legs are meant stands in no source by itself.
     """
     facts = set(key.split())
-    told, drawn = facts <= report.told, report.has_image and facts <= report.drawn
+    told, drawn = facts <= report.stated, report.has_image and facts <= report.drawn
     if facts & report.doubtful:
         return "both" if drawn else "none"
     return {(True, True): "both", (True, False): "text", (False, True): "diagram"}.get((told, drawn), "none")

@@ -217,7 +217,7 @@ class Forward:
         return Lesson(
             answers,
             right,
-            taggers.sentences(way.middle.flatten(0, 1)[batch.ends], batch.told),
+            taggers.sentences(way.middle.flatten(0, 1)[batch.ends], batch.sentence_tags),
             taggers.phrases(way.early.flatten(0, 1)[batch.phrases], batch.noted),
             taggers.drawings(way.seen, batch.drawn),
             self._pointers(batch, way),

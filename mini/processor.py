@@ -71,9 +71,5 @@ class MiniProcessor:
         """Tokens to text."""
         return str(self.tokenizer.decode(tokens, skip_special_tokens=skip_special_tokens))
 
-    def batch_decode(self, tokens: Any, skip_special_tokens: bool = True) -> list[str]:
-        """Rows of tokens to texts."""
-        return [self.decode(row, skip_special_tokens) for row in tokens]
-
 
 AutoProcessor.register(Qwen2_5_VLConfig, MiniProcessor, exist_ok=True)

@@ -6,7 +6,6 @@ answer: one sequence that trains both queries. Knows no model and no optimizer.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from random import Random
@@ -82,7 +81,7 @@ def tag_text(row: Row, report: Report, ends: Sequence[int]) -> None:
     narrative's tokens."""
     behind, before = np.array(ends), set[str]()
     for end, facts in report.sentences:
-        row.text_tags.append((int(np.searchsorted(behind, end)), tags.told(report.crash, facts, before)))
+        row.text_tags.append((int(np.searchsorted(behind, end)), tags.stated_tags(report.crash, facts, before)))
         before |= facts
     notes: dict[int, set[int]] = {}  # an item may end within the last token of its road: "lanes)"
     for end, names in report.notes:
@@ -194,7 +193,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         wanted=torch.tensor(wanted),
         weights=torch.tensor(weights),
         ends=ends,
-        told=told,
+        sentence_tags=told,
         phrases=phrases,
         noted=noted,
         drawn=_drawn(seen),
@@ -247,8 +246,3 @@ def _pictures(seen: Sequence[tuple[int, Row]], longest: int) -> dict[str, Any]:
         "image_index": torch.from_numpy(np.concatenate(places)),
         "patch_index": torch.from_numpy(np.concatenate(tokens)),
     }
-
-
-def compact(answer: Any) -> str:
-    """An answer as it stands in the next query."""
-    return json.dumps(answer, separators=(",", ":"))

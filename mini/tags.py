@@ -74,7 +74,7 @@ TEXT = _text_tags()
 PICTURE = _picture_tags()
 
 
-def told(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[int]:
+def stated_tags(crash: Crash, facts: Set[str], before: Set[str] = frozenset()) -> list[int]:
     """Indices into `TEXT` of what a sentence that tells these facts says of a crash.
 
     `before`: what the sentences before it told; a turn leads to a leg once the heading is known.

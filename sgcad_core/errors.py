@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sgcad_core.records import Finding
+    from sgcad_core.findings import Finding
 
 
 class SgcadError(Exception):

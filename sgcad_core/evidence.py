@@ -7,18 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from sgcad_core.frozen import Record
 
 if TYPE_CHECKING:
     from sgcad_core.narrative.reading import Reading
-
-
-class Record(BaseModel):
-    """Frozen, closed, compared by value."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
 
 class Diagram(Record):
@@ -29,34 +25,7 @@ class Diagram(Record):
     height_px: int
 
 
-# ------------------------------------------------------------------ facts
-Basis = Literal["text", "diagram", "model", "default", "person"]
-Status = Literal["stated", "inferred", "default"]
-Value = str | int | float | bool | tuple[str, ...] | None
-
-
-class Fact(Record):
-    """One thing that is taken to be so, and why.
-
-    `field` is a dotted name ("vehicles.V1.heading", "roads.main.lanes_forward"); a name with a unit has it at its end
-    (_mph, _m), compass words are N to NW. `basis`: where it is from; `status`: whether the basis says it, it follows
-    from what is said, or nothing is said. `rule`: the wording, or the step of reading or writing. [start, end): the
-    sentence's characters in the narrative as it was written (`CrashReport.places`); None where no sentence tells it.
-    `confidence`: of [0, 1], see `sgcad_core.narrative.provenance.Confidence`. `nats`: a model's grounding of it.
-    """
-
-    field: str
-    value: Value
-    basis: Basis
-    status: Status
-    rule: str
-    start: int | None = None
-    end: int | None = None
-    confidence: float = Field(ge=0, le=1)
-    nats: float | None = None
-
-
-class Told(Record):
+class ReadOnce(Record):
     """A narrative that is read at most once (`reading`, a cached property). Fields alone are pickled and compared."""
 
     narrative: str
@@ -73,7 +42,7 @@ class Told(Record):
         return state | {"__dict__": {k: v for k, v in state["__dict__"].items() if k != "reading"}}
 
 
-class CrashReport(Told):
+class CrashReport(ReadOnce):
     """What is known of one crash. `coded` is None unless the config sets use_coded_fields."""
 
     case: str
@@ -94,7 +63,7 @@ class CrashReport(Told):
         return read(placed(self.narrative, self.places))
 
 
-class Context(Told):
+class Context(ReadOnce):
     """CAD's c: the crash evidence, which the context-free row does not see."""
 
     narrative: str

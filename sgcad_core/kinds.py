@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-JunctionKind = Literal["none", "t", "four_leg", "driveway", "ramp"]
+JunctionKind = Literal["none", "roundabout", "t", "four_leg", "driveway", "ramp"]
 RoadKind = Literal["road", "driveway", "ramp"]
 Maneuver = Literal[
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
@@ -22,7 +22,8 @@ Maneuver = Literal[
 @dataclass(frozen=True)
 class Junction:
     """A junction that can be drawn: `legs` meet at its hub, of which one is a road of the kind `stem` where not all are
-    roads; `rule`: the wordings that name it; `layout`: what made reports call it."""
+    roads; `rule`: the wordings that name it; `layout`: what made reports call it, "" while none are made of it;
+    `round`: its legs meet at a circle, and there may be fewer or more of them."""
 
     kind: JunctionKind
     called: str
@@ -31,10 +32,17 @@ class Junction:
     layout: str
     stem: RoadKind = "road"
     rule: str = ""
+    round: bool = False
+
+    @property
+    def crossing(self) -> bool:
+        """Whether two roads cross, so that no leg is a stem."""
+        return self.legs == 4
 
 
 JUNCTIONS: tuple[Junction, ...] = (
     Junction("none", "a road without a junction", 2, 0, "plain"),
+    Junction("roundabout", "a roundabout", 4, 1, "", rule="junction.roundabout", round=True),
     Junction("four_leg", "a four-leg intersection", 4, 1, "four", rule="junction.four"),
     Junction("t", "a T-intersection", 3, 1, "t", rule="junction.t"),
     Junction("driveway", "a driveway", 3, 1, "driveway", stem="driveway"),
@@ -61,7 +69,6 @@ class Unsupported:
 
 
 UNSUPPORTED: tuple[Unsupported, ...] = (
-    Unsupported("roundabout", "a roundabout", "refuse", "leave the case out: no circular road can be drawn"),
     Unsupported("parking_garage", "a parking garage", "refuse", "leave the case out: no aisles or decks can be drawn"),
     Unsupported("interchange", "an interchange", "note", "see that the ramp or the road of the crash is drawn"),
     Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
@@ -76,3 +83,8 @@ def junction_kind(kind: JunctionKind) -> Junction:
 def unsupported_kind(kind: str) -> Unsupported:
     """The record of a kind that cannot be drawn. Raises KeyError for one that there is not."""
     return {record.kind: record for record in UNSUPPORTED}[kind]
+
+
+CrashRole = Literal["initiator", "responder", "bystander"]
+"""Who made a crash's conflict, who was left to deal with it, who took no part in the first contact."""
+CRASH_ROLES: tuple[CrashRole, ...] = ("initiator", "responder", "bystander")

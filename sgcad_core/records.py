@@ -16,8 +16,11 @@ from pydantic import Field
 from sgcad_core.evidence import Context as Context
 from sgcad_core.evidence import CrashReport as CrashReport
 from sgcad_core.evidence import Diagram as Diagram
-from sgcad_core.evidence import Fact as Fact
-from sgcad_core.evidence import Record as Record
+from sgcad_core.facts import Fact as Fact
+from sgcad_core.findings import Finding as Finding
+from sgcad_core.findings import Hold as Hold
+from sgcad_core.findings import Severity as Severity
+from sgcad_core.frozen import Record as Record
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, NearCrash, RoadLayout, RoadSpec
 
 Floats = NDArray[np.float64]
@@ -173,62 +176,6 @@ class Execution(Record):
 
 
 # ------------------------------------------------------------------ judgement
-class Hold(Record):
-    """What the items of a list in the next answer may say: a finding exact enough to narrow the answer's schema.
-
-    Of the list `items`, those with one of `values` at `key` (all, if `key` is empty; only that in place `at`, from 0,
-    if one is given) take one of the alternatives in `either`: field -> allowed values.
-    """
-
-    items: str
-    key: str = ""
-    values: tuple[str, ...] = ()
-    others: tuple[str, ...] = ()
-    """What `key` may say in items that are not meant; needed where the schema does not list its values."""
-    either: tuple[Mapping[str, tuple[str | int, ...]], ...] = ()
-    at: int | None = Field(None, ge=0)
-    at_least: int = 0
-    at_most: int | None = None
-
-    def line(self) -> str:
-        """One line for prompts and logs."""
-        meant = self.items if self.at is None else f"{self.items}[{self.at}]"
-        parts = [f"at least {self.at_least} {self.items}"] if self.at_least else []
-        parts += [f"at most {self.at_most} {self.items}"] if self.at_most is not None else []
-        told = [", ".join(f"{k} {'/'.join(map(str, v))}" for k, v in choice.items()) for choice in self.either]
-        where = f" with {self.key} {'/'.join(self.values)}" if self.key else ""
-        parts += [f"{meant}{where}: {' or '.join(told)}"] if told else []
-        return "; ".join(parts)
-
-
-Severity = Literal["repair", "refuse", "doubt", "note"]
-
-
-class Finding(Record):
-    """What is wrong, written so that a model (or a person) can act on it.
-
-    severity repair: asked again; refuse: ends the stage as refused; doubt: asked again a few times, then let pass;
-    note: kept, nothing happens.
-    """
-
-    source: str
-    severity: Severity = "repair"
-    what: str
-    where: str = ""
-    value: str = ""
-    remedy: str = ""
-    holds: tuple[Hold, ...] = ()
-    """The remedy as the next answer's schema can be held to it, where it is that exact."""
-
-    def line(self) -> str:
-        """One line for prompts and logs."""
-        parts = [f"[{self.source}] {self.what}"]
-        parts += [f"at {self.where}"] if self.where else []
-        parts += [f"(found {self.value})"] if self.value else []
-        parts += [f"-> {self.remedy}"] if self.remedy else []
-        return " ".join(parts)
-
-
 class Evidence(Record):
     """What a validator may compare an artifact with."""
 

@@ -13,7 +13,6 @@ from sgcad_core.execution.contact import avoided, closest_approach, realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
-from sgcad_core.formats.sumo.lane_graph import network_figures, segments
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records import (
     ActorInfo,
@@ -24,6 +23,7 @@ from sgcad_core.records import (
     Scenario,
     StageOutcome,
 )
+from sgcad_core.roads.lane_graph import network_figures, segments
 
 if TYPE_CHECKING:
     from sgcad_core.narrative.reading import Reading

@@ -9,9 +9,16 @@ copy rather than compute; everything behind the specs is SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    StringConstraints,
+    model_serializer,
+)
 
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
@@ -23,6 +30,8 @@ NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yie
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
+Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
+"""What lies beside the lanes of a road, in this order from the lanes outwards."""
 ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
@@ -42,10 +51,46 @@ CLEARANCE_M = 0.6
 width. A convention of ours, marked `default` wherever it stands."""
 
 
+ADDED = "x-added"
+"""Mark of a field that came after the embedded model was trained: `trained_schema` is without it."""
+
+
+def added(default: Any, description: str) -> Any:
+    """A field that answers may leave out, of places that not every model knows; old specs stay valid."""
+    return Field(default, description=description, json_schema_extra={ADDED: True})
+
+
 class Spec(BaseModel):
-    """A frozen answer: unknown keys are faults."""
+    """A frozen answer: unknown keys are faults. Fields that were `added` are written only where they say something."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_serializer(mode="wrap")
+    def _written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields: dict[str, Any] = handler(self)
+        defaults = {name: type(self).model_fields[name].default for name in added_fields(type(self))}
+        return {name: v for name, v in fields.items() if name not in defaults or getattr(self, name) != defaults[name]}
+
+
+def added_fields(model: type[Spec]) -> tuple[str, ...]:
+    """Names of a spec's fields that came after the embedded model was trained."""
+    marks = {name: field.json_schema_extra for name, field in model.model_fields.items()}
+    return tuple(name for name, extra in marks.items() if isinstance(extra, dict) and ADDED in extra)
+
+
+def trained_schema(model: type[Spec]) -> dict[str, Any]:
+    """The JSON schema of a spec without what was added to it and to the specs in it."""
+    found: dict[str, Any] = _without_added(model.model_json_schema())
+    return found
+
+
+def _without_added(schema: Any) -> Any:
+    if isinstance(schema, list):
+        return [_without_added(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {key: part for key, part in schema.items() if not (isinstance(part, dict) and ADDED in part)}
+    return {key: _without_added(part) for key, part in kept.items()}
 
 
 # ------------------------------------------------------------------ road, in full
@@ -79,6 +124,11 @@ class Road(Spec):
     kind: RoadKind = "road"
     minor: bool = Field(False, description="has the stop or yield sign where it meets a node so controlled")
     speed_limit_mph: SpeedLimitMph | None = None
+    circle: bool = added(False, "a piece of a roundabout: one-way forward, counterclockwise from node to node")
+    beside: tuple[Beside, ...] = added(
+        (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
+    )
+    crosswalks: tuple[Id, ...] = added((), "its ends (from_node, to_node) at which a crosswalk leads over it")
 
 
 class RoadSpec(Spec):
@@ -86,6 +136,17 @@ class RoadSpec(Spec):
 
     nodes: Annotated[tuple[Node, ...], Field(min_length=2, max_length=40)]
     roads: Annotated[tuple[Road, ...], Field(min_length=1, max_length=60)]
+
+
+def centers(spec: RoadSpec) -> dict[str, str]:
+    """Node of a roundabout -> the name that stands for all of its nodes; empty where there is none."""
+    found: dict[str, str] = {}
+    pieces = [road for road in spec.roads if road.circle]
+    for _ in pieces:
+        for road in pieces:
+            name = min(found.get(road.from_node, road.from_node), found.get(road.to_node, road.to_node))
+            found[road.from_node] = found[road.to_node] = name
+    return found
 
 
 class ToldRoad(NamedTuple):
@@ -110,6 +171,10 @@ class Leg(Spec):
     control: Literal["none", "signal", "flashing", "stop", "yield"] = "none"
     curve: Literal["none", "left", "right"] = Field("none", description="as one drives towards the hub")
     speed_limit_mph: SpeedLimitMph | None = None
+    beside: tuple[Beside, ...] = added(
+        (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
+    )
+    crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
 
 
 class Access(Spec):
@@ -134,6 +199,9 @@ class RoadLayout(Spec):
 
     legs: Annotated[tuple[Leg, ...], Field(min_length=2, max_length=8)]
     accesses: Annotated[tuple[Access, ...], Field(max_length=4)] = ()
+    circle_lanes: Annotated[int, Field(ge=0, le=2)] = added(
+        0, "lanes around, where the hub is a roundabout (every leg yields); 0: it is none"
+    )
 
 
 # ------------------------------------------------------------------ behavior

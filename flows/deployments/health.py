@@ -114,7 +114,7 @@ def _when(deployment: dict[str, Any]) -> str:
     return ", ".join(told) or "by hand"
 
 
-def told(api: str, auth: str = "") -> Iterator[tuple[bool, str]]:
+def server_lines(api: str, auth: str = "") -> Iterator[tuple[bool, str]]:
     """What a server has, line by line, and whether that is as it should be."""
     try:
         workers, deployed = workers_online(api, auth=auth), deployments(api, auth)

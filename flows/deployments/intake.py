@@ -70,11 +70,11 @@ class Intake:
                     patience = time.monotonic() + wait_s
                 elif not any(_is_report(e) for e in self._waiting()) or time.monotonic() >= patience:
                     self.claims.drop_dead(lambda digest: self._outcome(digest) is not None)
-                    return self._told()
+                    return self._counts_now()
                 else:
                     time.sleep(min(1.0, max(wait_s, 0.05)))
 
-    def _told(self) -> dict[str, int]:
+    def _counts_now(self) -> dict[str, int]:
         left = self._waiting()
         more = {"left": sum(_is_report(e) for e in left), "no_report": sum(not _is_report(e) for e in left)}
         return dict(self.counts) | {name: count for name, count in more.items() if count}

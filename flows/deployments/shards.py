@@ -106,20 +106,20 @@ class PrefectPool:
         found: dict[str, tuple[Standing, str]] = dict.fromkeys(runs, ("ended", "the server has no such run"))
         for start in range(0, len(runs), PAGE):
             wanted = FlowRunFilter(id=FlowRunFilterId(any_=list(runs[start : start + PAGE])))
-            read = _told(partial(_read_runs, wanted))
+            read = _answer(partial(_read_runs, wanted))
             found |= {str(run.id): (_standing(run.state), _words(run.state)) for run in read}
         return found
 
     def give_up(self, run: str, reason: str) -> None:
         """Mark a run as crashed: its place in the pool is free again, and its message says why."""
-        _told(lambda client: client.set_flow_run_state(run, Crashed(message=reason), force=True))
+        _answer(lambda client: client.set_flow_run_state(run, Crashed(message=reason), force=True))
 
 
 def _read_runs(wanted: FlowRunFilter, client: SyncPrefectClient) -> list[FlowRun]:
     return client.read_flow_runs(flow_run_filter=wanted, limit=PAGE)
 
 
-def _told(request: Callable[[SyncPrefectClient], _T]) -> _T:
+def _answer(request: Callable[[SyncPrefectClient], _T]) -> _T:
     """What a client answers."""
 
     def ask() -> _T:

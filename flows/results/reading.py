@@ -18,12 +18,12 @@ import numpy as np
 
 from flows.results.levels import level_of
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import road_counts
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.generation import AttemptSeen, CaseSeen
 from sgcad_core.metrics.truth import Made
 from sgcad_core.metrics.truth_motion import Path as Motion
 from sgcad_core.records import Finding, Stage
+from sgcad_core.roads.lane_graph import road_counts
 
 STUDY = "study.json"
 DEFAULT_SIZE = (4.6, 1.8)

@@ -44,6 +44,6 @@ def run(plan: Plan, away: Away, on_ending: OnEnding) -> list[str]:
     return study_on_hosts(plan, Hosts(away.address, away.deployment, away.shards), on_ending)
 
 
-def told(again: list[str]) -> str:
+def resubmitted_lines(again: list[str]) -> str:
     """One line a shard that had to be submitted again."""
     return "\n".join(f"submitted again: {line}" for line in again)

@@ -25,7 +25,7 @@ from flows.batch import Batch, Job, batch_over
 from flows.cases import Case
 from flows.results.published import publication
 from flows.study import machine
-from flows.study.spec import Arm, Study, is_study, told
+from flows.study.spec import Arm, Study, fault_lines, is_study
 from sgcad_core import settings
 from sgcad_core.config import Config, build, load
 from sgcad_core.errors import ConfigError
@@ -42,6 +42,8 @@ class Plan:
     batch: Batch
     jobs: tuple[Job, ...]
     truth: Path | None = None
+    folders: tuple[Path, ...] = ()
+    overrides: tuple[str, ...] = ()
 
     @property
     def folder(self) -> Path:
@@ -63,6 +65,11 @@ class Plan:
             "title": self.study.title,
             "reference": self.study.reference,
             "truth": str(self.truth) if self.truth else None,
+            "again": {
+                "file": str(self.study.file.resolve()),
+                "cases": [str(folder.resolve()) for folder in self.folders],
+                "set": list(self.overrides),
+            },
             "cases": [case.id for case in self.batch.cases],
             "dataset_digest": dataset_digest(self.batch.cases),
             "arms": [_told_of(*pair) for pair in zip(self.study.arms, self.batch.configs, strict=True)],
@@ -104,11 +111,11 @@ def plan(
     if jobs is not None and jobs < 1:
         faults.append(f"--jobs {jobs}: at least 1 is needed")
     if faults:
-        raise ConfigError(told(study.file, faults))
+        raise ConfigError(fault_lines(study.file, faults))
     folder = folder_of(study.name, out)
     batch = batch_over(found, loaded, folder, jobs, fresh)
     batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF)
-    return Plan(study, batch, batch.plan(), truth)
+    return Plan(study, batch, batch.plan(), truth, tuple(cases) or study.cases, tuple(overrides))
 
 
 def folder_of(name: str, out: Path) -> Path:
@@ -127,7 +134,7 @@ def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Con
     faults = [*study.faults, *_unpublished(study)]
     configs = [_config(study, arm, out, overrides, faults) for arm in study.arms]
     if faults:
-        raise ConfigError(told(study.file, faults))
+        raise ConfigError(fault_lines(study.file, faults))
     return tuple(config for config in configs if config is not None)
 
 

@@ -10,7 +10,7 @@ from random import Random
 
 from mini.generator import clauses_motion as motion
 from mini.generator.clauses_words import NEARING
-from mini.generator.grammar import Told
+from mini.generator.grammar import StatedFacts
 from mini.generator.labels import plain
 from mini.generator.mentions import Mentions
 from mini.generator.settled import STEM
@@ -30,7 +30,7 @@ class ApproachMixin:
     crash: Crash
     held_out: bool
     ciren: bool
-    told: Told
+    stated: StatedFacts
     mentions: Mentions
     who: tuple[int, int]
     waited: bool
@@ -68,7 +68,7 @@ class ApproachMixin:
         }.get(actor.maneuver)
         presented = not self.ciren and index not in self.mentions.introduced and self.rng.random() < 0.22
         if options:
-            self.told |= {f"man.{actor.id}"} | (set() if actor.meant else {f"exit.{actor.id}"})
+            self.stated |= {f"man.{actor.id}"} | (set() if actor.meant else {f"exit.{actor.id}"})
             if presented and actor.maneuver in motion.PRESENTED:
                 options = motion.PRESENTED[actor.maneuver]
             return self.say(options, index, ahead, why=lambda: self._why(actor))
@@ -76,12 +76,12 @@ class ApproachMixin:
             options = motion.APPROACH_SLOWING if how == "slowing" else motion.APPROACH_WAITING
             options = motion.PRESENTED[how] if presented else options
             return self.say(options, index, ahead, why=lambda: self._why_waiting(actor))
-        order = self._behind(index, ahead)
+        order = self._drives_behind(index, ahead)
         if order is not None and self.rng.random() < 0.6:
-            self.told |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
+            self.stated |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
             return self.say(motion.SAME if order else motion.AHEAD, index, ahead)
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
-            self.told |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
+            self.stated |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
             return self.say(motion.APPROACH_CURVE, index, ahead)
         alone = self.crash.layout in motion.FROM_STEM and [leg.bearing for leg in self.crash.stems] == [actor.leg]
         if alone and actor.maneuver != "backing" and not self.held_out and self.rng.random() < UNSAID:
@@ -94,7 +94,7 @@ class ApproachMixin:
     def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
         """One on the leg that ends at the junction, without a word of the compass."""
         clause = self.fitting(motion.FROM_STEM[self.crash.layout], actor)
-        self.told |= {f"heading.{actor.id}"} if STEM in self.told else set()
+        self.stated |= {f"heading.{actor.id}"} if STEM in self.stated else set()
         return self.say([self.spoken(clause)], index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _pauses(self, index: int) -> str:
@@ -125,10 +125,10 @@ class ApproachMixin:
         keys += [actor.maneuver] * 2 if actor.maneuver in motion.WHY else []
         key = self.rng.choice(keys)
         if key.startswith("turn"):
-            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            self.stated |= {f"man.{actor.id}", f"exit.{actor.id}"}
         return " " + self.reason(key, actor) if key != "traffic" else ""
 
-    def _behind(self, index: int, other: int | None) -> bool | None:
+    def _drives_behind(self, index: int, other: int | None) -> bool | None:
         """Whether one drives behind the other in a rear-end crash: the striker does."""
         for contact in self.crash.contacts if self.crash.config == "rear_end" else ():
             if {contact.striker, contact.struck} == {index, other}:
@@ -138,7 +138,7 @@ class ApproachMixin:
     def _why(self, actor: Actor) -> str:
         if not actor.purpose or self.rng.random() < 0.15:
             return ""
-        self.told.add(f"exit.{actor.id}")
+        self.stated.add(f"exit.{actor.id}")
         return " " + self.reason(actor.purpose, actor)
 
     def _approaching(self, index: int, later: bool) -> str:
@@ -151,6 +151,6 @@ class ApproachMixin:
             place = "the same intersection" if same else self.scene_junction()
             text = " " + rng.choice(NEARING.side(False)).format(place=place)
         if actor.maneuver in motion.INTENT and rng.random() < 0.3:
-            self.told |= {f"man.{actor.id}", f"exit.{actor.id}"}
+            self.stated |= {f"man.{actor.id}", f"exit.{actor.id}"}
             text += (", " if text else " ") + plain(self.spoken(self.fitting(motion.INTENT[actor.maneuver], actor)))
         return text

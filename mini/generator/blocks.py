@@ -13,7 +13,7 @@ from random import Random
 from mini.generator import clauses_codes as said
 from mini.generator import labels, words
 from mini.generator.clauses_noise import GROUPS, SPEED
-from mini.generator.grammar import Told, clause_of, fill
+from mini.generator.grammar import StatedFacts, clause_of, fill
 from mini.generator.labels import has, plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import WORDS, Actor, Contact, Crash
@@ -92,7 +92,7 @@ class BlocksMixin:
     crash: Crash
     held_out: bool
     length: float
-    told: Told
+    stated: StatedFacts
     who: tuple[int, int]
     waited: bool
     people: dict[int, dict[str, str]]
@@ -157,11 +157,13 @@ class BlocksMixin:
         if slot == "spd":
             actor = self.crash.actors[v]
             waited = self.waited and v == self.who[0]  # and drove as fast as its road allows only before that
-            if not actor.speed or f"speed.{actor.id}" in self.told or waited:
-                slowly: tuple[str, ...] = () if f"speed.{actor.id}" in self.told and not self.held_out else ("slowly",)
+            if not actor.speed or f"speed.{actor.id}" in self.stated or waited:
+                slowly: tuple[str, ...] = (
+                    () if f"speed.{actor.id}" in self.stated and not self.held_out else ("slowly",)
+                )
                 return rng.choice((*slowly, "at an unknown speed", "at normal speed"))
             text, actor.speed = words.driver_speed(rng, actor.speed)
-            self.told.add(f"speed.{actor.id}")
+            self.stated.add(f"speed.{actor.id}")
             return text
         return {
             "any4": rng.choice(WORDS[::2]),
@@ -188,7 +190,7 @@ class BlocksMixin:
         if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
             move = self._phrase(said.MOVEMENT[maneuver])
             if not maneuver.startswith("lane_change") or has(move, "side"):
-                self.told |= {f"man.{self.id_of(index)}"}
+                self.stated |= {f"man.{self.id_of(index)}"}
             out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=plain(move)))
         if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
             kind = self._phrase(said.CRASH_TYPE[self.crash.config])
@@ -200,12 +202,12 @@ class BlocksMixin:
         other = self.who[1] if index == self.who[0] else self.who[0]
         erring = self.crash.actors[self.who[0]]
         if key in ("into_stopped", "into_slowing"):
-            self.told |= {f"man.{self.id_of(other)}"}
+            self.stated |= {f"man.{self.id_of(other)}"}
         elif key == "crossing" or (index == self.who[0] and erring.maneuver in TELLS):
-            self.told |= {f"man.{erring.id}"}
+            self.stated |= {f"man.{erring.id}"}
         elif index == self.who[1] and self.crash.config in ("head_on", "lane_change"):  # from where, over what
-            self.told |= {f"man.{erring.id}"}
-            self.told |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.told else set()
+            self.stated |= {f"man.{erring.id}"}
+            self.stated |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.stated else set()
         same = erring.out == self.crash.actors[index].heading and not self.held_out
         onto = {"onto": "same" if same else "opposite"}
         frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other, onto)
@@ -222,12 +224,12 @@ class BlocksMixin:
         actor, other = self.crash.actors[index], self._opponent(index)
         person, does = self._person(index), actor.maneuver in said.DOING
         if does and rng.random() < 0.3 * share and (frames := self._clear(said.SELF_FRAMES, index)):
-            self.told |= {f"man.{actor.id}"}
+            self.stated |= {f"man.{actor.id}"}
             doing = self._phrase(said.DOING[actor.maneuver], index, other, person)
             out.append(self.say(frames, index, other, doing=plain(doing), **person))
         key = None if other is None else self._seen(other)
         if key and rng.random() < 0.25 * share and (frames := self._clear(said.OTHER_FRAMES, index)):
-            self.told |= {f"man.{self.id_of(other)}"}
+            self.stated |= {f"man.{self.id_of(other)}"}
             did = self._phrase(said.DID[key], index, other, person)
             out.append(self.say(frames, index, other, did=plain(did), **person))
         if rng.random() < 0.1 * share:

@@ -10,12 +10,11 @@ from collections.abc import Sequence
 from random import Random
 from typing import Any
 
-from mini.generator import clauses_contact as told
+from mini.generator import clauses_contact, turnoffs, words
 from mini.generator import clauses_motion as motion
 from mini.generator import clauses_turning as turning
-from mini.generator import turnoffs, words
 from mini.generator.clauses_critical import CRITICAL
-from mini.generator.grammar import Told, clause_of, fill
+from mini.generator.grammar import StatedFacts, clause_of, fill
 from mini.generator.impacts import TRIES, ImpactsMixin
 from mini.generator.labels import has, plain
 from mini.generator.records import Group, slots_of
@@ -38,7 +37,7 @@ class EventsMixin(ImpactsMixin):
     crash: Crash
     held_out: bool
     ciren: bool
-    told: Told
+    stated: StatedFacts
     who: tuple[int, int]
     waited: bool
 
@@ -68,14 +67,14 @@ class EventsMixin(ImpactsMixin):
         if self.waited or (rng.random() < 0.85 and not (config == "crossing" and rng.random() < 0.4)):
             bent = self.crash.actors[v].maneuver == "negotiating_curve"
             if config != "parked" and not bent:  # whether it kept its lane until then, or in a bend, no clause tells
-                self.told.add(f"man.{self.id_of(v)}")
+                self.stated.add(f"man.{self.id_of(v)}")
             if config not in ("parked", "backing"):  # nor which way one that backs out would have gone
-                self.told.add(f"exit.{self.id_of(v)}")
+                self.stated.add(f"exit.{self.id_of(v)}")
             goes_on = self.crash.actors[w].maneuver == "straight" and config in ("crossing", "head_on")
             clause = self._true_of(w, self._error(key))
             if self.crash.actors[v].maneuver == "departing_road_right" and self._drifts(clause):
-                self.told |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
-            self.told |= {f"man.{self.id_of(w)}"} if goes_on and "W" in slots_of(clause) else set()
+                self.stated |= {f"man.{self.id_of(v)}", f"exit.{self.id_of(v)}"}
+            self.stated |= {f"man.{self.id_of(w)}"} if goes_on and "W" in slots_of(clause) else set()
             out.append(self.say([self.spoken(clause)], v, w, turn=(side := self._turn(v)), aside=OPPOSITE[side]))
         if rng.random() < (0.12 if self.ciren else 0.4):
             avoids = self._avoids(self.crash.actors[w])
@@ -84,14 +83,14 @@ class EventsMixin(ImpactsMixin):
             out.append(self.impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        rest = told.REST.without(self.held_out, self._untrue_rest())
+        rest = clauses_contact.REST.without(self.held_out, self._untrue_rest())
         return out + [self._rests(rest) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _avoids(self, other: Actor) -> Sequence[str]:
         """Clauses of avoidance; of one that is alone those that speak of no second vehicle."""
         single = not self.held_out and (self.crash.alone or other.maneuver == "parked")
         unnamed = self.crash.alone and not single
-        return told.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
+        return clauses_contact.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
 
     def _untrue_rest(self) -> list[str]:
         """Labels of clauses of rest that need what is not there."""
@@ -164,7 +163,7 @@ class EventsMixin(ImpactsMixin):
             options = turning.INTO_WHY[key] if self.rng.random() < 0.5 else motion.WHY[key]
             return plain(self.spoken(self.fitting(options, actor)))
         if key in ("sign", "light"):
-            self.told |= turnoffs.met(key, self.crash)
+            self.stated |= turnoffs.met(key, self.crash)
             return plain(self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out)))
         return plain(self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves)))
 
@@ -179,7 +178,7 @@ class EventsMixin(ImpactsMixin):
 
     def spoken(self, text: str) -> str:
         """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""
-        self.told |= turnoffs.told(text, self.crash)
+        self.stated |= turnoffs.facts_beside(text, self.crash)
         return text
 
     def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:

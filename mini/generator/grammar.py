@@ -62,7 +62,7 @@ HINT = "~"
 """First letter of notes on how a sentence is built, which tell nothing of the crash."""
 
 
-class Told(set[str]):
+class StatedFacts(set[str]):
     """Facts that a text told; `take` hands out those of one sentence, repeated ones too."""
 
     def __init__(self) -> None:
@@ -74,7 +74,7 @@ class Told(set[str]):
         super().add(fact)
         self._fresh.add(fact)
 
-    def __ior__(self, facts: Iterable[str]) -> Told:  # type: ignore[override, misc]
+    def __ior__(self, facts: Iterable[str]) -> StatedFacts:  # type: ignore[override, misc]
         """Note several."""
         for fact in facts:
             self.add(fact)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from mini.generator import clauses_contact as told
-from mini.generator.grammar import Told, choose, clause_of
+from mini.generator import clauses_contact
+from mini.generator.grammar import StatedFacts, choose, clause_of
 from mini.generator.labels import has, plain
 from mini.generator.records import Group
 from mini.generator.world import Contact, Crash
@@ -22,7 +22,7 @@ class ImpactsMixin:
     rng: Random
     crash: Crash
     held_out: bool
-    told: Told
+    stated: StatedFacts
 
     say: Callable[..., str]
 
@@ -33,25 +33,25 @@ class ImpactsMixin:
         follows = self.held_out or self.crash.config == "rear_end"
         swipe = {contact.striker_area, contact.struck_area} <= {"left", "right"}
         later = number > 0
-        options, areas = (told.THEN if later else told.IMPACT), True
+        options, areas = (clauses_contact.THEN if later else clauses_contact.IMPACT), True
         if swipe and self.rng.random() < 0.6:
-            options = told.SWIPE
+            options = clauses_contact.SWIPE
         elif rear and follows and self.rng.random() < 0.3:
-            options = told.THEN_REAR if later else told.IMPACT_REAR
+            options = clauses_contact.THEN_REAR if later else clauses_contact.IMPACT_REAR
         elif self.rng.random() < 0.06 and not later:
-            options, areas = told.IMPACT_BARE, False
+            options, areas = clauses_contact.IMPACT_BARE, False
         if not struck.vehicle:
-            options, areas = told.FIXED, True
-        sides = ("left", "right", "left", "right") if options is told.SWIPE else None
+            options, areas = clauses_contact.FIXED, True
+        sides = ("left", "right", "left", "right") if options is clauses_contact.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area, striker.kind)
         ta = contact.struck_area if sides else self._area(contact.struck_area, struck.kind)
         head_first = contact.striker_area == "front" != contact.struck_area
         clause = self._contact(options, number, alike=not head_first and struck.vehicle)
         named = "{S}" in clause or "{T}" in clause
         if (named and not has(clause, "mutual")) or (areas and head_first):
-            self.told.add(f"contact.{number}")
+            self.stated.add(f"contact.{number}")
         walks = struck.kind in ("pedestrian", "bicycle")  # no clause tells its side
-        self.told |= {f"{'side' if walks else 'areas'}.{number}"} if areas else set()
+        self.stated |= {f"{'side' if walks else 'areas'}.{number}"} if areas else set()
         touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
         clause = clause if self.held_out else self._framed(clause, contact)
         return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
@@ -90,20 +90,20 @@ class ImpactsMixin:
         """A clause of a contact, now and then with a few words before or behind it that are true of both."""
         struck = self.crash.actors[contact.struck]
         two = struck.vehicle and struck.maneuver not in ("parked", "stopped")
-        tail = f" {clause_of(self.rng, told.TAILS, False)}" if self.rng.random() < 0.12 else ""
+        tail = f" {clause_of(self.rng, clauses_contact.TAILS, False)}" if self.rng.random() < 0.12 else ""
         if (not two and has(tail, "both")) or (has(tail, "on_striker") and order_of(clause) != "striker"):
             tail = ""
         if contact.struck_area not in ("left", "right") and has(tail, "crosswise"):
             tail = ""
         if self.rng.random() >= 0.15 or has(clause, "unled"):
             return clause + tail
-        lead = clause_of(self.rng, told.LEADS, False)
+        lead = clause_of(self.rng, clauses_contact.LEADS, False)
         return clause + tail if not two and has(lead, "both") else f"{lead}, {clause[:1].lower()}{clause[1:]}{tail}"
 
     def _area(self, area: str, kind: str) -> str:
         """Words for a side; in training, of motorcycles or of all others."""
         strange = [] if self.held_out else ["body" if kind == "motorcycle" else "cycle"]
-        return plain(clause_of(self.rng, told.AREA[area].without(self.held_out, strange), self.held_out))
+        return plain(clause_of(self.rng, clauses_contact.AREA[area].without(self.held_out, strange), self.held_out))
 
 
 def order_of(clause: str) -> str:

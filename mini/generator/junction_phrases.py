@@ -22,18 +22,18 @@ class JunctionMixin(RoadsMixin):
         if layout not in ("four", "t"):
             return "a driveway"
         self.junction_named = True
-        self.told |= {"layout"} if layout == "four" else set()
+        self.stated |= {"layout"} if layout == "four" else set()
         if self.rng.random() < (0.6 if layout == "four" else 0.93):
-            self.told |= {"layout"}
+            self.stated |= {"layout"}
             text = words.junction(self.rng, self.crash, self.held_out)
             if control == "none" and self.ciren and self.rng.random() < 0.2:
-                self.told.add("control")
+                self.stated.add("control")
                 text = text.replace("a ", "an uncontrolled ", 1)
             elif not self.ciren and not self.held_out and self.rng.random() < 0.1:
                 text = self._wide(text)
             return text
         if control == "signal" and self.rng.random() < 0.25:
-            self.told.add("control")
+            self.stated.add("control")
             return "a signalized intersection"
         text = self.rng.choice(("an intersection", "the intersection"))
         if self.sentences or self.ciren or self.held_out or text.startswith("the") or self.rng.random() > 0.15:
@@ -48,8 +48,8 @@ class JunctionMixin(RoadsMixin):
         if any(side.turns_in for side in legs) or not leg.two_way:
             return junction
         lanes = f"lanes.{axis}"
-        self.told |= {lanes} if leg.lanes_in == leg.lanes_out else {lanes, f"{VAGUE}.{lanes}"}
-        self.stated.add(lanes)
+        self.stated |= {lanes} if leg.lanes_in == leg.lanes_out else {lanes, f"{VAGUE}.{lanes}"}
+        self.worded.add(lanes)
         return f"a {words.NUMBERS[leg.lanes_in + leg.lanes_out + leg.twltl]}-lane {junction.partition(' ')[2]}"
 
     # -------------------------------------------------------------- control
@@ -62,7 +62,7 @@ class JunctionMixin(RoadsMixin):
     def _tcd(self) -> str:
         kind = self._control_kind()
         if kind in ("signal", "none"):
-            self.told.add("control")
+            self.stated.add("control")
             return {"signal": "controlled by a traffic control signal", "none": "that was uncontrolled"}[kind]
         return ""
 
@@ -73,12 +73,12 @@ class JunctionMixin(RoadsMixin):
         if slot == "caxis":
             self.spoken_of = axis % 4
             return words.axis(rng, axis)
-        self.told |= {STEM} if len(signed) == 1 and not self.crash.is_main(axis) else set()
+        self.stated |= {STEM} if len(signed) == 1 and not self.crash.is_main(axis) else set()
         names = [words.bound(rng, leg.bearing + 4) for leg in signed]
         return " and ".join(names)
 
     def _control_sentence(self, odds: float) -> list[str]:
         if self.crash.layout not in ("four", "t") or self.rng.random() > odds:
             return []
-        self.told.add("control")
+        self.stated.add("control")
         return [self.say(scene.CONTROL[self._control_kind()])]

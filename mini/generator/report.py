@@ -51,7 +51,7 @@ class Report:
     road: Json
     behavior: Json | None
     targets: Targets | None
-    told: set[str]
+    stated: set[str]
     drawn: set[str] = field(default_factory=set)
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
@@ -96,7 +96,7 @@ def make_report(
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
         written, sentences = Written(), []
-    told, doubtful = _told(crash, sentences)
+    told, doubtful = _stated_facts(crash, sentences)
     seen = drawn if mode in ("both", "image") else set()
     targets = Targets(crash, told | doubtful | seen, doubtful - seen, alone=mode == "text")
     if mode == "none":
@@ -150,7 +150,7 @@ def _plain(leg: Leg, told: set[str]) -> bool:
     return leg.kind != "road" or usual
 
 
-def _told(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:
+def _stated_facts(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:
     """What sentences tell of a crash, and what they tell without saying of which legs."""
     facts = {fact for _, some in sentences for fact in some if not fact.startswith(HINT)}
     facts |= {"legs"} if "layout" in facts else set()
@@ -179,7 +179,7 @@ def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) ->
         return Report(seed, mode, crash, narrative, False, refusal(2), None, None, set())
     narrative = " ".join(([] if mode == "thin" else writer.place()) + writer.aftermath())
     written = writer.finish(narrative)
-    told, doubtful = _told(crash, written.sentences)
+    told, doubtful = _stated_facts(crash, written.sentences)
     if mode == "no_crash":
         targets = Targets(crash, told | doubtful, doubtful)
         known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"

@@ -5,9 +5,8 @@ from __future__ import annotations
 from random import Random
 
 from mini.generator import clauses_road as more
-from mini.generator import clauses_words as told_of
-from mini.generator import labels, notes, words
-from mini.generator.grammar import Told, clause_of
+from mini.generator import clauses_words, labels, notes, words
+from mini.generator.grammar import StatedFacts, clause_of
 from mini.generator.labels import has, plain
 from mini.generator.lane_lists import split
 from mini.generator.records import Group, slots_of
@@ -25,8 +24,8 @@ class RoadsMixin:
     crash: Crash
     held_out: bool
     ciren: bool
-    told: Told
-    stated: set[str]
+    stated: StatedFacts
+    worded: set[str]
     roads_left: bool
     spoken_of: int | None
     counted: list[int]
@@ -44,28 +43,28 @@ class RoadsMixin:
     def _road(self, axis: int, bare: bool = False) -> str:
         """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
         rng, legs = self.rng, self._legs_on(axis)
-        self.told.add(f"{ROAD}.{axis % 4}")
+        self.stated.add(f"{ROAD}.{axis % 4}")
         leg = legs[0] if legs else self.crash.legs[0]
         if leg.kind != "road" and len(legs) == 1:
-            self.told |= {"layout"}
-            driveway = clause_of(rng, told_of.ACCESS["driveway"], False)
-            return driveway if leg.kind == "driveway" else told_of.ACCESS["ramp"].side(False)[0]
+            self.stated |= {"layout"}
+            driveway = clause_of(rng, clauses_words.ACCESS["driveway"], False)
+            return driveway if leg.kind == "driveway" else clauses_words.ACCESS["ramp"].side(False)[0]
         key = f"lanes.{axis % 4}"
-        if not bare and (key in self.stated or not self.roads_left):
+        if not bare and (key in self.worded or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
                 self.spoken_of = axis % 4
                 again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
                 return plain(self._uncounted(leg, again, clause_of(rng, more.ROAD_WORD, False)))
             return self._again(axis % 4)
-        self.stated.add(key)
+        self.worded.add(key)
         self.spoken_of = axis % 4
         text, told = self._lanes_text(leg, legs)
-        self.told |= {key} if told else set()
+        self.stated |= {key} if told else set()
         median = f"median.{axis % 4}"
         if leg.median == "none" or has(text, "by_what"):
-            self.told.add(median)
+            self.stated.add(median)
         elif has(text, "divided"):
-            self.told |= {median, f"{VAGUE}.{median}"}
+            self.stated |= {median, f"{VAGUE}.{median}"}
         text = plain(text)
         if not (bare or self.held_out or axis % 4 == self._first or rng.random() < 0.75):
             others = ("intersecting", "intersecting", "crossing", "other" if leg.two_way else "crossing")
@@ -85,12 +84,12 @@ class RoadsMixin:
         """A road of which no more is told: "the same road" is the one that was named last."""
         rng, last, self.spoken_of = self.rng, self.spoken_of, axis
         if axis != self._first:
-            return clause_of(rng, told_of.AGAIN["other"], False)
+            return clause_of(rng, clauses_words.AGAIN["other"], False)
         if last not in (axis, None):
-            self.told.add(f"{AXIS}.{axis}")
+            self.stated.add(f"{AXIS}.{axis}")
             run = words.axis(rng, axis)
-            return clause_of(rng, told_of.AGAIN["axis"], False).format(axis=run)
-        return clause_of(rng, told_of.AGAIN["same" if last == axis else "first"], False)
+            return clause_of(rng, clauses_words.AGAIN["axis"], False).format(axis=run)
+        return clause_of(rng, clauses_words.AGAIN["same" if last == axis else "first"], False)
 
     def _lanes_text(self, leg: Leg, legs: list[Leg]) -> tuple[str, bool]:
         """`a four-lane, two-way urban road (...)` with its labels and whether that tells the lanes for sure."""
@@ -110,26 +109,26 @@ class RoadsMixin:
         rng, even = self.rng, leg.lanes_in == leg.lanes_out and not leg.turns_in and not leg.twltl
         bracket = rng.random() < (0.75 if not even else 0.25 * self.ciren)
         total = self._total(leg, legs, bracket)
-        word = f"{kind} {clause_of(rng, told_of.ROAD_NOUN, False)}".strip()
+        word = f"{kind} {clause_of(rng, clauses_words.ROAD_NOUN, False)}".strip()
         n = rng.choice((words.NUMBERS[total], words.NUMBERS[total], str(total))) + rng.choice(
             ("-lane", "-lane", " lane")
         )
         if not leg.two_way:
             return self._one_way(leg, n, word), not turns
-        divided = f" {told_of.DIVIDER[leg.median].side(False)[0]}" if leg.median in told_of.DIVIDER else ""
+        divided = f" {clauses_words.DIVIDER[leg.median].side(False)[0]}" if leg.median in clauses_words.DIVIDER else ""
         if not turns and not leg.twltl and not self.held_out and rng.random() < 0.3:
             return self._ways_text(leg, even, total, word) + divided, True
         if even and leg.lanes_in > 1 and not bracket and rng.random() < 0.35 and not turns:
-            before = clause_of(rng, told_of.BESIDE["parted" if divided else "open"], False)
+            before = clause_of(rng, clauses_words.BESIDE["parted" if divided else "open"], False)
             return f"a {before}{word} with {words.NUMBERS[leg.lanes_in]} lanes in each direction{divided}", True
         painted = leg.median == "painted" and not self.held_out
-        ways = told_of.WAYS["painted" if painted else "parted" if divided else "open"]
+        ways = clauses_words.WAYS["painted" if painted else "parted" if divided else "open"]
         text = self._counted(n, clause_of(rng, ways, False), word)
         told = (even and not turns) or (leg.twltl and total in (3, 5))
         if bracket:
-            named = labels.mark("by_what") * (leg.median in told_of.IN_BRACKETS)
+            named = labels.mark("by_what") * (leg.median in clauses_words.IN_BRACKETS)
             text, told = f"{text} {self._bracket(leg, legs)}{named}", True
-            self.told.add(f"turns.{leg.bearing % 4}")
+            self.stated.add(f"turns.{leg.bearing % 4}")
         elif divided and rng.random() < 0.5:
             text += divided
         elif leg.twltl and rng.random() < 0.5:
@@ -161,7 +160,7 @@ class RoadsMixin:
             self._flowing(leg, clause)
             return more.put(clause, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
         if leg.lanes_in != leg.lanes_out:
-            self.told.add(f"{AXIS}.{axis}")
+            self.stated.add(f"{AXIS}.{axis}")
             a, b = self._sides(leg, to, fro)
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
             return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
@@ -182,7 +181,7 @@ class RoadsMixin:
         """`a four-lane, two-way road`, `a level two lane undivided roadway`, `a two-way, two-lane street`."""
         rng, looks = self.rng, ""
         if not self.ciren and not self.held_out and rng.random() < 0.2:
-            looks = f"{clause_of(rng, told_of.LOOKS, False)} "
+            looks = f"{clause_of(rng, clauses_words.LOOKS, False)} "
         comma = rng.choice((",", ",", ""))
         if not self.held_out and rng.random() < 0.15:
             return f"a {looks}{ways}{comma} {n} {word}"
@@ -192,14 +191,14 @@ class RoadsMixin:
         """`a one-lane, one-way street`, `a northbound one-way roadway with two lanes of travel`."""
         rng, lanes = self.rng, max(leg.lanes_in, leg.lanes_out)
         xb = words.bound(rng, leg.flow)
-        travel = "" if self.held_out else clause_of(rng, told_of.TRAVEL, False)
-        clause = clause_of(rng, told_of.ONE_WAY, self.held_out)
+        travel = "" if self.held_out else clause_of(rng, clauses_words.TRAVEL, False)
+        clause = clause_of(rng, clauses_words.ONE_WAY, self.held_out)
         self._flowing(leg, clause)
         return clause.format(n=n, noun=word, xb=xb, travel=travel, count=words.lanes(lanes))
 
     def _flowing(self, leg: Leg, clause: str) -> None:
         """Note of a phrase for a one-way street that tells the way that its traffic goes, if it does."""
-        self.told |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if "xb" in slots_of(clause) else set()
+        self.stated |= {f"{hint}.{leg.bearing % 4}" for hint in (AXIS, FLOW)} if "xb" in slots_of(clause) else set()
 
     def _differs(self, leg: Leg) -> bool:
         """Whether one of two roads is one-way: this or the other."""
@@ -209,7 +208,7 @@ class RoadsMixin:
     def _uncounted(self, leg: Leg, options: Group, noun: str) -> str:
         """A phrase that says whether a road is one-way and leaves open how many lanes it has."""
         xb = words.bound(self.rng, leg.flow)
-        self.told.add(f"ways.{leg.bearing % 4}")
+        self.stated.add(f"ways.{leg.bearing % 4}")
         clause = clause_of(self.rng, options, False)
         self._flowing(leg, clause)
         return more.put(clause, noun=noun, xb=xb)
@@ -217,22 +216,22 @@ class RoadsMixin:
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
         """`a road with two northbound lanes and one southbound lane` and the like."""
         rng = self.rng
-        kind = clause_of(rng, told_of.BEFORE["open" if leg.median == "none" else "parted"], False)
+        kind = clause_of(rng, clauses_words.BEFORE["open" if leg.median == "none" else "parted"], False)
         if even and rng.random() < 0.6:
-            way = clause_of(rng, told_of.EACH_DIRECTION, False)
+            way = clause_of(rng, clauses_words.EACH_DIRECTION, False)
             each = {"each": words.lanes(leg.lanes_in), "half": words.NUMBERS[leg.lanes_in], "way": way}
-            text = clause_of(rng, told_of.EVEN, False)
+            text = clause_of(rng, clauses_words.EVEN, False)
             return text.format(kind=kind, noun=word, total=words.NUMBERS[total], **each)
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
         lanes = self._sides(leg, to, fro)
         rng.shuffle(lanes)
-        self.told.add(f"{AXIS}.{leg.bearing % 4}")
-        return clause_of(rng, told_of.SIDES, False).format(kind=kind, noun=word, a=lanes[0], b=lanes[1])
+        self.stated.add(f"{AXIS}.{leg.bearing % 4}")
+        return clause_of(rng, clauses_words.SIDES, False).format(kind=kind, noun=word, a=lanes[0], b=lanes[1])
 
     def _bracket(self, leg: Leg, legs: list[Leg]) -> str:
         back = legs[1] if len(legs) > 1 else Leg((leg.bearing + 4) % 8, leg.lanes_out, leg.lanes_in)
         rng = self.rng
-        self.told.add(f"{AXIS}.{leg.bearing % 4}")
+        self.stated.add(f"{AXIS}.{leg.bearing % 4}")
         return split(rng, leg, back, words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing), self.held_out)
 
     def _axis_of(self, slot: str) -> int:
@@ -246,6 +245,6 @@ class RoadsMixin:
     def _limit(self, slot: str) -> str:
         axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
-        self.told |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
+        self.stated |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
         assert limit is not None  # noqa: S101 - clauses are chosen so
         return words.limit(self.rng, limit, self.held_out)

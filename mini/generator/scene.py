@@ -58,14 +58,14 @@ class SceneMixin(JunctionMixin):
         if slot in ("lim", "lim2"):
             return self._limit(slot)
         if slot == "curve":
-            self.told.add("curve")
+            self.stated.add("curve")
             return self._leg_of(v).curve if self._leg_of(v).curve != "none" else "left"
         return self._scene_slot2(slot)
 
     def _run(self, bearing: int) -> str:
         """How the road of a bearing runs: "north/south"."""
         self.spoken_of = bearing % 4
-        self.told.add(f"{AXIS}.{bearing % 4}")
+        self.stated.add(f"{AXIS}.{bearing % 4}")
         return words.axis(self.rng, bearing % 4)
 
     def _scene_slot2(self, slot: str) -> str:
@@ -74,7 +74,7 @@ class SceneMixin(JunctionMixin):
             return str(rng.randint(60, 900))
         if slot in ("stemdir", "opposite"):
             stem = crash.stems[0]
-            self.told |= {"layout", STEM}
+            self.stated |= {"layout", STEM}
             return WORDS[(stem.bearing + 4 * (slot == "opposite")) % 8]
         if slot == "tcd":
             return self._tcd()
@@ -100,7 +100,7 @@ class SceneMixin(JunctionMixin):
         if self.crash.layout == "driveway" and not self.held_out and self.rng.random() < PASSED_OVER:
             return self._of_road(scene.OPENING_PLAIN, main)
         if self.crash.layout in ("driveway", "merge", "four"):
-            self.told.add("layout")
+            self.stated.add("layout")
         group = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         options: Sequence[str] = group.without(self.held_out, ["two"] * self.crash.alone)
         if self.crash.layout == "t" and self.rng.random() < 0.85:
@@ -171,8 +171,8 @@ class SceneMixin(JunctionMixin):
         back = legs[1] if len(legs) > 1 else Leg((legs[0].bearing + 4) % 8, legs[0].lanes_out, legs[0].lanes_in)
         one, other = rng.sample((legs[0], back), 2)
         ab, bb = (words.bound(rng, leg.bearing + 4) for leg in (one, other))
-        self.told |= {f"lanes.{axis}", f"turns.{axis}", f"{AXIS}.{axis}"}
-        self.stated.add(f"lanes.{axis}")
+        self.stated |= {f"lanes.{axis}", f"turns.{axis}", f"{AXIS}.{axis}"}
+        self.worded.add(f"lanes.{axis}")
         if one.lanes_in == one.lanes_out and not (one.turns_in or back.turns_in) and rng.random() < 0.4:
             return [self._alike(one, axis, ab, bb)]
         lists = {"alist": lane_phrase(rng, one), "blist": lane_phrase(rng, other)}
@@ -189,7 +189,7 @@ class SceneMixin(JunctionMixin):
         """Both roads of a junction in one sentence."""
         first, second = self.rng.sample((self.crash.main % 4, (self.crash.main + 2) % 4), 2)
         one, other = self._road(first, bare=True), self._road(second, bare=True)
-        self.told |= {f"{AXIS}.{first}", f"{AXIS}.{second}"}
+        self.stated |= {f"{AXIS}.{first}", f"{AXIS}.{second}"}
         axes = {"a1": words.axis(self.rng, first), "a2": words.axis(self.rng, second)}
         return [self.say(roads.PAIR, one=one, other=other, Ione=one[:1].upper() + one[1:], **axes)]
 
@@ -204,7 +204,7 @@ class SceneMixin(JunctionMixin):
         if len(ways - {0}) != 1:
             return []
         lanes, kind = max(ways), "one_way" if 0 in ways else "two_way"
-        self.told |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD)}
+        self.stated |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD)}
         return [self.say(roads.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
 
     def _two_way(self) -> bool:
@@ -218,7 +218,7 @@ class SceneMixin(JunctionMixin):
             return []
         leg = self.rng.choice(found)
         axis = self.spoken_of = leg.bearing % 4
-        self.told |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
+        self.stated |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
         xb = words.bound(self.rng, leg.flow)
         return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
 
@@ -228,12 +228,12 @@ class SceneMixin(JunctionMixin):
         limit = found.pop() if len(found) == 1 else None
         if not limit:
             return []
-        self.told |= {f"limit.{leg.bearing % 4}" for leg in self.crash.legs}
+        self.stated |= {f"limit.{leg.bearing % 4}" for leg in self.crash.legs}
         return [self.say(roads.LIMITS, lim=words.limit(self.rng, limit, False))]
 
     def _access(self) -> list[str]:
         access = self.crash.accesses[0]
-        self.told.add("access")
+        self.stated.add("access")
         side = (access.leg + 4 + (2 if access.side == "right" else -2)) % 8
         kind = "driveway" if access.kind == "driveway" else "side street"
         place = "[crash|intersection|impact]" if self.crash.layout in ("four", "t") else "[crash|impact]"
@@ -254,5 +254,5 @@ class SceneMixin(JunctionMixin):
         }[slot]
         untrue = [] if self.held_out else conditions.untrue(key, self.crash.light, self.crash.weather)
         text = choose(self.rng, self.rng.choice(table[getattr(self.crash, key)].without(self.held_out, untrue)))
-        self.told |= {key} if self.held_out else {key, *conditions.beside(key, text, self.crash)}
+        self.stated |= {key} if self.held_out else {key, *conditions.beside(key, text, self.crash)}
         return plain(text)

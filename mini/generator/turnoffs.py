@@ -25,7 +25,7 @@ def suits(text: str, crash: Crash, actor: Actor) -> bool:
     return not has(text, "driveway") and (not has(text, "stop_line") or stops)
 
 
-def told(text: str, crash: Crash) -> set[str]:
+def facts_beside(text: str, crash: Crash) -> set[str]:
     """Facts of the roads that the words tell beside their own: that there is a driveway, a signal or a stop sign."""
     found = {"layout"} if crash.layout == "driveway" and has(text, "leaves") else set()
     if has(text, "sign") and any(leg.control == "stop" for leg in crash.legs):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from random import Random
 
 from mini.generator import clauses_road as more
-from mini.generator import clauses_words as told
+from mini.generator import clauses_words
 from mini.generator.grammar import clause_of
 from mini.generator.labels import plain
 from mini.generator.records import Group, slots_of
@@ -29,7 +29,7 @@ def direction(rng: Random, bearing: int, held_out: bool) -> str:
     word = WORDS[bearing % 8]
     if not held_out and rng.random() < MORE / 2:
         return plain(more.phrase(rng, more.DIRECTION, word=word))
-    return _one(rng, told.DIRECTION["held_out" if held_out else "trained"]).format(word=word)
+    return _one(rng, clauses_words.DIRECTION["held_out" if held_out else "trained"]).format(word=word)
 
 
 def bound(rng: Random, bearing: int) -> str:
@@ -37,13 +37,13 @@ def bound(rng: Random, bearing: int) -> str:
     word = WORDS[bearing % 8]
     if len(word) > 5:
         return f"{word}bound"
-    return told.BOUND.drawn(rng).format(word=word, initial=word[0].upper())
+    return clauses_words.BOUND.drawn(rng).format(word=word, initial=word[0].upper())
 
 
 def axis(rng: Random, bearing: int) -> str:
     """`north/south` for either end of a road."""
     low = bearing % 4
-    return _one(rng, told.AXIS["east" if low == 2 else "other"]).format(one=WORDS[low], other=WORDS[low + 4])
+    return _one(rng, clauses_words.AXIS["east" if low == 2 else "other"]).format(one=WORDS[low], other=WORDS[low + 4])
 
 
 def _one(rng: Random, options: Group) -> str:
@@ -61,16 +61,16 @@ def limit(rng: Random, mph: int, held_out: bool) -> str:
     k = kph(mph) if rng.random() > 0.015 else kph(mph + rng.choice((-5, 5)))
     if not held_out and rng.random() < MORE:
         return plain(more.phrase(rng, more.LIMIT, mph=str(mph), kph=str(k)))
-    return told.LIMIT.drawn(rng).format(mph=mph, k=k)
+    return clauses_words.LIMIT.drawn(rng).format(mph=mph, k=k)
 
 
 def driver_speed(rng: Random, mph: int) -> tuple[str, int]:
     """A driver's speed as told and the number to answer: ranges give their middle, rounded to fives up."""
     if rng.random() < 0.6:
         low = (max(mph, 1) - 1) // 10 * 10 + 1
-        text = _one(rng, told.SPEED["between"])
+        text = _one(rng, clauses_words.SPEED["between"])
         return text.format(low=low, high=low + 9, klow=kph(low), khigh=kph(low + 9)), low + 4
-    return _one(rng, told.SPEED["plain"]).format(mph=mph, k=kph(mph)), mph
+    return _one(rng, clauses_words.SPEED["plain"]).format(mph=mph, k=kph(mph)), mph
 
 
 def lanes(count: int, way: str = "") -> str:
@@ -91,20 +91,20 @@ class LaneName:
 def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> LaneName:
     """The lane's name: by side, number, direction or use."""
     if not held_out and leg.lanes_in == 1 and rng.random() < COUNTED:
-        return _named(_one(rng, told.LANE["only"]), xb)
+        return _named(_one(rng, clauses_words.LANE["only"]), xb)
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
         clause = clause_of(rng, more.LANE[kind], False)
         slots = {"xb": xb, "number": NUMBERS[number or 1], "ordinal": ORDINALS[number or 1]}
         return LaneName(plain(more.put(clause, **slots)), "xb" in slots_of(clause), kind in ("left", "turn_left"))
     use = leg.turns_in[number - 1] if leg.turns_in and number else ""
     if use in ("left", "right") and rng.random() < 0.85:
-        return _named(_one(rng, told.LANE["turn"]), xb, use == "left", use=use)
+        return _named(_one(rng, clauses_words.LANE["turn"]), xb, use == "left", use=use)
     through = sum("through" in u for u in leg.turns_in)
     if use == "through" and through == 1 and rng.random() < 0.4:
-        return _named(_one(rng, told.LANE["through"]), xb, True)
+        return _named(_one(rng, clauses_words.LANE["through"]), xb, True)
     lanes = max(leg.lanes_in, 1)
     if lanes == 1 or number is None:
-        return _named(_one(rng, told.LANE["uncounted"]), xb)
+        return _named(_one(rng, clauses_words.LANE["uncounted"]), xb)
     return _numbered(rng, number, lanes, use, xb)
 
 
@@ -112,12 +112,12 @@ def _numbered(rng: Random, number: int, lanes: int, use: str, xb: str) -> LaneNa
     """A lane of several by its number or its side."""
     sided: tuple[str, ...] = ()
     if number == 1:
-        sided = told.LANE["right"].side(False) * 2
+        sided = clauses_words.LANE["right"].side(False) * 2
     elif number == lanes and use != "left":
-        sided = told.LANE["left"].side(False) * 2
+        sided = clauses_words.LANE["left"].side(False) * 2
     elif lanes == 3 and number == 2:
-        sided = told.LANE["middle"].side(False) * 3
-    form = rng.choice(told.LANE["numbered"].side(False) + sided)
+        sided = clauses_words.LANE["middle"].side(False) * 3
+    form = rng.choice(clauses_words.LANE["numbered"].side(False) + sided)
     counts = {"number": NUMBERS[number], "ordinal": ORDINALS[number], "short": SHORT_ORDINALS[number]}
     return _named(form, xb, number == lanes and form in sided, digit=str(number), **counts)
 
@@ -144,13 +144,14 @@ def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     """`a T-intersection`, `a four-leg intersection`, or the plain word."""
     if not held_out and rng.random() < MORE:
         return "a " + plain(more.phrase(rng, more.JUNCTION[crash.layout]))
-    return "a " + _one(rng, told.JUNCTION["four" if crash.layout == "four" else "t"])
+    return "a " + _one(rng, clauses_words.JUNCTION["four" if crash.layout == "four" else "t"])
 
 
 def person(rng: Random) -> dict[str, str]:
     """Age, sex and pronouns of an occupant."""
     age, male = rng.randint(16, 88), rng.random() < 0.5
     return {
-        "age": _one(rng, told.AGE).format(age=age), "sex": "male" if male else "female", "He": "He" if male else "She",
-        "he": "he" if male else "she", "his": "his" if male else "her", "His": "His" if male else "Her",
+        "age": _one(rng, clauses_words.AGE).format(age=age), "sex": "male" if male else "female",
+        "He": "He" if male else "She", "he": "he" if male else "she",
+        "his": "his" if male else "her", "His": "His" if male else "Her",
     }  # fmt: skip

@@ -13,7 +13,7 @@ from mini.generator import words
 from mini.generator.approaches import ApproachMixin
 from mini.generator.blocks import BlocksMixin
 from mini.generator.events import EventsMixin
-from mini.generator.grammar import HINT, MARK, Told, Written, clause_of, fill, sentence, unmark
+from mini.generator.grammar import HINT, MARK, StatedFacts, Written, clause_of, fill, sentence, unmark
 from mini.generator.labels import has
 from mini.generator.mentions import Mentions
 from mini.generator.noise import join, slips
@@ -23,18 +23,6 @@ from mini.generator.scene import SceneMixin
 from mini.generator.settled import AXIS, FROM_LEFT
 from mini.generator.world import WORDS, Crash
 
-CIREN_ORDER = (
-    "approach",
-    "conditions",
-    "critical",
-    "avoid",
-    "impact",
-    "rest",
-    "tow",
-    "occupant",
-    "occupant",
-    "interview",
-)
 Words = str | Callable[[], str]
 PRONOUNS = ("he", "He", "his", "His")
 """Slots of words for the driver of the one whom a clause is about."""
@@ -47,10 +35,10 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         self.rng, self.crash, self.held_out, self.length = rng, crash, held_out, length
         self.ciren = rng.random() < 0.45
         self.mentions = Mentions(rng, crash, self.ciren)
-        self.told = Told()
+        self.stated = StatedFacts()
         self.sentences: list[frozenset[str]] = []
         """Facts of every sentence that was written, by the number of its mark."""
-        self.stated: set[str] = set()
+        self.worded: set[str] = set()
         self.who = self.culprit()
         self.people: dict[int, dict[str, str]] = {}
         """Age, sex and pronouns of the drivers, by actor."""
@@ -142,7 +130,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         """
         clause = clause_of(self.rng, options, self.held_out)
         other = w if w is not None else next((i for i in range(len(self.crash.actors)) if i != v), v)
-        self.told |= self._hints(clause, v, other)
+        self.stated |= self._hints(clause, v, other)
         slots = Slots(clause, self.crash.actors[v], self.crash.actors[other], touching or {}, extra)
         others = has(clause, "third")
 
@@ -154,7 +142,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         text = sentence(fill(clause, filled))
         if others:  # and whoever "he" is after that
             self.lately.discard(v)
-        self.sentences.append(self.told.take())
+        self.sentences.append(self.stated.take())
         return text + chr(MARK + len(self.sentences) - 1)
 
     def _hints(self, clause: str, v: int, w: int) -> set[str]:
@@ -174,7 +162,7 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         if slot in ("Vf", "Vi"):
             self.lately.add(v)
             text, kind = self.mentions.full(v) if slot == "Vf" else self.mentions.presented(v)
-            self.told |= {f"kind.{self.id_of(v)}"} if kind else set()
+            self.stated |= {f"kind.{self.id_of(v)}"} if kind else set()
             return text
         if slot in ("V", "W", "S", "T"):
             return self._mention(v if slot in ("V", "S") else w)
@@ -188,35 +176,35 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         self.lately.add(index)
         if index not in self.mentions.introduced and self.rng.random() < 0.5:
             text, kind = self.mentions.full(index)
-            self.told |= {f"kind.{self.id_of(index)}"} if kind else set()
+            self.stated |= {f"kind.{self.id_of(index)}"} if kind else set()
             return text
-        self.told |= {f"kind.{self.id_of(index)}"} if not self.crash.actors[index].vehicle else set()
+        self.stated |= {f"kind.{self.id_of(index)}"} if not self.crash.actors[index].vehicle else set()
         return self.mentions.name(index)
 
     def _motion_slot(self, slot: str, v: int, w: int) -> str:
         actor = self.crash.actors[v]
         if slot in ("dir", "xb", "from"):
-            self.told.add(f"{AXIS}.{actor.leg % 4}" if self.of_road else f"heading.{actor.id}")
+            self.stated.add(f"{AXIS}.{actor.leg % 4}" if self.of_road else f"heading.{actor.id}")
         if slot == "dir":
             return words.direction(self.rng, actor.heading, self.held_out)
         if slot == "from":
             return WORDS[actor.leg]
         if slot in ("outdir", "outxb"):  # of one that turns: with the turn, where it goes tells where it came from
-            self.told |= {f"{fact}.{actor.id}" for fact in ("heading", "man", "exit")}
+            self.stated |= {f"{fact}.{actor.id}" for fact in ("heading", "man", "exit")}
             assert actor.out is not None  # noqa: S101 - who turns takes a leg
             return WORDS[actor.out] if slot == "outdir" else words.bound(self.rng, actor.out)
         if slot == "lane":
             leg = self.crash.leg(actor.leg)
             xb = words.bound(self.rng, actor.heading)
             name = words.lane(self.rng, leg, actor.lane, xb, self.held_out)  # type: ignore[arg-type]
-            self.told |= {f"heading.{actor.id}"} if name.headed else set()
-            self.told |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if name.from_left else set())
+            self.stated |= {f"heading.{actor.id}"} if name.headed else set()
+            self.stated |= {f"lane.{actor.id}"} | ({f"{FROM_LEFT}.{actor.id}"} if name.from_left else set())
             return name.text  # the leg is there: actors stand on legs
         bearing = {"xb": actor.heading, "opp": actor.leg}.get(slot)
         if bearing is not None:
             return words.bound(self.rng, bearing)
         if slot == "surf0":
-            self.told.add("surface")
+            self.stated.add("surface")
         return {
             "W0": "vehicle",
             "side0": self.rng.choice(("left", "right")),

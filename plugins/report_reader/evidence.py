@@ -91,7 +91,7 @@ class EvidenceReader(ReportReader, ABC):
         text = checked_narrative(Traced.of(narrative), source) if self.use_narrative else Traced.of("")
         text = redacted(text) if self.redact_persons else text
         if self.use_coded_fields and coded:
-            text = _behind(text, f"\n\nCoded fields:\n{coded_lines(coded)}", len(narrative)).strip()
+            text = _appended(text, f"\n\nCoded fields:\n{coded_lines(coded)}", len(narrative)).strip()
         shown = diagrams if self.use_diagrams else ()
         if not text.text and not shown:
             raise BadInput(f"{source}: no diagram, and the narrative is switched off: set use_narrative to true")
@@ -107,7 +107,7 @@ class EvidenceReader(ReportReader, ABC):
         return degrade(report, self.robustness_level)
 
 
-def _behind(text: Traced, more: str, end: int) -> Traced:
+def _appended(text: Traced, more: str, end: int) -> Traced:
     """The text with more that nobody wrote, placed at the narrative's end."""
     nowhere = [end] * len(more)
     return joined([text, Traced(more, nowhere, nowhere)])

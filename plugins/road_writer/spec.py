@@ -14,12 +14,15 @@ from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.records import Context, Finding, Hold, Passage, Query, RoadNetwork
 from sgcad_core.roads.layout import COMPASS, road_spec
 from sgcad_core.specs import Compass, RoadLayout, RoadSpec
+
+_finding = Finder("layout")
 
 USUAL_LEGS = 4
 """Junctions of more legs are rare enough to doubt the count first."""
@@ -33,15 +36,17 @@ class SpecRoad(RoadWriter):
     form: Literal["road", "layout"] = "road"
     prompt: str = Field("", pattern=r"^[\w-]*$")
     """configs/prompts/<prompt>.md; empty: the one named like the form."""
+    places: bool = False
+    """Whether the answer may tell roundabouts and their like; the embedded model has not learned their fields."""
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Ask, read, draw, compile. Raises InvalidOutput with findings, Refused where the model declines."""
         query = Query(
-            task=load_prompt(self.prompt or self.form),
+            task=self._task(),
             passages=tuple(passages),
-            answer_schema=answer_schema(RoadSpec if self.form == "road" else RoadLayout),
+            answer_schema=answer_schema(RoadSpec if self.form == "road" else RoadLayout, places=self.places),
             attempt=attempt,
         )
         answer = ask(context, query).text
@@ -51,6 +56,10 @@ class SpecRoad(RoadWriter):
         layout = _layout(answer)
         spec = road_spec(layout)
         return compile_network(plain_xml(spec), spec).model_copy(update={"layout": layout})
+
+    def _task(self) -> str:
+        task = load_prompt(self.prompt or self.form)
+        return f"{task}\n\n{load_prompt(f'{self.form}_places')}" if self.places else task
 
 
 def _layout(answer: str) -> RoadLayout:
@@ -65,21 +74,21 @@ def _layout_faults(layout: RoadLayout) -> Iterator[Finding]:
     for bearing, count in Counter(leg.bearing for leg in layout.legs).items():
         if count > 1:
             remedy = "merge them, or turn one by 45 degrees"
-            yield _finding("legs", f"{count} legs have one bearing", bearing, remedy, _elsewhere(layout, bearing))
+            yield _finding(f"{count} legs have one bearing", "legs", bearing, remedy, holds=_elsewhere(layout, bearing))
     for i, leg in enumerate(layout.legs):
         if not leg.lanes_in and not leg.lanes_out:
-            yield _finding(f"legs[{i}]", "the leg has no lanes", "0 and 0", "give one direction a lane")
+            yield _finding("the leg has no lanes", f"legs[{i}]", "0 and 0", "give one direction a lane")
         if leg.turns_in and len(leg.turns_in) != leg.lanes_in:
             what, value = "not one turn for each of lanes_in", f"{len(leg.turns_in)} turns, {leg.lanes_in} lanes"
             remedy = "count the lanes again: turn lanes are lanes; make both agree or leave the turns empty"
-            yield _finding(f"legs[{i}].turns_in", what, value, remedy)
+            yield _finding(what, f"legs[{i}].turns_in", value, remedy)
     bearings = [leg.bearing for leg in layout.legs]
     for i, access in enumerate(layout.accesses):
         if access.leg not in bearings:
             remedy = f"use one of {', '.join(bearings)}"
-            yield _finding(f"accesses[{i}].leg", "there is no leg of this bearing", access.leg, remedy)
+            yield _finding("there is no leg of this bearing", f"accesses[{i}].leg", access.leg, remedy)
         if not access.lanes_in and not access.lanes_out:
-            yield _finding(f"accesses[{i}]", "the access has no lanes", "0 and 0", "give one direction a lane")
+            yield _finding("the access has no lanes", f"accesses[{i}]", "0 and 0", "give one direction a lane")
 
 
 def _elsewhere(layout: RoadLayout, bearing: Compass) -> tuple[Hold, ...]:
@@ -89,7 +98,3 @@ def _elsewhere(layout: RoadLayout, bearing: Compass) -> tuple[Hold, ...]:
     free = tuple(way for way in COMPASS if way not in {leg.bearing for leg in layout.legs})
     places = [i for i, leg in enumerate(layout.legs) if leg.bearing == bearing]
     return tuple(Hold(items="legs", at=i, either=({"bearing": free},)) for i in places[1:] if free)
-
-
-def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
-    return Finding(source="layout", what=what, where=where, value=value, remedy=remedy, holds=holds)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from sgcad_core.formats.sumo.lane_graph import Edge, LaneGraph
 from sgcad_core.roads.describe import compass
+from sgcad_core.roads.lane_graph import Edge, LaneGraph
 
 
 def edge_lines(graph: LaneGraph) -> str:

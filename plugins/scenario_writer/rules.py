@@ -46,7 +46,12 @@ class Rules(ScenarioWriter):
         facts = context.reading.crash
         lost = tells_lost_control(context.reading.narrative)
         scenario = compile_scenario(
-            behavior_of_facts(facts, spec), network, self.openscenario, self.encoding, may_skid=lost
+            behavior_of_facts(facts, spec),
+            network,
+            self.openscenario,
+            self.encoding,
+            may_skid=lost,
+            signals=context.reading.signals,
         )
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 

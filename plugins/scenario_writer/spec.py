@@ -56,7 +56,9 @@ class SpecScenario(ScenarioWriter):
         )
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
         lost = tells_lost_control(context.reading.narrative)
-        return compile_scenario(behavior, network, self.openscenario, self.encoding, may_skid=lost)
+        return compile_scenario(
+            behavior, network, self.openscenario, self.encoding, may_skid=lost, signals=context.reading.signals
+        )
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

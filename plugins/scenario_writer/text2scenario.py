@@ -16,6 +16,7 @@ from pydantic import Field
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.findings import Finder
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -42,6 +43,8 @@ from sgcad_core.specs import (
     Surface,
     Weather,
 )
+
+_finding = Finder("scenario")
 
 Action = Literal[
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
@@ -145,10 +148,6 @@ def _faults(parsed: Representation) -> list[Finding]:
             remedy = f"name another one of {', '.join(ids)}"
             found.append(_finding("strikes nobody", f"events[{i}].target", str(event.target), remedy))
     return found
-
-
-def _finding(what: str, where: str, value: str, remedy: str) -> Finding:
-    return Finding(source="scenario", what=what, where=where, value=value, remedy=remedy)
 
 
 # ------------------------------------------------------------------ templates

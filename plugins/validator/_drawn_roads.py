@@ -8,11 +8,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
+from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.narrative.compass import angle_of
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Compass
 
 MPS_PER_MPH = 0.44704
+BEHIND_SPLITTER_M = 60.0
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool 
 def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
     """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
     found = []
-    for road in dict.fromkeys(road_of(edge)[0] for edge in graph.edges):
+    for road in dict.fromkeys(road_of(edge.id)[0] for edge in graph.edges.values() if not graph.is_around(edge)):
         forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
         edge = forward or backward
         if edge is None:
@@ -70,12 +72,25 @@ def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
 
 
 def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
-    """Bearings of the legs of every node, seen from it (radians), over edges that cars may use; most legs first."""
+    """Bearings of the legs of every node, seen from it (radians), over edges that cars may use; most legs first.
+
+    A roundabout is one node.
+    """
     legs: dict[str, dict[str, float]] = {}
     for edge in graph.edges.values():
-        if edge.car_lanes and edge.from_node != edge.to_node:
+        ends = [graph.center_of.get(node, node) for node in (edge.from_node, edge.to_node)]
+        if edge.car_lanes and ends[0] != ends[1]:
             shape = edge.lanes[0].shape
-            (dx, dy), (ex, ey) = shape[1] - shape[0], shape[-2] - shape[-1]
-            legs.setdefault(edge.from_node, {})[edge.to_node] = math.atan2(dy, dx)
-            legs.setdefault(edge.to_node, {})[edge.from_node] = math.atan2(ey, ex)
+            dx, dy = _leads(shape, edge.from_node in graph.center_of)
+            ex, ey = _leads(shape[::-1], edge.to_node in graph.center_of)
+            legs.setdefault(ends[0], {})[ends[1]] = math.atan2(dy, dx)
+            legs.setdefault(ends[1], {})[ends[0]] = math.atan2(ey, ex)
     return sorted((tuple(found.values()) for found in legs.values()), key=len, reverse=True)
+
+
+def _leads(line: Floats, opens: bool) -> Floats:
+    """Where a leg leads from its junction; one that opens into a roundabout does so at an angle first."""
+    ahead: Floats = line[1] - line[0]
+    if opens:
+        ahead = resample(line, [min(BEHIND_SPLITTER_M, arc_lengths(line)[-1])])[0] - line[0]
+    return ahead

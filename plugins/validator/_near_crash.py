@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from sgcad_core.findings import Finder
 from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.records import Finding, Severity
 from sgcad_core.specs import BehaviorSpec
+
+_finding = Finder("behavior_narrative")
 
 
 def near_crash_findings(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
@@ -17,7 +20,8 @@ def near_crash_findings(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[F
             yield _finding("the report tells a contact, no near crash", "near_crash", "declared", "declare the contact")
         return
     told = facts.contacts[0]
-    pair, severity = {told.striker, told.struck}, "repair" if near.stated else "note"
+    severity: Severity = "repair" if near.stated else "note"
+    pair = {told.striker, told.struck}
     between = f"{told.striker} and {told.struck}"
     said = behavior.near_crash
     if behavior.contacts:
@@ -31,7 +35,3 @@ def near_crash_findings(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[F
         value = f"{said.conflict.striker} and {said.conflict.struck}"
         what = f"the report's near crash is of {between}"
         yield _finding(what, "near_crash.conflict", value, f"declare {between}", severity)
-
-
-def _finding(what: str, where: str, value: str, remedy: str, severity: Severity = "repair") -> Finding:
-    return Finding(source="behavior_narrative", severity=severity, what=what, where=where, value=value, remedy=remedy)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sgcad_core.asking.narrowing import SOME_LANES
+from sgcad_core.kinds import junction_kind
 from sgcad_core.narrative.compass import COMPASS, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import legs_used
@@ -20,7 +21,7 @@ def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
     legs that are told the others cross it.
     """
     used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
-    four = facts.junction.kind == "four_leg" and facts.junction.stated and len(legs) == 4 and bool(used)
+    four = junction_kind(facts.junction.kind).crossing and facts.junction.stated and len(legs) == 4 and bool(used)
     sure = used if pictured else legs if four else {*used, *(turned(leg, 180) for leg in used)}
     ordered = sorted(legs, key=COMPASS.index) if used <= legs <= sure else ()
     return tuple(Hold(items="legs", at=i, either=({"bearing": (leg,)},)) for i, leg in enumerate(ordered))

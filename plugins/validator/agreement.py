@@ -10,6 +10,7 @@ import numpy as np
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.playback import sizes_of
+from sgcad_core.findings import Finder
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.openscenario.player import entity_boxes, play
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
@@ -26,6 +27,8 @@ from sgcad_core.records import (
     Trajectory,
 )
 from sgcad_core.specs import Contact
+
+_finding = Finder("agreement")
 
 START_M = 6.0
 """A start on the shoulder, one and a half lanes from a center line, still stands on the road."""
@@ -157,7 +160,3 @@ def _seen(contact: ObservedContact | None) -> str:
         return "nothing touches"
     sides = f"{contact.actor} {contact.actor_area} and {contact.other} {contact.other_area}"
     return f"{sides} at {contact.t_s:.2f} s"
-
-
-def _finding(what: str, where: str, value: str, remedy: str, severity: Literal["repair", "note"] = "repair") -> Finding:
-    return Finding(source="agreement", severity=severity, what=what, where=where, value=value, remedy=remedy)

@@ -14,12 +14,15 @@ from typing import ClassVar, Literal
 
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
 from plugins.validator._near_crash import near_crash_findings
+from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
+from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
+
+_finding = Finder("behavior_narrative")
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
@@ -59,19 +62,6 @@ class BehaviorNarrative(Validator):
             found += _exits(behavior, facts, spec, ways)
         found += _maneuvers(behavior, facts, spec, self.maneuvers)
         return [*found, *_contact(behavior, facts, self.areas), *near_crash_findings(behavior, facts)]
-
-
-def _finding(
-    what: str,
-    where: str,
-    value: str,
-    remedy: str,
-    severity: Severity = "repair",
-    holds: tuple[Hold, ...] = (),
-) -> Finding:
-    return Finding(
-        source="behavior_narrative", severity=severity, what=what, where=where, value=value, remedy=remedy, holds=holds
-    )
 
 
 # ------------------------------------------------------------------ vehicles
@@ -119,7 +109,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
 
 def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     """A told rear-end crash of two that do not turn: both head the same way."""
-    told = _told(facts)
+    told = _stated_contact(facts)
     if told is None or (told.striker_area, told.struck_area) != ("front", "back"):
         return
     if max(len(told.striker_may), len(told.struck_may)) > 2:  # a side that the text leaves open
@@ -216,7 +206,7 @@ def _contradicts(said: Maneuver, told: Maneuver) -> bool:
 
 # ------------------------------------------------------------------ contact
 def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
-    told = _told(facts)
+    told = _stated_contact(facts)
     if told is None or not _acted(told, behavior):
         return
     said = behavior.contacts[0] if behavior.contacts else None
@@ -234,7 +224,7 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
                        _first(told, doubted))  # fmt: skip
 
 
-def _told(facts: CrashFacts) -> ContactFacts | None:
+def _stated_contact(facts: CrashFacts) -> ContactFacts | None:
     """The first contact that the text tells; of a near crash none."""
     return None if facts.near_crash else next((c for c in facts.contacts if c.stated), None)
 

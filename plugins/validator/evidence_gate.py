@@ -88,7 +88,7 @@ class EvidenceGate(Validator):
         wanted = ((group, self.threshold(group)) for group in judged)
         sums = [(group, limit, nats_of(group, ground)) for group, limit in wanted if limit is not None]
         weak = [(nats, group, limit) for group, limit, nats in sums if nats is not None and nats < limit]
-        return [_finding(group, nats, limit) for nats, group, limit in sorted(weak, key=lambda w: w[0] - w[2])]
+        return [_not_carried(group, nats, limit) for nats, group, limit in sorted(weak, key=lambda w: w[0] - w[2])]
 
     def threshold(self, group: Group) -> float | None:
         """The group's threshold, nats; None: it is not required."""
@@ -102,7 +102,7 @@ def nats_of(group: Group, grounding: Mapping[str, float]) -> float | None:
     return sum(found) if found else None
 
 
-def _finding(group: Group, nats: float, limit: float) -> Finding:
+def _not_carried(group: Group, nats: float, limit: float) -> Finding:
     return Finding(
         source="evidence_gate",
         severity="refuse",

@@ -26,13 +26,13 @@ class Netconvert(Validator):
         if not isinstance(artifact, RoadNetwork):
             return []
         failed = artifact.net_xml is None or artifact.xodr is None
-        found = [self._finding(line, failed) for line in artifact.log.splitlines() if line and line not in _EMPTY]
+        found = [self._said(line, failed) for line in artifact.log.splitlines() if line and line not in _EMPTY]
         kept = [f for f in found if f is not None]
         if failed and not any(f.severity == "repair" for f in kept):
             kept.insert(0, self._death(artifact.returncode))
         return sorted(kept, key=lambda f: f.severity != "repair")[: self.most]
 
-    def _finding(self, line: str, failed: bool) -> Finding | None:
+    def _said(self, line: str, failed: bool) -> Finding | None:
         warning = line.startswith("Warning:")
         if warning and self.warnings == "off":
             return None

@@ -14,7 +14,8 @@ from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, ne
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
 from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.findings import Finder
+from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
@@ -24,6 +25,8 @@ from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.narrative.unsupported import not_drawn
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.specs import Compass
+
+_finding = Finder("road_narrative")
 
 _ORDER = ("refuse", "repair", "doubt", "note")
 
@@ -51,7 +54,7 @@ class RoadNarrative(Validator):
         facts = evidence.report.reading.roads
         drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
-            *_not_drawn(facts), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *_not_drawn(facts), *_no_circle(facts, graph), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
             *self._paths(facts, legs, pictured),
             *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
             *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
@@ -62,7 +65,7 @@ class RoadNarrative(Validator):
     def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
         junction = facts.junction
         record = junction_kind(junction.kind)
-        want = record.legs if record.rule else None  # what a text names in so many words
+        want = record.legs if record.rule and not record.round else None  # what a text names in so many words
         if want and junction.stated and widest < want:
             what = f"the report says {record.called}, but no junction of the network has {want} legs"
             remedy = f"let {want} roads meet at one node"
@@ -84,7 +87,7 @@ class RoadNarrative(Validator):
         Where only the sides that touched tell a leg, that is a doubt.
         """
         drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
-        if facts.junction.kind not in ("t", "four_leg", "driveway"):
+        if facts.junction.kind in ("none", "ramp"):
             return
         if not drawn:
             yield from self._nowhere_to_turn(facts, junctions, pictured)
@@ -244,7 +247,7 @@ def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:
     """Whether the text says that traffic goes both ways, of a street at a junction: both its carriageways are drawn."""
     lanes = road.lanes
     told = lanes.one_way is False or lanes.each_way or len(lanes.toward) == 2
-    crossing = road.kind == "road" and facts.junction.kind in ("t", "four_leg", "driveway")
+    crossing = road.kind == "road" and facts.junction.kind not in ("none", "ramp")
     return bool(told and road.axis and crossing) and not lanes.divided and not lanes.one_way
 
 
@@ -275,10 +278,10 @@ def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
         yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
 
 
-def _finding(
-    what: str, where: str, value: str, remedy: str, severity: Severity = "repair", holds: tuple[Hold, ...] = ()
-) -> Finding:
-    return Finding(
-        source="road_narrative", severity=severity,
-        what=what, where=where, value=value, remedy=remedy, holds=holds,
-    )  # fmt: skip
+def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Finding]:
+    """A finding where the report tells a roundabout and the network has none."""
+    record = junction_kind(facts.junction.kind)
+    if record.round and facts.junction.stated and not graph.circles:
+        what = f"the crash happened at {record.called}, and the network has none"
+        remedy = "draw its circle: one-way pieces around, counterclockwise (circle), every leg yields"
+        yield _finding(what, "junction", "no roundabout", remedy)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.routes_xml import SOURCE, routes_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.workers import Worker
+
+_finding = Finder(SOURCE, where="routes")
 
 _WORKER = Worker("plugins.validator._sumo_routes:trial")
 
@@ -39,13 +42,17 @@ class Routes(Validator):
         except InvalidOutput as fault:
             return list(fault.findings)
         except SimulationFailed as fault:
-            return [_finding(f"SUMO died of the routes: {fault}", "write plain vehicles with routes")]
+            return [_finding(f"SUMO died of the routes: {fault}", remedy="write plain vehicles with routes")]
         if said:
-            return [_finding(f"SUMO does not run the routes: {_words(said)}", "mend what SUMO names")]
+            return [_finding(f"SUMO does not run the routes: {_words(said)}", remedy="mend what SUMO names")]
         if missing:
             names = ", ".join(missing)
             return [
-                _finding("actors that never drive", f"give {names} a free place: other departLane or departPos", names)
+                _finding(
+                    "actors that never drive",
+                    value=names,
+                    remedy=f"give {names} a free place: other departLane or departPos",
+                )
             ]
         return self._contact(artifact, hits)
 
@@ -57,13 +64,9 @@ class Routes(Validator):
         seen = "; ".join(f"{a} into {b}" for a, b in hits) or "no collision"
         remedy = "lower minGap and tau, set jmIgnoreFoeProb to 1, or move departPos and departSpeed so that they meet"
         what = f"SUMO's drivers do not bring {declared.striker} into {declared.struck}"
-        return [_finding(what, remedy, seen, self.no_collision)]
+        return [_finding(what, value=seen, remedy=remedy, severity=self.no_collision)]
 
 
 def _words(message: str) -> str:
     lines = [line.strip() for line in _WORKER.said().splitlines() if line.strip()]
     return " | ".join(dict.fromkeys([message, *lines]))[:600]
-
-
-def _finding(what: str, remedy: str, value: str = "", severity: Literal["repair", "note"] = "repair") -> Finding:
-    return Finding(source=SOURCE, severity=severity, what=what, where="routes", value=value, remedy=remedy)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.plain_xml import sumo_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.workers import Worker
+
+_finding = Finder("sumo_load")
 
 _WORKER = Worker("plugins.validator._sumo_start:start")
 
@@ -26,22 +29,22 @@ class SumoLoad(Validator):
             return []
         try:
             if not parse_net(artifact.net_xml).edges:  # libsumo would die of it
-                return [_finding("the network has no roads", "give it at least one road with a lane")]
+                return [_finding("the network has no roads", remedy="give it at least one road with a lane")]
             if faults := sumo_findings("net", artifact.net_xml):  # libsumo loads negative lengths without complaint
                 return faults
             said: str = _WORKER.call(artifact.net_xml, timeout_s=self.timeout_s)
         except InvalidOutput as fault:
             return list(fault.findings)
         except SimulationFailed as fault:
-            return [_finding(f"SUMO died of the network: {fault}", "simplify the network")]
-        return [_finding(f"SUMO does not load the network: {_details(said)}", "mend what SUMO names")] if said else []
+            return [_finding(f"SUMO died of the network: {fault}", remedy="simplify the network")]
+        return (
+            [_finding(f"SUMO does not load the network: {_details(said)}", remedy="mend what SUMO names")]
+            if said
+            else []
+        )
 
 
 def _details(message: str) -> str:
     """SUMO's message with the error lines that it printed."""
     lines = [s for line in _WORKER.said().splitlines() if (s := line.strip()) and not s.startswith("In file")]
     return " | ".join(dict.fromkeys([message, *lines]))[:600]
-
-
-def _finding(what: str, remedy: str) -> Finding:
-    return Finding(source="sumo_load", what=what, remedy=remedy)

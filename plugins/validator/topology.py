@@ -14,12 +14,15 @@ import numpy as np
 
 from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.interfaces import Validator
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.roads.road_spec import turn_findings
 from sgcad_core.specs import Compass, RoadSpec
+
+_finding = Finder("topology")
 
 
 class Topology(Validator):
@@ -114,7 +117,7 @@ def _dead_ways(graph: LaneGraph) -> Iterator[Finding]:
                 road, way = road_of(edge.id)
                 remedy = "turn a one-way road round, or give a road at that node lanes in the direction that lacks"
                 holds = _turned(road, way, alone=len(roads[road]) == 1)
-                yield _finding(f"the {way} direction {how}", f"road {road} at node {node}", "", remedy, holds)
+                yield _finding(f"the {way} direction {how}", f"road {road} at node {node}", "", remedy, holds=holds)
 
 
 def _turned(road: str, way: str, alone: bool) -> tuple[Hold, ...]:
@@ -199,7 +202,3 @@ def _twins(graph: LaneGraph, a: str, b: str) -> bool:
     if len(one) > 1 or len(two) > 1:
         return False
     return (one[0].from_node, one[0].to_node) == (two[0].to_node, two[0].from_node)
-
-
-def _finding(what: str, where: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
-    return Finding(source="topology", what=what, where=where, value=value, remedy=remedy, holds=holds)

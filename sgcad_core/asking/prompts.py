@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.records import Finding
-from sgcad_core.specs import Refusal, Spec
+from sgcad_core.specs import Refusal, Spec, trained_schema
 
 Answer = TypeVar("Answer", bound=Spec)
 Json = dict[str, Any]
@@ -36,19 +36,20 @@ _SLOT = re.compile(r"\{([a-z_]+)\}")
 
 # ------------------------------------------------------------------ schema
 def answer_schema(
-    model: type[Spec], enums: Mapping[str, Sequence[str]] | None = None, refusal: bool = True
+    model: type[Spec], enums: Mapping[str, Sequence[str]] | None = None, refusal: bool = True, places: bool = False
 ) -> dict[str, Any]:
     """Strict JSON schema of a spec: every key required, in field order, nothing else allowed, no references.
 
     `enums` narrows string fields by name (`{"road": ["N", "S"]}`, null stays allowed where it was).
-    With `refusal` the answer may be a `Refusal` instead.
+    With `refusal` the answer may be a `Refusal` instead. `places`: with the fields of roundabouts and their like, which
+    the embedded model has not learned.
     """
-    answer = _inlined(model, enums or {})
+    answer = _inlined(model, enums or {}, places)
     return {"anyOf": [answer, _inlined(Refusal, {})]} if refusal else answer
 
 
-def _inlined(model: type[Spec], enums: Mapping[str, Sequence[str]]) -> Json:
-    schema = model.model_json_schema()
+def _inlined(model: type[Spec], enums: Mapping[str, Sequence[str]], places: bool = False) -> Json:
+    schema = model.model_json_schema() if places else trained_schema(model)
     return _strict(schema, schema.get("$defs", {}), enums)
 
 
@@ -100,7 +101,7 @@ def parse_answer(text: str, model: type[Answer]) -> Answer:
     try:
         return model.model_validate(found)
     except ValidationError as fault:
-        findings = [_finding(error) for error in _root_causes(fault.errors(include_url=False))]
+        findings = [_at_fault(error) for error in _root_causes(fault.errors(include_url=False))]
         raise InvalidOutput("\n".join(f.line() for f in findings), findings) from fault
 
 
@@ -148,7 +149,7 @@ def _root_causes(errors: list[ErrorDetails]) -> list[ErrorDetails]:
     return [e for e in errors if not (e["type"] == "too_short" and e["loc"] in inner)]
 
 
-def _finding(error: ErrorDetails) -> Finding:
+def _at_fault(error: ErrorDetails) -> Finding:
     remedies = {"missing": "add this key", "extra_forbidden": "leave this key out"}
     missing = error["type"] == "missing"
     return Finding(

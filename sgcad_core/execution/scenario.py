@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.editable import write_editable
+from sgcad_core.execution.signals import signal_times
+from sgcad_core.findings import Finder
 from sgcad_core.formats.openscenario.events import Handover
-from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
+from sgcad_core.formats.openscenario.writer import (
+    DEFAULT_ENCODING,
+    DEFAULT_VERSION,
+    Encoding,
+    Version,
+    origin_motion,
+    write_xosc,
+)
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
+
+_finding = Finder("scenario")
 
 
 def compile_scenario(
@@ -18,29 +32,37 @@ def compile_scenario(
     encoding: Encoding = DEFAULT_ENCODING,
     *,
     may_skid: bool = False,
+    signals: Mapping[str, str] | None = None,
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
     `encoding`: timed polylines, or maneuver events that people edit by hand.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say. `may_skid`: the report tells that somebody lost control.
+    for the validators to say. `may_skid`: the report tells that somebody lost control. `signals`: what the traffic
+    signal showed to a vehicle, by id, where it is told.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
     planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
     actors = actor_infos(behavior)
-    handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
+    origins = [origin_motion(actor, move) for actor, move in zip(actors, planned.trajectories, strict=True)]
+    times = signal_times(network, origins, signals or {}, planned.contact.t_s if planned.contact else None)
+    plan_of = actors, planned.trajectories, behavior
+    if encoding == "events":
+        xosc = write_editable(*plan_of, Handover(planned.contact, network.xodr), version, times.controllers)
+    else:
+        xosc = write_xosc(*plan_of, version=version, signals=times.controllers)
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior, version=version, handover=handover),
+        xosc=xosc,
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
         near_crash=None if behavior.contacts else behavior.near_crash,
         planned=planned.trajectories,
         oddity=planned.oddity,
-        notes=planned.notes,
+        notes=(*planned.notes, *times.notes),
     )
 
 
@@ -57,7 +79,9 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     """Raise InvalidOutput for actor ids used twice and for contacts of unknown actors or with oneself."""
     ids = [actor.id for actor in behavior.actors]
     findings = [
-        _finding(f"actors[{i}].id", "two actors have this id", name, "number them as the report does", _next(i, ids))
+        _finding(
+            "two actors have this id", f"actors[{i}].id", name, "number them as the report does", holds=_next(i, ids)
+        )
         for i, name in enumerate(ids)
         if name in ids[:i]
     ]
@@ -65,10 +89,14 @@ def _check_ids(behavior: BehaviorSpec) -> None:
     for i, contact in enumerate(behavior.contacts):
         for role in ("striker", "struck"):
             if (name := getattr(contact, role)) not in ids:
-                findings.append(_finding(f"contacts[{i}].{role}", "no such actor", name, known, _in_place(name, ids)))
+                findings.append(
+                    _finding("no such actor", f"contacts[{i}].{role}", name, known, holds=_in_place(name, ids))
+                )
         if contact.striker == contact.struck:
             findings.append(
-                _finding(f"contacts[{i}]", "an actor cannot strike itself", contact.striker, known, _another(i, ids))
+                _finding(
+                    "an actor cannot strike itself", f"contacts[{i}]", contact.striker, known, holds=_another(i, ids)
+                )
             )
     findings += _near_crash(behavior, ids, known)
     if findings:
@@ -83,16 +111,16 @@ def _near_crash(behavior: BehaviorSpec, ids: list[str], known: str) -> list[Find
     named = [("conflict.striker", near.conflict.striker), ("conflict.struck", near.conflict.struck)]
     named += [(f"evasions[{i}].actor", evasion.actor) for i, evasion in enumerate(near.evasions)]
     found = [
-        _finding(f"near_crash.{where}", "no such actor", name, known, _in_place(name, ids))
+        _finding("no such actor", f"near_crash.{where}", name, known, holds=_in_place(name, ids))
         for where, name in named
         if name not in ids
     ]
     if near.conflict.striker == near.conflict.struck:
         what = "an actor cannot be in conflict with itself"
-        found.append(_finding("near_crash.conflict", what, near.conflict.striker, known))
+        found.append(_finding(what, "near_crash.conflict", near.conflict.striker, known))
     if behavior.contacts:
         remedy = "a crash has contacts and no near crash; where nobody touches, leave contacts empty"
-        found.append(_finding("near_crash", "contacts are declared as well", str(len(behavior.contacts)), remedy))
+        found.append(_finding("contacts are declared as well", "near_crash", len(behavior.contacts), remedy))
     return found
 
 
@@ -117,7 +145,3 @@ def _another(place: int, ids: list[str]) -> tuple[Hold, ...]:
 
 def _named(place: int, name: str) -> Hold:
     return Hold(items="actors", at=place, either=({"id": (name,)},))
-
-
-def _finding(where: str, what: str, value: str, remedy: str, holds: tuple[Hold, ...] = ()) -> Finding:
-    return Finding(source="scenario", what=what, where=where, value=value, remedy=remedy, holds=holds)

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sgcad_core.evidence import Basis, Fact, Status, Value
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
+from sgcad_core.facts import Basis, Fact, Status, Value
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.narrative.provenance import CONFIDENCE, default
 from sgcad_core.narrative.reading import Reading
 from sgcad_core.narrative.road_provenance import road_of_bearing
 from sgcad_core.records import Generation, RoadNetwork, Scenario, Trajectory
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Actor, Road
 
 MPS_PER_MPH = 0.44704

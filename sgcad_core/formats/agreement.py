@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.roads import XodrRoads
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 TOLERANCE_M = 0.5
 UNEVEN_M = 8.0
@@ -19,6 +20,7 @@ UNEVEN_M = 8.0
 MAX_EDGES = 12
 """Edges whose lanes are compared; evenly taken from all."""
 _REMEDY = "write both files in one run of netconvert"
+_finding = Finder("agreement", where="road network", remedy=_REMEDY)
 
 
 def network_disagreements(graph: LaneGraph, xodr: str) -> list[Finding]:
@@ -34,7 +36,7 @@ def _unmatched(graph: LaneGraph, index: RoadIndex) -> Iterator[Finding]:
     for missing, what in ((set(graph.edges) - index.edges, "edges without road in the .xodr"),
                           (index.edges - set(graph.edges), "roads without edge in the net.xml")):  # fmt: skip
         if missing:
-            yield _finding(what, ", ".join(sorted(missing)[:10]))
+            yield _finding(what, value=", ".join(sorted(missing)[:10]))
 
 
 def _apart(graph: LaneGraph, index: RoadIndex, roads: XodrRoads) -> Iterator[Finding]:
@@ -44,7 +46,7 @@ def _apart(graph: LaneGraph, index: RoadIndex, roads: XodrRoads) -> Iterator[Fin
             continue
         places = [index.lane(edge.id, lane.index) for lane in edge.lanes]
         if missing := [lane.id for lane, place in zip(edge.lanes, places, strict=True) if place is None]:
-            yield _finding(f"lanes of edge {edge.id!r} are not in the .xodr", ", ".join(missing))
+            yield _finding(f"lanes of edge {edge.id!r} are not in the .xodr", value=", ".join(missing))
         for lane, place in zip(edge.lanes, places, strict=True):
             if place is not None:
                 yield from _lane_apart(edge, lane, roads.lane_center(place.road, place.lane))
@@ -56,8 +58,4 @@ def _lane_apart(edge: Edge, lane: Lane, center: Floats) -> Iterator[Finding]:
     backwards = bool((lane.shape[-1] - lane.shape[0]) @ (center[-1] - center[0]) < 0)
     if away > TOLERANCE_M or backwards:
         said = "runs the other way" if backwards else f"{away:.2f} m apart"
-        yield _finding(f"lane {lane.index} of edge {edge.id!r} lies elsewhere in the .xodr", said)
-
-
-def _finding(what: str, value: str) -> Finding:
-    return Finding(source="agreement", what=what, where="road network", value=value, remedy=_REMEDY)
+        yield _finding(f"lane {lane.index} of edge {edge.id!r} lies elsewhere in the .xodr", value=said)

@@ -10,25 +10,28 @@ from __future__ import annotations
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.formats.opendrive.controls import center_lanes
+from sgcad_core.formats.opendrive.controls import center_lanes, parking_lanes
 from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.signals import posted_mph
 from sgcad_core.formats.sumo.existing_map import plain_of_map
-from sgcad_core.formats.sumo.lane_graph import Connection, Edge, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
-from sgcad_core.formats.sumo.told import CONTROL
+from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.xml import parse_xml
+from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]
 WIDTH_M = 0.1
 """netconvert takes a lane's greatest width."""
 SPEED_MPS = 0.01
+LEFT_OUT = ("biking", "shoulder", "sidewalk")
+"""Lanes that netconvert leaves out unless told to import all of them."""
 
 
 class Difference(NamedTuple):
@@ -47,6 +50,7 @@ class _Back(NamedTuple):
     found: LaneGraph
     names: Mapping[str, str]
     center: Mapping[str, int]
+    parking: Mapping[str, int]
 
     def pairs(self) -> Iterator[tuple[Edge, Edge]]:
         """Edges of both networks that are the same."""
@@ -55,6 +59,22 @@ class _Back(NamedTuple):
             if other is not None:
                 yield edge, other
 
+    def key(self, link: Connection) -> tuple[str, int, str, int]:
+        """A connection of the first network as the second counts its lanes."""
+        starts, ends = (_outside(self.graph.edges[edge]) for edge in (link.from_edge, link.to_edge))
+        counted = replace(link, from_lane=link.from_lane - starts, to_lane=link.to_lane - ends)
+        return _key(counted, self.names)
+
+    def is_read(self, link: Connection) -> bool:
+        """Whether netconvert makes lanes of both that a connection joins."""
+        places = (link.from_edge, link.from_lane), (link.to_edge, link.to_lane)
+        return all(self.graph.edges[edge].lanes[lane].type not in LEFT_OUT for edge, lane in places)
+
+
+def _outside(edge: Edge) -> int:
+    """How many lanes at the right are left out."""
+    return sum(lane.type in LEFT_OUT for lane in edge.lanes)
+
 
 def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[Difference]:
     """All that is not as before, aspect by aspect. Raises InvalidOutput where a file is none."""
@@ -62,8 +82,10 @@ def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[
     net, log = net_of_xodr(xodr) if reader == "netconvert" else _read_as_map(xodr)
     if not net:
         return [Difference("edges", "file", "read", f"netconvert cannot: {log[:200]}")]
-    center = center_lanes(parse_xml(xodr, "xodr")) if reader == "netconvert" else {}
-    both = _Back(graph, parse_net(net), edge_names(graph, index), center)
+    root = parse_xml(xodr, "xodr")
+    alone = reader == "netconvert"
+    center, parking = (center_lanes(root), parking_lanes(root)) if alone else ({}, {})
+    both = _Back(graph, parse_net(net), edge_names(graph, index), center, parking)
     signs = () if reader == "netconvert" else _signs(both)
     return [*_edges(both), *_lanes(both), *_connections(both), *_signals(both), *signs]
 
@@ -99,13 +121,14 @@ def _edges(both: _Back) -> Iterator[Difference]:
 
 def _lanes(both: _Back) -> Iterator[Difference]:
     for edge, other in both.pairs():
-        center = both.center.get(other.id, 0)
-        after = [lane.allows_cars and i < len(other.lanes) - center for i, lane in enumerate(other.lanes)]
-        before = [lane.allows_cars for lane in edge.lanes]
+        driven = range(both.parking.get(other.id, 0), len(other.lanes) - both.center.get(other.id, 0))
+        after = [lane.allows_cars and i in driven for i, lane in enumerate(other.lanes)]
+        kept = [lane for lane in edge.lanes if lane.type not in LEFT_OUT]
+        before = [lane.allows_cars for lane in kept]
         if before != after:
             yield Difference("lanes", edge.id, str(before), str(after))
             continue
-        for lane, found in zip(edge.lanes, other.lanes, strict=True):
+        for lane, found in zip(kept, other.lanes, strict=True):
             if abs(lane.width_m - found.width_m) > WIDTH_M:
                 yield Difference("widths", lane.id, f"{lane.width_m:.2f} m", f"{found.width_m:.2f} m")
             if posted_mph(edge) is not None and abs(lane.speed_mps - found.speed_mps) > SPEED_MPS:
@@ -114,7 +137,7 @@ def _lanes(both: _Back) -> Iterator[Difference]:
 
 # ------------------------------------------------------------------ connections
 def _connections(both: _Back) -> Iterator[Difference]:
-    before = Counter(_key(link, both.names) for link in both.graph.connections)
+    before = Counter(both.key(link) for link in both.graph.connections if both.is_read(link))
     after = Counter(_key(link, {}) for link in both.found.connections)
     for link in sorted(before - after):
         yield Difference("connections", " ".join(map(str, link)), "connection", "none")
@@ -135,7 +158,7 @@ def _key(link: Connection, names: Mapping[str, str]) -> tuple[str, int, str, int
 def _signals(both: _Back) -> Iterator[Difference]:
     """Connections that a signal controls, among those that both networks have."""
     there = {_key(link, {}) for link in both.found.connections}
-    before = {_key(link, both.names) for link in both.graph.connections if link.light} & there
+    before = {both.key(link) for link in both.graph.connections if link.light and both.is_read(link)} & there
     after = {_key(link, {}) for link in both.found.connections if link.light}
     for link in sorted(before ^ after):
         was, now = ("signal", "none") if link in before else ("none", "signal")
@@ -160,6 +183,6 @@ def signs_of(graph: LaneGraph) -> dict[str, str]:
         lower = any(e.to_node == edge.to_node and e.priority > edge.priority for e in graph.edges.values())
         if states & {"s", "w"}:
             found[edge.id] = "stop"
-        elif node.told.get(CONTROL) == "yield" and "m" in states and lower:
+        elif node.parameters.get(CONTROL) == "yield" and "m" in states and lower:
             found[edge.id] = "yield"
     return found

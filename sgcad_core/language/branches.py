@@ -19,11 +19,6 @@ class Group:
         """Where the group's last branch ends."""
         return self.branches[-1][1]
 
-    @property
-    def negative(self) -> bool:
-        """Whether it is a negative lookahead or lookbehind: what it names must not stand there."""
-        return self.opening in ("(?!", "(?<!")
-
 
 def groups(pattern: str) -> list[Group]:
     """Every group with its branches, the whole pattern first."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, Size, box_gaps, wrap_angle
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.records import ObservedContact, Record, Trajectory
+from sgcad_core.records import Record, Trajectory
 from sgcad_core.specs import ActorKind, Surface
 
 STEP_S = 0.05
@@ -106,8 +106,3 @@ def gaps(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> Floats:
     """Separation of two moving boxes at each sample, metres; negative where they overlap."""
     first, second = (np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in (a, b))
     return box_gaps(first, sizes[a.actor], second, sizes[b.actor])
-
-
-def of_contact(contact: ObservedContact | None) -> int | None:
-    """The sample of an observed contact."""
-    return None if contact is None else round(contact.t_s / STEP_S)

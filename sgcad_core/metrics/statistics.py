@@ -50,6 +50,15 @@ def share_interval(outcomes: ArrayLike, level: float = LEVEL, seed: int = SEED) 
     return mean_interval(x, level, seed)
 
 
+def wilson(hits: int, n: int, level: float = LEVEL) -> tuple[float, float]:
+    """Score interval of hits of n (E. B. Wilson, JASA 22 (1927) 209): no wider than [0, 1], never empty; n > 0."""
+    z = _NORMAL.inv_cdf((1 + level) / 2)
+    share, weight = hits / n, 1 + z * z / n
+    middle = (share + z * z / (2 * n)) / weight
+    half = z / weight * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n))
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
 def mean_interval(values: ArrayLike, level: float = LEVEL, seed: int = SEED) -> Interval | None:
     """Bootstrap interval of a mean over cases; None of no cases."""
     x = np.asarray(values, dtype=float)
@@ -132,12 +141,6 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> float:
     differing = only_first + only_second
     tail = sum(math.comb(differing, k) for k in range(min(only_first, only_second) + 1))
     return min(1.0, 2 * tail / (1 << differing))
-
-
-def sign_flip(first: ArrayLike, second: ArrayLike, seed: int = SEED) -> float:
-    """Paired permutation test on the mean difference: p that the arms' labels are exchangeable within a case."""
-    x, y = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
-    return swap_test((x, np.ones_like(x)), (y, np.ones_like(y)), seed)
 
 
 def swap_test(first: tuple[Floats, Floats], second: tuple[Floats, Floats], seed: int = SEED) -> float:

@@ -10,14 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from sgcad_core.formats.sumo.lane_graph import RoadCounts, road_counts
 from sgcad_core.metrics.road_network import any_error, relative_error
 from sgcad_core.metrics.truth_motion import Path, motion_marks
+from sgcad_core.roads.lane_graph import RoadCounts, road_counts
 
 NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
 """Errors; each also stands as `<name>_any`, 1 where there is any."""
-ROAD_FIELDS = ("lanes_total", "legs")
-"""Shares right, of labels made from coded data."""
 _LEGS = {"t": 3, "four_leg": 4}
 
 Label = Mapping[str, Any]

@@ -16,10 +16,6 @@ import numpy as np
 from sgcad_core.geometry.plane import Box, Size, box_gaps, contact_area, wrap_angle
 from sgcad_core.records import Floats
 
-MOTION_FIELDS = (
-    "vehicle_count", "initial_heading", "maneuver", "relative_heading", "collision_any", "collision_pair",
-    "collision_areas",
-)  # fmt: skip
 COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 TURNS = {"turn_left": 1.0, "turn_right": -1.0, "u_turn": 1.0}
 STILL = ("stopped", "parked")
@@ -44,7 +40,8 @@ class Touch(NamedTuple):
 
 
 def motion_marks(label: Mapping[str, Any], paths: Mapping[str, Path]) -> dict[str, float]:
-    """field -> share right, for the fields of MOTION_FIELDS that the label states."""
+    """field -> share right, for what the label states of these: number of vehicles, first headings and those
+    relative to V1, maneuvers, whether a crash comes about, between whom, on which sides."""
     moving = {actor: path for actor, path in paths.items() if _VEHICLE.match(actor)}
     vehicles = [v for v in label.get("vehicles", ()) if _VEHICLE.match(str(v.get("id", "")))]
     touch = first_touch(moving)

@@ -29,7 +29,7 @@ class Segment(NamedTuple):
     """Where in the sentence it begins."""
 
 
-class Told(NamedTuple):
+class Statement(NamedTuple):
     """A sentence with every vehicle named by its number, and the vehicle it is mainly about."""
 
     text: str
@@ -51,9 +51,9 @@ _DRIVER_OF = rule("clauses.driver_of")
 _PRONOUN = rule("clauses.pronoun")
 
 
-def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
+def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
     """Sentences with vehicles resolved; "the other vehicle" and "this vehicle" follow the subject."""
-    told: list[Told] = []
+    told: list[Statement] = []
     current: str | None = None
     several = True
     for s in sentences:
@@ -63,7 +63,7 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Told, ...]:
         if role == "rest" and who.counted and all(t.role != "impact" for t in told):
             role = "approach"  # one account in order: nobody is at rest for good before the blow
         current = _main_subject(text, current, role, who)
-        told.append(Told(text, role, s.number, current, several))
+        told.append(Statement(text, role, s.number, current, several))
         several = _of_several(text, several)
     return tuple(told)
 
@@ -100,7 +100,7 @@ def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> st
     return first.group() if early or current is None else current
 
 
-def segments(told: Iterable[Told], who: Roster) -> tuple[Segment, ...]:
+def segments(told: Iterable[Statement], who: Roster) -> tuple[Segment, ...]:
     """Every stretch of text with its subjects, in order; text before the first subject is left out."""
     found: list[Segment] = []
     for t in told:
@@ -108,7 +108,7 @@ def segments(told: Iterable[Told], who: Roster) -> tuple[Segment, ...]:
     return tuple(found)
 
 
-def _cut(told: Told, who: Roster) -> list[Segment]:
+def _cut(told: Statement, who: Roster) -> list[Segment]:
     starts = subject_starts(told, who)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
     return [
@@ -118,7 +118,7 @@ def _cut(told: Told, who: Roster) -> list[Segment]:
     ]
 
 
-def subject_starts(told: Told, who: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
+def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
     """(where the mention stands, where its text begins, who) of each subject."""
     text = told.text
     starts: list[tuple[int, int, tuple[str, ...]]] = []
@@ -142,7 +142,7 @@ def _subjects(text: str) -> Iterator[re.Match[str]]:
         yield (_SUBJECT.match(text, named[-1].start()) or m) if again else m
 
 
-def _means_all(told: Told, pronoun: re.Match[str]) -> bool:
+def _means_all(told: Statement, pronoun: re.Match[str]) -> bool:
     return told.several or bool(rule("clauses.both_behind").match(told.text[pronoun.end() :]))
 
 
@@ -157,12 +157,17 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
-    behind = rule("near_events.located").sub("", rule("clauses.located").sub("", behind))
     if _BESIDE.search(before):
         return bool(rule("clauses.relative").match(behind))
     if _DRIVER_OF.search(before):
-        return bool(_VERB.match(behind))
+        return _acts(behind)
     if _PREPOSITION.search(before):
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
-    return bool(_VERB.match(behind))
+    return _acts(behind)
+
+
+def _acts(behind: str) -> bool:
+    """Whether a verb follows a mention, at once or behind words that say where the vehicle is."""
+    located = (rule("clauses.located"), rule("near_events.located"))
+    return bool(_VERB.match(behind)) or any(_VERB.match(place.sub("", behind)) for place in located)

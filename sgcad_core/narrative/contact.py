@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
-from sgcad_core.narrative.clauses import Told, subject_starts
+from sgcad_core.narrative.clauses import Statement, subject_starts
 from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, struck_pair, together, touches
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
@@ -35,7 +35,7 @@ class Blow:
     mutual: bool = False
     """They collided: the text names no striker."""
     noun: bool = False
-    """Told by nouns ("the impact was between ..."), not by a verb of hitting."""
+    """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
 
     @property
     def cue(self) -> Cue:
@@ -43,7 +43,7 @@ class Blow:
         return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
 
 
-def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
+def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[Blow] = []
     retold: list[Blow] = []
@@ -63,7 +63,7 @@ def blows(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
     return (*early, *crash, *late) or _only_named(told, who)
 
 
-def _only_named(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
+def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Contacts of which a report says no more than who collided with whom."""
     named = ((t, touch) for t in told for touch in involved(plain(t, who)))
     found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True)
@@ -71,7 +71,7 @@ def _only_named(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
     return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
 
 
-def _sentence(told: Told, who: Roster) -> list[Blow]:
+def _sentence(told: Statement, who: Roster) -> list[Blow]:
     text = plain(told, who)
     found: list[Blow] = []
     starts = subject_starts(told._replace(text=text), who)
@@ -87,7 +87,7 @@ def _sentence(told: Told, who: Roster) -> list[Blow]:
     return [b for b in found if b.actor in who.ids and b.actor != b.other]
 
 
-def _touch(t: Touch, told: Told) -> Blow:
+def _touch(t: Touch, told: Statement) -> Blow:
     if t.by:
         return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
     return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
@@ -98,7 +98,7 @@ def _maybe(words: str | None) -> Zone | None:
 
 
 def _blow(
-    told: Told, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
+    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
 ) -> Blow | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
@@ -122,7 +122,7 @@ def _blow(
     )
 
 
-def _thing_hit(told: Told, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
+def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
     """ "A tree was struck by the front of V1"."""
     by = says.BY.search(scope)
     if not by:
@@ -139,7 +139,7 @@ def _is_noun(before: str, word: str, behind: str) -> bool:
 
 
 def _subjects(
-    told: Told, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
+    told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
     """The vehicles whose verb this is."""
     caused = says.CAUSED.search(before)
@@ -162,10 +162,12 @@ def _subject_area(before: str, subject: str) -> Zone | None:
     return None
 
 
-def _active(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
     pair = paired_areas(scope)
     scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
+    if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
+        own = None  # "made contact with the left door": whose door it is stands elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
     other, other_area = _object(told, actor, rest, who)
@@ -185,7 +187,7 @@ def _clause(scope: str) -> str:
     return scope[: end.start()] if end else scope
 
 
-def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
+def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
     """What was hit, and where."""
     m = says.ACTIVE_OBJECT.match(scope)
     thing = says.OBJECT.match(scope)
@@ -206,12 +208,12 @@ def _object(told: Told, actor: str, scope: str, who: Roster) -> tuple[str | None
     return None, None
 
 
-def _the_other(told: Told, actor: str, who: Roster) -> str | None:
+def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else the first of the sentence that is not the actor."""
     return who.other(actor) or next((v for v in MENTION.findall(told.text) if v != actor and v in who.ids), None)
 
 
-def _damaged(told: Told, who: Roster) -> Zone | None:
+def _damaged(told: Statement, who: Roster) -> Zone | None:
     """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
     found = says.DAMAGED.match(plain(told, who))
     return area_of(found["area"]) if found else None
@@ -229,7 +231,7 @@ def _area_behind(text: str) -> Zone | None:
     return next(filter(None, areas), None) if says.ON_THE.search(near) else None
 
 
-def _passive(told: Told, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
     by = says.BY.search(scope)
     where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
     area = area or (area_of(where["area"]) if where else None)
@@ -256,7 +258,7 @@ def _by_area(scope: str) -> Zone | None:
     return area_of(m["area"]) if m else None
 
 
-def _mutual(told: Told, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
+def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
     """ "V1 and V2 collided front to front"."""
     against = says.AGAINST.search(scope)
     if against:

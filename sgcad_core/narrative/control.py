@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from sgcad_core.language import Rule, rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_in, axis_of
@@ -42,7 +42,7 @@ _ANYWHERE = ("all_way_stop", "yield")
 """Told of no works zone and no police car."""
 
 
-def control_of(told: Sequence[Told]) -> tuple[Control, Cue | None]:
+def control_of(told: Sequence[Statement]) -> tuple[Control, Cue | None]:
     """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
     said = [t for t in told if t.role not in ("codes", "factors")]
     for story in (True, False):
@@ -52,7 +52,7 @@ def control_of(told: Sequence[Told]) -> tuple[Control, Cue | None]:
     return "none", None
 
 
-def _first_control(said: Sequence[Told]) -> tuple[Control, Cue] | None:
+def _first_control(said: Sequence[Statement]) -> tuple[Control, Cue] | None:
     out = any(_SIGNAL_OUT.search(t.text) for t in said)
     bare = [t._replace(text=_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))) for t in said]
     for control, by in _CONTROLS:
@@ -65,7 +65,7 @@ def _first_control(said: Sequence[Told]) -> tuple[Control, Cue] | None:
     return None
 
 
-def controlled(story: Sequence[Told]) -> bool:
+def controlled(story: Sequence[Statement]) -> bool:
     """Whether a signal or stop sign of a junction stands in the story."""
     for t in story:
         text = _NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))
@@ -83,7 +83,7 @@ _SIDE_ROAD = rule("control.side_road")
 
 
 def signed_legs(
-    told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], four_leg: bool
+    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], four_leg: bool
 ) -> tuple[Compass, ...]:
     """Bearings of the legs under a stop or yield sign: one axis, both its ends where the road crosses."""
     votes: Counter[Compass] = Counter()
@@ -102,7 +102,9 @@ def signed_legs(
     return (axis, turned(axis, 180)) if four_leg else tuple(leg for leg in votes if axis_of(leg) == axis)
 
 
-def _signed(told: Told, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> Iterator[list[Compass]]:
+def _signed(
+    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+) -> Iterator[list[Compass]]:
     text = _NOT_CONTROL.sub(" ", told.text)
     last = 0
     for sign in _SIGN.finditer(text):
@@ -112,7 +114,7 @@ def _signed(told: Told, vehicles: Sequence[VehicleFacts], roads: Sequence[Gather
 
 
 def _legs_of_sign(
-    before: str, behind: str, told: Told, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+    before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> list[Compass]:
     """ "stop sign for northbound traffic", else the vehicle or direction named last before the sign."""
     whom = _FOR.match(behind)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.motion import Deed, Motion
 from sgcad_core.narrative.vehicles import MENTION, Roster
 
 _UNCODED = rule("critical_events.uncoded")
 
 
-def read_code(found: dict[str, Motion], told: Told, who: Roster) -> None:
+def read_code(found: dict[str, Motion], told: Statement, who: Roster) -> None:
     text = told.text.lower()
     if not rule("critical_events.event").search(text):
         return

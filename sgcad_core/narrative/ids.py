@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
-from sgcad_core.evidence import Fact
+from sgcad_core.facts import Fact
 
 T = TypeVar("T")
 _LONGEST_NAME = 60

@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import JUNCTIONS, JunctionKind
+from sgcad_core.kinds import JUNCTIONS, JunctionKind, junction_kind
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
 from sgcad_core.narrative.draft import QUARTER_DEG
@@ -29,7 +29,7 @@ class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
     legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
     the text says by compass where the stem lies. `unsupported`: kinds of places at which the crash happened and which
-    cannot be drawn."""
+    cannot be drawn. `circle_lanes`: of a roundabout, as told."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
@@ -38,6 +38,7 @@ class JunctionFacts:
     stated: bool = False
     stem_stated: bool = False
     unsupported: tuple[str, ...] = ()
+    circle_lanes: int | None = None
     notes: tuple[str, ...] = field(default=())
     where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
@@ -47,20 +48,26 @@ _NUMBERED = rule("common.vehicle_begins")
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
 _NO_JUNCTION = rule("junction.no_junction")
+CIRCLE_LANES = rule("junction.roundabout_lanes")
+_CIRCLE_LANE = rule("junction.roundabout_lane")
 
 
-def junction_of(told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> JunctionFacts:
+def junction_of(
+    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     kind, stated = _kind(story, told, vehicles, roads)
     if kind == "none":
         return JunctionFacts(stated=stated)
     control, control_at = control_of(told)
-    where = _where(kind=_named(story)[1] if kind in ("t", "four_leg") else None, control=control_at)
+    record = junction_kind(kind)
+    where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
-    halted = signed_legs(told, vehicles, roads, kind == "four_leg") if signed else ()
-    if kind == "four_leg":
-        return JunctionFacts(kind, None, control, halted, stated, where=where)
+    halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()
+    if record.crossing:
+        around = _circle_lanes(story) if record.round else None
+        return JunctionFacts(kind, None, control, halted, stated, circle_lanes=around, where=where)
     lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
     said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
     said = None if said and _contradicted(said, vehicles) else said
@@ -75,7 +82,10 @@ def _where(**cues: Cue | None) -> dict[str, Cue]:
 
 # ------------------------------------------------------------------ kind
 def _kind(
-    story: Sequence[Told], told: Sequence[Told], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+    story: Sequence[Statement],
+    told: Sequence[Statement],
+    vehicles: Sequence[VehicleFacts],
+    roads: Sequence[GatheredRoad],
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
@@ -94,7 +104,7 @@ def _kind(
     return "none", False
 
 
-def _named(story: Sequence[Told]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
+def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
     some: Cue | None = None
     for t in story:
@@ -108,12 +118,19 @@ def _named(story: Sequence[Told]) -> tuple[JunctionKind | Literal["some"], Cue |
     return "some" if some else "none", some
 
 
+def _circle_lanes(story: Sequence[Statement]) -> int | None:
+    """How many lanes go around in a roundabout, where the story tells it."""
+    if match := next((m for t in story if (m := CIRCLE_LANES.search(t.text))), None):
+        return 1 if match["one"] else 2
+    return 2 if any(_CIRCLE_LANE.search(t.text) for t in story) else None
+
+
 def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
     """Whether a vehicle comes on a ramp."""
     return any(v.origin == "ramp" for v in vehicles) or any(r.kind == "ramp" and r.vehicles for r in roads)
 
 
-def _merging(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
+def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
     text = " ".join(t.text for t in story)
     return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
@@ -124,7 +141,7 @@ _SIDE_STREET = rule("junction.side_street")
 _ENDS = rule("junction.ends")
 
 
-def _one_sided(story: Sequence[Told], roads: Sequence[GatheredRoad]) -> bool:
+def _one_sided(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
     """Whether a side road is told to lie on one side or to end."""
     return any(_SIDE_ROAD.search(t.text) or (_ENDS.search(t.text) and _JUNCTION.search(t.text)) for t in story)
 
@@ -146,7 +163,7 @@ _BESIDE = (*DRIVES, "ramp", "side_road")
 
 def _stem(
     kind: JunctionKind,
-    story: Sequence[Told],
+    story: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
     roads: Sequence[GatheredRoad],
     halted: Sequence[Compass],
@@ -189,7 +206,7 @@ def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], 
 _TURN_SIDE = rule("junction.turn_side")
 
 
-def _stem_meant(story: Sequence[Told], vehicles: Sequence[VehicleFacts]) -> Compass | None:
+def _stem_meant(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> Compass | None:
     """The side that a vehicle waited, slowed or meant to turn to."""
     for v in sorted(vehicles, key=lambda v: v.target is None):
         for t in story:
@@ -223,7 +240,7 @@ def _contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
 
 
 def _stem_told(
-    story: Sequence[Told], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
+    story: Sequence[Statement], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
 ) -> tuple[Compass, Cue] | None:
     for t in story:
         ends = _ENDS.search(t.text)
@@ -242,7 +259,7 @@ def _stem_told(
 _DRIVE_SIDE = rule("junction.drive_side")
 
 
-def _bearing(word: str, told: Told, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
+def _bearing(word: str, told: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
     """A compass point as it stands; left and right as the sentence's vehicle (or the first) heads."""
     if word.lower() not in ("left", "right"):
         return compass_of(word)

@@ -17,17 +17,17 @@ def lane_of(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> in
     count = way.lanes
     if count == 1:
         return 1
-    told = _told(v, count, way.turns)
+    told = _stated_lane(v, count, way.turns)
     if told is not None:
         return told
     partner = _leader(v, placed, facts)
     if partner is not None and not _waits_to_turn(v):
-        shared = _told(partner, count, way.turns)
+        shared = _stated_lane(partner, count, way.turns)
         return shared if shared is not None else _by_turn(partner, count, way.turns)
     return _by_turn(v, count, way.turns)
 
 
-def _told(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:
+def _stated_lane(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:
     """As told; "the right lane" of who does not turn right is the rightmost through lane, likewise the left one."""
     if v.lane:
         return min(v.lane, count)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import COMPASS, compass_of
 from sgcad_core.narrative.lane_sources import heard
 from sgcad_core.narrative.lanes import LaneFacts, lane_facts
@@ -70,12 +70,12 @@ _VEHICLE = rule("mentions.vehicle")
 _BOTH_VEHICLES = rule("mentions.both_vehicles")
 
 
-def road_mentions(told: Iterable[Told], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
+def road_mentions(told: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
     """Mentions in order of the text. `ids`: all vehicles, for "both vehicles"."""
     return tuple(mention for sentence in told for mention in _sentence(sentence, ids))
 
 
-def _sentence(told: Told, ids: tuple[str, ...]) -> Iterator[RoadMention]:
+def _sentence(told: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
     text = told.text
     spans = list(noun_phrases(text))
     if not spans:
@@ -110,7 +110,7 @@ def _compass(word: str) -> Compass:
     return next(c for c in COMPASS if c == word)
 
 
-def _bare(told: Told, facts: LaneFacts) -> RoadMention:
+def _bare(told: Statement, facts: LaneFacts) -> RoadMention:
     axis = _axis_of_lanes(facts) or axis_in(told.text)
     who = tuple(dict.fromkeys(_VEHICLE.findall(told.text)))[:1]
     return RoadMention(told.text, "road", axis, None, None, True, who, "on" if who else None, facts, told.number)
@@ -121,7 +121,9 @@ def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
     return next(iter(ways)) if len(ways) == 1 else None
 
 
-def _mention(told: Told, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]) -> RoadMention:
+def _mention(
+    told: Statement, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]
+) -> RoadMention:
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Segment, Told
+from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
@@ -30,7 +30,7 @@ _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint"
 
 
 def motions(
-    told: Sequence[Told], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
+    told: Sequence[Statement], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
 ) -> dict[str, Motion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
     found = {v: Motion(ordered=who.counted) for v in who.ids}

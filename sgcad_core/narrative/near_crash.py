@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.clauses import Segment, Told
+from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.contact import Blow, blows
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, is_impact
@@ -58,14 +58,15 @@ class NearFacts:
     """False: two come together, and neither a contact nor how it was avoided is told."""
 
 
-def near_miss(told: Sequence[Told], cut: Sequence[Segment], who: Roster, *, of_study: bool) -> NearMiss | None:
+def near_miss(told: Sequence[Statement], cut: Sequence[Segment], who: Roster, *, of_study: bool) -> NearMiss | None:
     """The near crash of a report that tells no contact; None where it tells none either.
 
     `of_study`: what a study watched is told because two came near each other, whether the text says so or not.
     """
     missed = near_misses(told, who)
     if not missed or not (of_study or not any(rule("near_events.crash").search(t.text) for t in told)):
-        return NearMiss() if of_study and len(who.ids) > 1 else None
+        together = of_study and len(who.ids) > 1 and not any(map(tells_hit, told))
+        return NearMiss() if together else None
     first = missed[0]
     pair = (first.actor, first.other)
     clearance = next(((m, t) for t in told if t.role in _READ and (m := told_clearance_m(t.text))), None)
@@ -75,7 +76,7 @@ def near_miss(told: Sequence[Told], cut: Sequence[Segment], who: Roster, *, of_s
     )  # fmt: skip
 
 
-def near_misses(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
+def near_misses(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Contacts that nearly came about, in the order of the text."""
     found: list[Blow] = []
     for t in told:
@@ -84,7 +85,12 @@ def near_misses(told: Iterable[Told], who: Roster) -> tuple[Blow, ...]:
     return tuple(found)
 
 
-def _missed(told: Told, who: Roster) -> tuple[Blow, ...]:
+def tells_hit(told: Statement) -> bool:
+    """Whether a sentence tells a contact, be it that nobody could read whose."""
+    return is_impact(rule("near_events.no_hit").sub(" ", told.text))
+
+
+def _missed(told: Statement, who: Roster) -> tuple[Blow, ...]:
     text = told.text
     for near in of_role("near_miss"):
         text = near.sub(lambda m, to=near.yields["to"]: m[0] if _could_not(m) else m.expand(to), text)

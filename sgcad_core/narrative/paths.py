@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from sgcad_core.kinds import junction_kind
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
@@ -36,7 +37,7 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
     if junction.kind == "driveway":
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
-    if junction.kind == "four_leg" and (junction.stated or faced):
+    if junction_kind(junction.kind).crossing and (junction.stated or faced):
         legs += _crossing(crash)
     return tuple(dict.fromkeys(legs))
 

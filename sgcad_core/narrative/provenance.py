@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sgcad_core.evidence import Fact, Value
+from sgcad_core.facts import Fact, Value
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import Draft, Settled
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts

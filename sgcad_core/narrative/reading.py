@@ -13,24 +13,27 @@ character offsets in the narrative that was given. Knows no road network and no 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from sgcad_core.evidence import Fact
-from sgcad_core.narrative.clauses import Segment, Told, segments, tell
+from sgcad_core.facts import Fact
+from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.motion_reader import motions
-from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses
+from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses, tells_hit
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
+from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_states
 from sgcad_core.narrative.study import tells_study
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
@@ -48,6 +51,8 @@ class Reading:
     crash: CrashFacts
     """Headings that nobody tells are turned to fit the roads."""
     roads: RoadFacts
+    signals: Mapping[str, SignalState] = field(default_factory=dict)
+    """What the traffic signal showed to a vehicle, by its id, where that is told."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -76,14 +81,15 @@ class Mentions(NamedTuple):
     """Who is in the report, and its sentences with everybody named by number."""
 
     who: Roster
-    told: tuple[Told, ...]
+    statements: tuple[Statement, ...]
 
 
 class Events(NamedTuple):
-    """What the text tells: every vehicle's motion, every contact; light, weather and surface."""
+    """What the text tells: every vehicle's motion, every contact; light, weather and surface; what signals showed."""
 
     draft: Draft
     sky: Conditions
+    signals: Mapping[str, SignalTold]
 
 
 def normalise(narrative: Traced) -> Traced:
@@ -115,37 +121,41 @@ def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
     """Stretches of sentences with their subjects."""
-    return segments(named.told, named.who)
+    return segments(named.statements, named.who)
 
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...], *, of_study: bool = False) -> Events:
     """Motions, contacts (of a near crash those that did not come about), conditions."""
-    who, struck = named.who, blows(named.told, named.who)
-    near = None if struck else near_miss(named.told, cut, who, of_study=of_study)
+    who, struck = named.who, blows(named.statements, named.who)
+    near = None if struck else near_miss(named.statements, cut, who, of_study=of_study)
     hits = near.blows if near else struck
     subject = who.ids[0] if who.ids else None
     first = next((b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids)), None)
-    moved = motions(named.told, before_evasion(cut) if of_study else cut, who, first)
-    draft = Draft(who, moved, hits, near)
-    return Events(draft, conditions(found))
+    moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, first)
+    return Events(Draft(who, moved, hits, near), conditions(found), signal_states(cut))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     settled = settle(seen.draft)
     called = {old: new for old, new in named.who.called.items() if old != new}
-    roads = roads_of(named.told, named.who, crash_of(seen.draft, settled, seen.sky))
+    roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
-    facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
+    lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
+    roles = role_facts(telling, named.statements, roads.crash)
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
+    states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
-    crash = replace(roads.crash, gap=_gap(narrative, found, named.who, roads.crash))
-    return Reading(narrative, found, crash, replace(roads, crash=crash), facts)
+    crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, facts)
 
 
-def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashFacts) -> Gap | None:
+def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
     """What keeps the text from being drawn."""
     gap = foreign(narrative) or several(narrative)
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
+    if crash.near_crash or (tells_study(narrative) and not any(map(tells_hit, named.statements))):
+        return None
     alone = len(crash.vehicles) == 1 and not crash.contacts
-    return untold(narrative, (c.stated for c in crash.contacts)) if who.counted or alone else None
+    return untold(narrative, (c.stated for c in crash.contacts)) if named.who.counted or alone else None

@@ -227,7 +227,9 @@ class _Numbering:
     def _is_nobody(self, phrase: _Phrase) -> bool:
         match = phrase.match
         before = match.string[max(0, match.start() - _NEAR) : match.start()]
-        if match["many"] and (not match["automated"] or rule("references.several").search(before)):
+        behind = rule("references.part").match(match.string, match.end())
+        owner = match["automated"] or (behind and phrase.definite)
+        if match["many"] and (not owner or rule("references.several").search(before)):
             return True
         if match["user"] and match["user"][0].isupper() and not match["det"]:
             return True
@@ -245,7 +247,10 @@ class _Numbering:
         return bool(phrase.match["automated"]) if self.cast.automated else phrase.kind not in ("pedestrian", "animal")
 
     def _known(self, phrase: _Phrase) -> _Actor | None:
+        match = phrase.match
         subject = self.cast.subject()
+        if phrase.match["automated"] and subject and rule("references.aboard").match(match.string, match.end()):
+            return subject
         if phrase.match["automated"] and subject and phrase.order in (None, 1) and (phrase.definite or not subject.at):
             return subject
         if phrase.definite:
@@ -255,10 +260,8 @@ class _Numbering:
     def _written(self, phrase: _Phrase, actor: _Actor, first: bool) -> str:
         match = phrase.match
         owner = "'s" if match["many"] else ""
-        if actor.subject and match["automated"]:
+        if (actor.subject and match["automated"]) or not first:
             return f"V{actor.number}{owner}{phrase.clauses}"
-        if not first:
-            return f"V{actor.number}{phrase.clauses}"
         det, words = match["det"] or "the", match.group()[len(match["det"] or "") :].strip()
         det = {"another": "a", "one": "a", "its": "the"}.get(det.lower(), det)
         return f"{det} {words} (V{actor.number}){phrase.clauses}"

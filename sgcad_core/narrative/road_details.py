@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
 from sgcad_core.narrative.motion import Cue
@@ -43,13 +43,13 @@ _SIDE_WORD = rule("road_details.side_word")
 _WAY = rule("road_details.way")
 
 
-def speed_limits(told: Iterable[Told], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
+def speed_limits(told: Iterable[Statement], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
     """Every posted limit in order, mph (a limit in km/h only is converted to the nearest 5 mph)."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     return tuple(limit for t in story for limit in _limits(t, headings))
 
 
-def _limits(told: Told, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
+def _limits(told: Statement, headings: Mapping[str, Compass]) -> Iterator[SpeedLimit]:
     text = told.text
     start = _LIMIT.search(text)
     if not start:
@@ -89,7 +89,7 @@ _NEARBY = rule("road_details.nearby")
 _BARE_CURVE = rule("road_details.bare_curve")
 
 
-def curves(told: Sequence[Told], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
+def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
     """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
     story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
     found = tuple(c for t in story for c in _curves(t, headings))
@@ -97,7 +97,7 @@ def curves(told: Sequence[Told], headings: Mapping[str, Compass]) -> tuple[Curve
     return found or tuple(Curve("left", None, cue) for cue in bare[:1])
 
 
-def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
+def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:
     for m in _CURVE.finditer(told.text):
         side = next(filter(None, m.groups())).lower()
         if _NEARBY.search(told.text[: m.start()]):
@@ -106,7 +106,7 @@ def _curves(told: Told, headings: Mapping[str, Compass]) -> Iterator[Curve]:
         yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
 
 
-def _driven(told: Told, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:
+def _driven(told: Statement, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:
     """The direction of travel in which the curve has that side."""
     before = [v for v in rule("common.vehicle").findall(told.text[:start]) if v in headings]
     behind = rule("road_details.for_vehicle").match(told.text[end:])

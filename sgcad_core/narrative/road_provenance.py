@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.evidence import Fact
+from sgcad_core.facts import Fact
 from sgcad_core.narrative.compass import COMPASS
 from sgcad_core.narrative.lane_sources import stated
 from sgcad_core.narrative.provenance import Telling

@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.language import rule
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
-from sgcad_core.narrative.junction import JunctionFacts, junction_of
+from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
@@ -23,7 +23,7 @@ from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import Roster
-from sgcad_core.specs import Compass
+from sgcad_core.specs import Beside, Compass
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,11 @@ class RoadFacts:
     notes: tuple[str, ...] = field(default=())
     merge_lane: bool = False
     """Whether a lane for merging (acceleration lane) is told."""
+    beside: tuple[Beside, ...] = ()
+    """What the story tells of the edges of its roads."""
+    crosswalk: bool = False
+    """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
+    urban: bool = False
 
     @property
     def streets(self) -> tuple[RoadFact, ...]:
@@ -69,7 +74,7 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
 
 
-def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions = road_mentions(_telling(told), who.ids)
     crash = _oriented(crash, mentions, told)
@@ -81,10 +86,19 @@ def roads_of(told: tuple[Told, ...], who: Roster, crash: CrashFacts) -> RoadFact
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
-    return RoadFacts(roads, junction, crash, _open_ends(roads, junction, crash), merge_lane)
+    story = [t.text for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
+    walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
+    urban = any(map(_URBAN.search, story))
+    notes = _open_ends(roads, junction, crash)
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban)
 
 
-def _rural(told: tuple[Told, ...]) -> Cue | None:
+def _somebody_walks(crash: CrashFacts) -> bool:
+    return any(other.kind == "pedestrian" for other in crash.others)
+
+
+def _rural(told: tuple[Statement, ...]) -> Cue | None:
     """Where the text says that the crash was in the country."""
     story = (t for t in told if t.role in CRASH_ROLES)
     return next((Cue(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
@@ -104,10 +118,12 @@ def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadF
 
 _MERGE_LANE = rule("roads.merge_lane")
 _RURAL = rule("roads.rural")
+_URBAN = rule("roads.urban")
+_CROSSWALK = rule("roads.crosswalk")
 _PLACE = rule("roads.place")
 
 
-def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Told, ...]) -> CrashFacts:
+def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
     """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
     streets = [m for m in mentions if m.axis and m.kind not in ("driveway", "ramp")]
     joined = [m for m in streets if m.relation == "other"] if any(m.kind == "ramp" for m in mentions) else []
@@ -128,10 +144,15 @@ def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
     return replace(v, heading=heading, exit_heading=turned(v.exit_heading, clockwise_deg) if v.exit_heading else None)
 
 
-def _telling(told: tuple[Told, ...]) -> list[Told]:
+def _telling(told: tuple[Statement, ...]) -> list[Statement]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
-    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [_without_circle(t) for t in told if t.role in CRASH_ROLES or t.role == "other"]
     return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
+
+
+def _without_circle(told: Statement) -> Statement:
+    """The sentence without the lanes of a roundabout, which are those of no road."""
+    return told._replace(text=CIRCLE_LANES.sub("roundabout", told.text))
 
 
 def _road(

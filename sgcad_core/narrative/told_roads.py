@@ -12,10 +12,13 @@ from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
 
+_IN_TOWN = ("bike_lane", "parking", "sidewalk")
+
 
 def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     """Road id -> what is told of it. A limit counts as posted where the report tells it of a road of that axis."""
-    return {road.id: _told(road, _facts_of(road, facts)) for road in spec.roads}
+    in_town = facts.urban or facts.crosswalk or any(what in _IN_TOWN for what in facts.beside)
+    return {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
 
 
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
@@ -27,9 +30,10 @@ def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
     return [r for r in facts.roads if r.kind in kinds and (r.axis is None or r.axis == axis_of(bearing))]  # type: ignore[arg-type]
 
 
-def _told(road: Road, facts: list[RoadFact]) -> ToldRoad:
+def _as_told(road: Road, facts: list[RoadFact], in_town: bool) -> ToldRoad:
     limits = {fact.speed_limit_mph for fact in facts} - {None}
+    town: RoadArea = "town" if in_town and road.kind == "road" else ""
     area: RoadArea = (
-        "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else ""
+        "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else town
     )
     return ToldRoad(posted=road.speed_limit_mph in limits, area=area)

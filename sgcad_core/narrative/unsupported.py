@@ -7,11 +7,11 @@ from collections.abc import Iterable, Sequence
 from sgcad_core.errors import Refused
 from sgcad_core.kinds import Unsupported, unsupported_kind
 from sgcad_core.language import of_role, values
-from sgcad_core.narrative.clauses import Told
+from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.roles import CRASH_ROLES
 
 
-def unsupported_places(told: Iterable[Told]) -> tuple[str, ...]:
+def unsupported_places(told: Iterable[Statement]) -> tuple[str, ...]:
     """Kinds of `kinds.UNSUPPORTED` at which the sentences of the story put the crash or a vehicle of it, in the order
     of the text; none for what is only mentioned."""
     meaning = values("unsupported_place")

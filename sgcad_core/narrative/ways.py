@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from sgcad_core.specs import Road, RoadSpec, Turn
+from sgcad_core.specs import Road, RoadSpec, Turn, centers
 
 
 class Way(NamedTuple):
@@ -41,19 +41,24 @@ def apart(a_rad: float, b_rad: float) -> float:
 
 
 def ways_of(spec: RoadSpec) -> tuple[Way, ...]:
-    """Every direction with at least one lane, in the order of the roads."""
+    """Every direction with at least one lane, in the order of the roads.
+
+    A roundabout is one node, and its pieces are no ways: one drives through it as across a junction.
+    """
+    center = centers(spec)
     at = {node.id: (node.x_m, node.y_m) for node in spec.nodes}
     found: list[Way] = []
     for road in spec.roads:
-        if road.from_node not in at or road.to_node not in at:
+        if road.circle or road.from_node not in at or road.to_node not in at:
             continue
+        ends = center.get(road.from_node, road.from_node), center.get(road.to_node, road.to_node)
         line = [at[road.from_node], *((p.x_m, p.y_m) for p in road.via), at[road.to_node]]
         begin, end = _heading(line[0], line[1]), _heading(line[-2], line[-1])
         if road.lanes_forward:
-            found.append(Way(road, "forward", road.from_node, road.to_node, road.lanes_forward, road.turns_forward,
+            found.append(Way(road, "forward", ends[0], ends[1], road.lanes_forward, road.turns_forward,
                              begin, end))  # fmt: skip
         if road.lanes_backward:
-            found.append(Way(road, "backward", road.to_node, road.from_node, road.lanes_backward, road.turns_backward,
+            found.append(Way(road, "backward", ends[1], ends[0], road.lanes_backward, road.turns_backward,
                              end + math.pi, begin + math.pi))  # fmt: skip
     return tuple(found)
 
@@ -73,5 +78,7 @@ def turn_of(way: Way, onward: Way) -> float:
 
 
 def degree(node: str, spec: RoadSpec) -> int:
-    """How many roads meet at a node."""
-    return sum((r.from_node == node) + (r.to_node == node) for r in spec.roads)
+    """How many roads meet at a node, or at the roundabout that it belongs to."""
+    center = centers(spec)
+    here = {n for n, name in center.items() if name == center.get(node, "")} or {node}
+    return sum((r.from_node in here) + (r.to_node in here) for r in spec.roads if not r.circle)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.clauses import Told, subject_starts
+from sgcad_core.narrative.clauses import Statement, subject_starts
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Area
 
@@ -40,21 +40,22 @@ def area_of(words: str) -> Zone | None:
 
 
 # ------------------------------------------------------------------ one form
-def plain(told: Told, who: Roster) -> str:
+def plain(told: Statement, who: Roster) -> str:
     """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
     text = rule("zones.plural_number").sub(r"V\1's", told.text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
+    text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
     return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)
 
 
-def _of_subject(told: Told) -> str:
+def _of_subject(told: Statement) -> str:
     return rf"\g<area> of {told.subject}" if told.subject else r"\g<0>"
 
 
-def _its(match: re.Match[str], told: Told, text: str, who: Roster) -> str:
+def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
     starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
     owner = starts[-1][0] if starts else told.subject
     return f"the {match['area']} of {owner}" if owner else match.group()

@@ -259,7 +259,10 @@ def stand_offs(role: Role) -> list[Drift]:
     width, right = role.size[1], role.course.right_edge_m
     if role.actor.maneuver == "parked":
         curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
-        lines = ((curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9))
+        lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
+        beside = role.course.beside_m
+        if aside_m := beside.get("parking", beside.get("shoulder")):
+            lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]
         return [Drift(cost, left) for left, cost in lines]
     return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
 

@@ -7,31 +7,39 @@ other actor.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
+from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
+from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 
 _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
 _MPH = 0.44704
 _SMOOTH_MPS = 26.0
+_OVER_M = 1.0
+"""A way that comes nearer to a crosswalk's center line leads over it."""
 
 
 class Passage(NamedTuple):
-    """A node on the way: stations where its area begins and ends, and whether roads really meet there."""
+    """A node on the way: stations where its area begins and ends, and whether roads really meet there.
+
+    `around`: behind it the way goes on around a roundabout.
+    """
 
     node: str
     entry_m: float
     exit_m: float
     is_junction: bool
+    around: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +63,10 @@ class Course:
     roads: tuple[tuple[str, float, float], ...]
     """Road ids with the stations between which they are driven."""
     notes: tuple[str, ...] = ()
+    crosswalks: tuple[float, ...] = ()
+    """Stations at which crosswalks lead over the way."""
+    beside_m: Mapping[str, float] = field(default_factory=dict)
+    """To the middle of what lies beside the road (biking, parking, shoulder, sidewalk), right of the own lane."""
     astray: bool = False
     """Whether the way that was asked for does not exist: another was taken, or one off the road."""
 
@@ -73,6 +85,7 @@ class Course:
         roads = tuple((road, -b, -a) for road, a, b in reversed(self.roads))
         return replace(
             self, path=self.path.reversed(), start_m=-self.end_m, end_m=-self.start_m, passages=passages, turn=None,
+            crosswalks=tuple(-s for s in reversed(self.crosswalks)), beside_m={},
             roads=roads, left_edge_m=self.right_edge_m, right_edge_m=self.left_edge_m,
         )  # fmt: skip
 
@@ -195,15 +208,37 @@ def _measured(
         if not piece.is_crossing:
             roads.append((way.road, float(a), float(b)))
             continue
-        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3))
+        onward = route.ways[piece.way + 1].id if piece.way + 1 < len(route.ways) else ""
+        around = onward in graph.edges and graph.is_around(graph.edges[onward])
+        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around))
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
     opposite, left, right = _room(graph, route.ways[route.start], lane)
     return Course(
         path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
         lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
-        limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, astray=route.astray,
+        limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, crosswalks=_crosswalks(graph, path),
+        beside_m=_beside(graph, route.ways[route.start], right), astray=route.astray,
     )  # fmt: skip
+
+
+def _crosswalks(graph: LaneGraph, path: Path) -> tuple[float, ...]:
+    found = []
+    for crossing in graph.crossings:
+        away = distance_to(crossing.shape, path.points)
+        if away.min() < _OVER_M:
+            found.append(float(path.s_m[int(away.argmin())]))
+    return tuple(sorted(found))
+
+
+def _beside(graph: LaneGraph, way: Way, right_m: float) -> dict[str, float]:
+    """Lanes beside those for cars, metres right of the own lane's center; `right_m`: to the edge of the lanes."""
+    found: dict[str, float] = {}
+    for lane in reversed(graph.edges[way.id].lanes if way.id in graph.edges else ()):
+        if lane.type:
+            found[lane.type] = right_m + lane.width_m / 2
+            right_m += lane.width_m
+    return found
 
 
 def _joined(parts: list[Floats]) -> Floats:

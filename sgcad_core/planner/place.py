@@ -54,6 +54,8 @@ def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
         return (own[0] + own[1]) / 2
     if waits:
         return node.entry_m - STOP_LINE_M - length_m / 2
+    if actor.maneuver in _MID_BLOCK and node.around:
+        return (node.exit_m + next((p.entry_m for p in ahead if p.entry_m > node.exit_m), node.exit_m)) / 2
     if actor.maneuver in _MID_BLOCK and node.entry_m - _BEFORE_JUNCTION_M > course.start_m:
         return node.entry_m - _BEFORE_JUNCTION_M
     return (node.entry_m + node.exit_m) / 2
@@ -96,8 +98,15 @@ def _pull(actor: Actor) -> float:
 
 def _queue(a: Actor, b: Actor, course_a: Course, course_b: Course) -> bool:
     """Whether both drive the same way and neither turns: they meet before the junction."""
-    same = a.road == b.road and a.direction == b.direction
+    same = (
+        a.road == b.road and a.direction == b.direction and not (_goes_around(a, course_a) or _goes_around(b, course_b))
+    )
     return same and course_a.turn is None and course_b.turn is None
+
+
+def _goes_around(actor: Actor, course: Course) -> bool:
+    """Whether an actor does in a roundabout what others do between junctions."""
+    return actor.maneuver in _MID_BLOCK and any(p.around for p in course.passages)
 
 
 def _before_junction(station_m: float, course: Course) -> float:

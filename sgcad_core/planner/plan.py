@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.course import Course, find_course
@@ -25,6 +24,7 @@ from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
+from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, NearCrash, size_m
 
 _LATER_S = 1.2

@@ -10,19 +10,24 @@ import heapq
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import count
+from itertools import count, pairwise
 from typing import NamedTuple
 
+import numpy as np
+
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
+from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.planner.path import end_heading
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 
 AHEAD_M = 120.0
 BEHIND_M = 160.0
 _FITTING = math.radians(25)
 _INTO = 0.9
+OPENING_M = 60.0
+"""A leg opens into a roundabout at an angle; so far from it it runs as it is told."""
 TURN_RAD = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2, "u_turn": math.pi}
 
 
@@ -64,6 +69,7 @@ def find_route(graph: LaneGraph, actor: Actor) -> Route:
     start = start_way(graph, actor)
     notes = [f"{actor.id} drives {start.road} against its only direction"] if start.wrong_way else []
     ways, turn, made_up = _onward(graph, start, actor, notes)
+    ways, turn = _through_circles(graph, ways, turn)
     before = _upstream(graph, start)
     shifted = None if turn is None else turn + len(before)
     reached = actor.exit_road in (None, actor.road, *(way.road for way in ways))
@@ -89,14 +95,48 @@ def check_road(graph: LaneGraph, road: str, where: str) -> None:
 
 
 def turn_angle(first: Way, second: Way) -> float:
-    """Heading change from one way to the next, radians, left positive."""
+    """Heading change from one way to the next, radians, left positive; across a roundabout that of its legs."""
     a, b = first.lanes[0].shape, second.lanes[0].shape
+    if first.to_node != second.from_node:
+        a, b = (resample(line, np.minimum([0.0, OPENING_M], arc_lengths(line)[-1])) for line in (a[::-1], b))
+        a = a[::-1]
     return math.remainder(end_heading(b, at_end=False) - end_heading(a, at_end=True), 2 * math.pi)
 
 
 def has_connection(graph: LaneGraph, first: Way, second: Way) -> bool:
-    """Whether the network lets traffic from one way to the other."""
+    """Whether the network lets traffic from one way to the other, where need be around a roundabout."""
+    if first.to_node != second.from_node:
+        return _circle(graph, first.to_node, second.from_node) != []
     return any(c.to_edge == second.id for c in graph.leaving(first.id))
+
+
+# ------------------------------------------------------------------ roundabouts
+def _circle(graph: LaneGraph, start: str, end: str) -> list[Way]:
+    """The pieces of a roundabout from node to node, as one drives; all of it where both are one. Empty: none."""
+    around = {e.from_node: e for e in graph.edges.values() if graph.is_around(e)}
+    found: list[Way] = []
+    node = start
+    while node in around and len(found) < len(around):
+        edge = around[node]
+        found.append(_way(graph, edge.id))
+        node = edge.to_node
+        if node == end:
+            return found
+    return []
+
+
+def _through_circles(graph: LaneGraph, ways: list[Way], turn: int | None) -> tuple[list[Way], int | None]:
+    """The same chain with the pieces of the roundabouts on its way; who turns off in one turns at no one place."""
+    if not graph.circles:
+        return ways, turn
+    found, place = ways[:1], turn
+    for i, (one, two) in enumerate(pairwise(ways)):
+        back = one.road == two.road and one.to_node in graph.center_of
+        pieces = _circle(graph, one.to_node, two.from_node) if back or one.to_node != two.from_node else []
+        found += [*pieces, two]
+        if turn is not None and place is not None and i <= turn and pieces:
+            place = None if i == turn else place + len(pieces)
+    return found, place
 
 
 # ------------------------------------------------------------------ ways
@@ -115,8 +155,15 @@ def _driven(edge: Edge) -> tuple[Lane, ...]:
 
 
 def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:
-    """Ways out of the node at the end of a way, in the network's order; its own reverse only if `back`."""
+    """Ways out of the node at the end of a way, in the network's order; its own reverse only if `back`.
+
+    Out of a roundabout one gets by all its legs.
+    """
+    center = graph.center_of.get(way.to_node)
     ids = [e.id for e in graph.edges.values() if e.from_node == way.to_node]
+    if center is not None and graph.center_of.get(way.from_node) != center:
+        legs = (e for e in graph.edges.values() if graph.center_of.get(e.from_node) == center)
+        ids = [e.id for e in legs if not graph.is_around(e)]
     return [_way(graph, e) for e in ids if back or road_of(e)[0] != way.road]
 
 

@@ -31,6 +31,8 @@ def crosswalk_station(driver: Actor, course: Course, length_m: float, walker: Ac
     span = course.on_road(walker.road)
     if span is None or driver.maneuver in ("stopped", "parked"):
         return wish
+    if course.crosswalks:
+        return min(course.crosswalks, key=lambda s: abs(s - wish))
     nodes = [p for p in course.passages if p.is_junction]
     if not nodes:
         return min(max(wish, span[0]), span[1])
@@ -57,6 +59,6 @@ def _line(course: Course, station_m: float, turn_rad: float) -> tuple[Course, Pl
 
 
 def at_the_edge(course: Course) -> Course:
-    """The course of a cyclist, who keeps to the right edge of the road."""
-    aside = max(course.right_edge_m - _EDGE_M, 0.0)
+    """The course of a cyclist, who keeps to the bicycle lane, else to the right edge of the road."""
+    aside = course.beside_m.get("biking", max(course.right_edge_m - _EDGE_M, 0.0))
     return replace(course, path=course.path.moved(-aside * np.ones(len(course.path.s_m))))

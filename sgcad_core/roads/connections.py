@@ -8,13 +8,13 @@ and the lines of its roads; no XML.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from sgcad_core.formats.sumo.lane_graph import edge_id
-from sgcad_core.roads.road_geometry import Direction, Roadway, has_center_lane, lanes
-from sgcad_core.specs import RoadSpec, Turn
+from sgcad_core.roads.lane_graph import edge_id, road_of
+from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes
+from sgcad_core.specs import Beside, RoadSpec, Turn
 
 Movement = Literal["left", "through", "right"]
 THROUGH_DEG = 50.0
@@ -49,6 +49,8 @@ class _Way:
     heading_rad: float
     turns: tuple[Turn, ...] = ()
     center_lane: bool = False
+    circle: bool = False
+    beside: tuple[Beside, ...] = ()
 
     @property
     def edge(self) -> str:
@@ -67,8 +69,30 @@ def links(spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[Link, ...]:
     for node in spec.nodes:
         arriving, leaving = _ways_at(node.id, spec, roadways)
         for approach in arriving:
-            found += _approach_links(approach, arriving, leaving)
-    return tuple(dict.fromkeys(found))
+            found += [*_approach_links(approach, arriving, leaving), *_going_on(approach, leaving)]
+    return tuple(_outer_lanes_counted(dict.fromkeys(found), spec))
+
+
+def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link]:
+    """Links with SUMO's indices: those of what lies beside the lanes come first."""
+    more = {road.id: len(beside(road)) for road in spec.roads}
+    for link in found:
+        start, end = (more[road_of(edge)[0]] for edge in (link.from_edge, link.to_edge))
+        yield link._replace(from_lane=link.from_lane + start, to_lane=link.to_lane + end)
+
+
+def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
+    """What lies beside the lanes goes on into its like: bicycle lanes straight across, all of it where two roads meet.
+
+    Counted from -1, next to the lanes, outwards.
+    """
+    exits = [_Exit(w, _angle_deg(approach, w)) for w in leaving if w.road != approach.road]
+    straight = min(exits, key=lambda e: abs(e.angle_deg), default=None)
+    if straight is None or abs(straight.angle_deg) > THROUGH_DEG or approach.circle:
+        return []
+    own, other = approach.beside, straight.way.beside
+    alike = [what for what in own if what in other and (what == "bike_lane" or len(exits) == 1)]
+    return [Link(approach.edge, -1 - own.index(w), straight.way.edge, -1 - other.index(w)) for w in alike]
 
 
 def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[list[_Way], list[_Way]]:
@@ -81,11 +105,11 @@ def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tupl
             outward: Direction = "backward" if inward == "forward" else "forward"
             h_in, h_out = (ends[1], ends[1] + math.pi) if inward == "forward" else (ends[0] + math.pi, ends[0])
             turns = road.turns_forward if inward == "forward" else road.turns_backward
-            center = has_center_lane(road)
+            center, more = has_center_lane(road), (road.circle, beside(road))
             if count := lanes(road, inward):
-                arriving.append(_Way(road.id, inward, road.kind, count, h_in, turns, center))
+                arriving.append(_Way(road.id, inward, road.kind, count, h_in, turns, center, *more))
             if count := lanes(road, outward):
-                leaving.append(_Way(road.id, outward, road.kind, count, h_out, (), center))
+                leaving.append(_Way(road.id, outward, road.kind, count, h_out, (), center, *more))
     return arriving, leaving
 
 
@@ -103,6 +127,8 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
     exits = _drivable([_Exit(w, _angle_deg(approach, w)) for w in leaving if w.road != approach.road], approach)
     if not exits:
         return []
+    if approach.circle:
+        return _around(approach, exits)
     by_movement = _movements(exits)
     uses = _lane_uses(approach, by_movement)
     found = []
@@ -111,6 +137,17 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
         for target in targets:
             found += _join(approach, serving, movement, target, arriving)
     return found + _center_lane_link(approach, by_movement)
+
+
+def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:
+    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit opens behind it."""
+    found = []
+    for way, _ in exits:
+        shared = min(approach.lanes, way.lanes)
+        pairs = [(lane, lane) for lane in range(shared)]
+        pairs += [(shared - 1, lane) for lane in range(shared, way.lanes if not way.circle else 0)]
+        found += [Link(approach.edge, lane, way.edge, goal) for lane, goal in pairs]
+    return found
 
 
 def _drivable(exits: list[_Exit], approach: _Way) -> list[_Exit]:

@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.specs import Node, Road, RoadSpec
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
+from sgcad_core.specs import Node, Road, RoadSpec, centers
 
 Direction = Literal["forward", "backward"]
 _COMPASS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
@@ -24,6 +24,7 @@ _STRAIGHT_RAD = math.radians(40)
 _BACK_RAD = math.radians(150)
 _TURNS = ("left", "straight", "right", "sharply back")
 _CURVED_RAD = math.radians(15)
+ROUNDABOUT = "roundabout, who enters yields"
 
 
 @dataclass
@@ -47,13 +48,14 @@ def describe_network(source: RoadSpec | LaneGraph) -> str:
     ways = _ways_of_spec(source)
     for way in ways:
         _add_exits(way, ways)
-    return _text(ways, {r.id: _features(r) for r in source.roads}, {n.id: _control(n) for n in source.nodes})
+    controls = {n.id: _control(n) for n in source.nodes} | dict.fromkeys(centers(source).values(), ROUNDABOUT)
+    return _text(ways, {r.id: _features(r) for r in source.roads}, controls)
 
 
 def road_ids(source: RoadSpec | LaneGraph) -> list[str]:
     """Ids that a behavior may name, in order."""
     if isinstance(source, RoadSpec):
-        return [road.id for road in source.roads]
+        return [road.id for road in source.roads if not road.circle]
     return list(dict.fromkeys(road_of(edge)[0] for edge in source.edges))
 
 
@@ -65,7 +67,11 @@ def compass(heading_rad: float) -> str:
 # ------------------------------------------------------------------ reading
 def _ways_of_spec(spec: RoadSpec) -> list[_Way]:
     nodes = {node.id: node for node in spec.nodes}
-    return [way for road in spec.roads for way in _both(road, _line(road, nodes))]
+    center = centers(spec)
+    found = [way for road in spec.roads if not road.circle for way in _both(road, _line(road, nodes))]
+    for way in found:
+        way.from_node, way.to_node = (center.get(node, node) for node in (way.from_node, way.to_node))
+    return found
 
 
 def _line(road: Road, nodes: Mapping[str, Node]) -> Floats:

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import get_args
 
-from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M
+from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
+from sgcad_core.roads.road_geometry import BESIDE_M, LANE_M, MEDIAN_M
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -33,6 +34,8 @@ RAMP_ANGLE = math.radians(28)
 """Between a ramp and the road it joins; sharper, and the lanes overlap over half of the ramp."""
 CLEAR_OF_JUNCTION_M = 20.0
 """From the edge of a crossing road to a joint: room for the junction's corners and a car before it."""
+BEYOND_RIM_M = 45.0
+"""From the rim of a roundabout to a joint: behind the splitter island."""
 JOINT_GAP_M = 16.0
 """Two joints on one leg stand at least this far apart, else they are one joint."""
 
@@ -41,15 +44,16 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     """The network of a layout: hub at (0, 0), north up, legs of `leg_m` metres; ids as `RoadLayout` promises.
 
     Two legs make a plain road, whose hub is no junction. Of several legs with one bearing the first stands.
-    A leg with an access far out is longer.
+    A leg with an access far out is longer. A roundabout has a circle of nodes in place of the hub.
     """
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
-    hub = Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))
-    nodes, roads = [hub], []
+    mouths = [Mouth(leg.bearing, _angle(leg.bearing), _width(leg), "sidewalk" in leg.beside) for leg in legs]
+    rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
+    nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
         length_m = min(leg_m, ARC_M) if leg.kind == "ramp" else leg_m  # a long ramp would meet the road that it joins
-        drawn = _LegDrawing(leg, _path(leg, legs), _clearance(leg, legs), _crowd(layout, leg), length_m)
+        drawn = _LegDrawing(leg, _path(leg, legs, rim), _clearance(leg, legs, rim), _crowd(layout, leg), length_m, rim)
         leg_nodes, leg_roads = drawn.draw(accesses)
         nodes += leg_nodes
         roads += leg_roads
@@ -76,18 +80,21 @@ class _Path:
 
     angle_rad: float
     turn_per_m: float
+    straight_m: float = 0.0
+    """It begins so far from the hub, and bends from there on."""
 
     def heading(self, s_m: float) -> float:
         """Outward direction, radians counter-clockwise from east."""
-        return self.angle_rad + self.turn_per_m * min(s_m, ARC_M)
+        return self.angle_rad + self.turn_per_m * min(max(s_m - self.straight_m, 0.0), ARC_M)
 
     def at(self, s_m: float) -> tuple[float, float]:
         """The point s_m metres from the hub along the line."""
         k = self.turn_per_m
         if not k:
             return s_m * math.cos(self.angle_rad), s_m * math.sin(self.angle_rad)
-        a, b, beyond = self.angle_rad, self.heading(s_m), max(s_m - ARC_M, 0.0)
+        a, b, beyond = self.angle_rad, self.heading(s_m), max(s_m - self.straight_m - ARC_M, 0.0)
         x, y = (math.sin(b) - math.sin(a)) / k, (math.cos(a) - math.cos(b)) / k
+        x, y = x + self.straight_m * math.cos(a), y + self.straight_m * math.sin(a)
         return x + beyond * math.cos(b), y + beyond * math.sin(b)
 
     def between(self, outer_m: float, inner_m: float) -> tuple[Point, ...]:
@@ -111,9 +118,14 @@ def _angle(bearing: Compass) -> float:
     return math.radians(90 - 45 * COMPASS.index(bearing))
 
 
-def _path(leg: Leg, legs: Sequence[Leg]) -> _Path:
-    """Driving inwards, a left curve turns counter-clockwise; read outwards it is the mirror image."""
+def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
+    """Driving inwards, a left curve turns counter-clockwise; read outwards it is the mirror image.
+
+    Into a circle every leg runs straight at the middle, a ramp as well.
+    """
     bend = {"none": 0.0, "left": -1 / RADIUS_M, "right": 1 / RADIUS_M}[leg.curve]
+    if rim:
+        return _Path(_angle(leg.bearing), bend, rim.radius_m)
     return _Path(_ramp_angle(leg, legs) if leg.kind == "ramp" else _angle(leg.bearing), bend)
 
 
@@ -127,14 +139,17 @@ def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
     return own
 
 
-def _clearance(leg: Leg, legs: Sequence[Leg]) -> float:
-    """The least distance of a joint from the hub: clear of the widest other road, metres."""
+def _clearance(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> float:
+    """The least distance of a joint from the hub: clear of the widest other road or of the circle, metres."""
+    if rim:
+        return rim.radius_m + BEYOND_RIM_M
     return CLEAR_OF_JUNCTION_M + max((_width(o) for o in legs if o is not leg), default=2 * LANE_M) / 2
 
 
 def _width(leg: Leg) -> float:
     """Lanes and median of a leg, metres."""
-    return (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
+    lanes = (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
+    return lanes + sum(BESIDE_M[what] for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
 
 
 def _crowd(layout: RoadLayout, leg: Leg) -> float:
@@ -153,16 +168,19 @@ class _LegDrawing:
     clearance_m: float
     crowd: float
     length_m: float
+    rim: Rim | None = None
 
     def draw(self, accesses: Sequence[Access]) -> tuple[list[Node], list[Road]]:
         """Nodes but the hub, and roads from the hub outwards."""
         joints = self._joints(accesses)
         length = max(self.length_m, joints[-1][0] + BEYOND_JOINT_M if joints else 0.0)
         name = self.leg.bearing
-        places = [("hub", 0.0)]
+        places = [(node_of(name), self.rim.radius_m)] if self.rim else [("hub", 0.0)]
         places += [(f"{name}_joint{_number(i)}", s) for i, (s, _) in enumerate(joints)]
         places += [(f"{name}_end", length)]
         nodes = [_node(n, self.path.at(s), self._joint_control(n, joints)) for n, s in places[1:]]
+        if self.rim:
+            nodes.insert(0, _node(*places[0][:1], self.path.at(places[0][1]), "yield"))
         roads = [self._piece(i, places) for i in range(len(places) - 1)]
         for (joint, s), (_, joined) in zip(places[1:-1], joints, strict=True):
             for access, side in joined:
@@ -198,13 +216,14 @@ class _LegDrawing:
         (inner, s_in), (outer, s_out) = places[index], places[index + 1]
         leg, last = self.leg, len(places) - 2
         suffix = "" if index == 0 else OUTER if index == last else f"_mid{_number(index - 1)}"
+        walked = leg.crosswalk and index == 0
         return Road(
             id=f"{leg.bearing}{suffix}", from_node=outer, to_node=inner,
             lanes_forward=leg.lanes_in, lanes_backward=leg.lanes_out,
             turns_forward=leg.turns_in if index == 0 else (), center_turn_lane=leg.center_turn_lane,
             median=leg.median, via=self.path.between(s_out, s_in), kind=leg.kind,
-            minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road"),
-            speed_limit_mph=leg.speed_limit_mph,
+            minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road" or self.rim is not None),
+            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, crosswalks=(inner,) if walked else (),
         )  # fmt: skip
 
     def _access(self, access: Access, side: str, joint: str, s_m: float, so_far: list[Road]) -> tuple[Node, Road]:

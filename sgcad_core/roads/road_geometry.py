@@ -8,22 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
-from sgcad_core.specs import Node, Road, RoadSpec
+from sgcad_core.roads.circle import SPLITTER_M
+from sgcad_core.specs import Beside, Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]
 
 LANE_M = 3.6
 """U.S. through lane (12 ft)."""
 DRIVEWAY_LANE_M = 3.0
+CIRCLE_LANE_M = 4.9
+"""Of a roundabout (16 ft, NCHRP 672)."""
 MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier": 1.8}
 """Gap between the directions. Grass medians are often wider; beyond this a junction no longer looks like one."""
+BESIDE_M: Mapping[Beside, float] = {"bike_lane": 1.5, "parking": 2.4, "shoulder": 2.4, "sidewalk": 1.8}
+"""Usual widths (AASHTO 2018: 5, 8, 8 and 6 ft)."""
+ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
+ISLAND_M = 40.0
+"""Length of a roundabout's splitter island."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,8 @@ class Roadway:
     end_gaps_m: tuple[float, float]
     has_twin: bool = False
     """One-way, and another one-way road joins the same nodes the other way."""
+    opens: tuple[bool, bool] = (False, False)
+    """Whether its (from, to) end opens into a roundabout: both directions part there as its splitter island widens."""
 
     def left_border(self, direction: Direction) -> Floats:
         """(n, 2) left border of a direction's lanes (the two-way left-turn lane included), in travel direction."""
@@ -60,16 +70,18 @@ class Roadway:
     def _gaps(self, line: Floats, direction: Direction) -> Floats:
         """The gap at every point: the road's own, tapered smoothly to that of its ends."""
         along = arc_lengths(line)
-        start, end = self.end_gaps_m if direction == "forward" else self.end_gaps_m[::-1]
-        taper = max(min(TAPER_M, along[-1] / 2), 1e-9)
-        from_start, from_end = _ease(along / taper), _ease((along[-1] - along) / taper)
+        (start, end), (at_start, at_end) = self.end_gaps_m, self.opens
+        if direction == "backward":
+            start, end, at_start, at_end = end, start, at_end, at_start
+        tapers = [max(min(ISLAND_M if opens else TAPER_M, along[-1] / 2), 1e-9) for opens in (at_start, at_end)]
+        from_start, from_end = _ease(along / tapers[0], at_start), _ease((along[-1] - along) / tapers[1], at_end)
         return start + (self.gap_m - start) * from_start + (end - self.gap_m) * (1 - from_end)
 
 
-def _ease(share: Floats) -> Floats:
-    """0 to 1 with level ends."""
+def _ease(share: Floats, opens: bool = False) -> Floats:
+    """0 to 1 with level ends; where a road opens into a roundabout, level at 1 only: it enters at an angle."""
     x = np.clip(share, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x), dtype=float)
+    return np.asarray(x * (2 - x) if opens else x * x * (3 - 2 * x), dtype=float)
 
 
 def lanes(road: Road, direction: Direction) -> int:
@@ -89,7 +101,14 @@ def has_center_lane(road: Road) -> bool:
 
 def lane_width_m(road: Road) -> float:
     """Lane width in metres."""
+    if road.circle:
+        return CIRCLE_LANE_M
     return DRIVEWAY_LANE_M if road.kind == "driveway" else LANE_M
+
+
+def beside(road: Road) -> tuple[Beside, ...]:
+    """What lies beside the lanes of either direction, from the lanes outwards, each once."""
+    return tuple(what for what in ORDER if what in road.beside)
 
 
 def roadways(spec: RoadSpec) -> dict[str, Roadway]:
@@ -103,8 +122,15 @@ def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequen
     inner = [(p.x_m, p.y_m) for p in road.via]
     ends = nodes[road.from_node], nodes[road.to_node]
     points = np.array([(ends[0].x_m, ends[0].y_m), *inner, (ends[1].x_m, ends[1].y_m)], dtype=float)
-    gaps = _end_gap(road, meeting[road.from_node]), _end_gap(road, meeting[road.to_node])
-    return Roadway(road, smooth(points), median_gap_m(road), gaps, _has_twin(road, meeting[road.from_node]))
+    there = meeting[road.from_node], meeting[road.to_node]
+    opens = _opens(road, there[0]), _opens(road, there[1])
+    gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
+    return Roadway(road, smooth(points), median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+
+
+def _opens(road: Road, meeting: Sequence[Road]) -> bool:
+    """Whether a two-way road opens into a circle at a node."""
+    return two_way(road) and not road.circle and any(other.circle for other in meeting)
 
 
 def _has_twin(road: Road, meeting: Sequence[Road]) -> bool:
@@ -132,6 +158,8 @@ def _roads_at(spec: RoadSpec) -> dict[str, list[Road]]:
 
 def _end_gap(road: Road, meeting: Sequence[Road]) -> float:
     """At a node of two roads both have the narrower gap, so that lanes meet; elsewhere the road keeps its own."""
+    if _opens(road, meeting):
+        return max(SPLITTER_M, median_gap_m(road))
     gaps = [median_gap_m(r) for r in meeting]
     return min(gaps) if len(meeting) == 2 else median_gap_m(road)
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from sgcad_core.findings import Finder
 from sgcad_core.records import Finding
 from sgcad_core.specs import Road, RoadSpec
 
 SOURCE = "road_spec"
+_finding = Finder(SOURCE)
 
 
 def spec_findings(spec: RoadSpec) -> list[Finding]:
@@ -28,12 +30,16 @@ def _road_faults(spec: RoadSpec, index: int, road: Road) -> Iterator[Finding]:
     known = sorted({node.id for node in spec.nodes})
     for end in ("from_node", "to_node"):
         if (node := getattr(road, end)) not in known:
-            yield _finding(f"roads[{index}].{end}", "no such node", node, f"use one of {', '.join(known)}, or add it")
+            yield _finding("no such node", f"roads[{index}].{end}", node, f"use one of {', '.join(known)}, or add it")
     if road.from_node == road.to_node:
         remedy = "let it end at another node; cut a loop into two roads"
-        yield _finding(f"roads[{index}]", "the road ends where it begins", road.from_node, remedy)
+        yield _finding("the road ends where it begins", f"roads[{index}]", road.from_node, remedy)
+    for node in road.crosswalks:
+        if node not in (road.from_node, road.to_node):
+            remedy = f"use {road.from_node} or {road.to_node}"
+            yield _finding("the road does not end there", f"roads[{index}].crosswalks", node, remedy)
     if not road.lanes_forward and not road.lanes_backward:
-        yield _finding(f"roads[{index}]", "the road has no lanes", "0 and 0", "give one direction a lane")
+        yield _finding("the road has no lanes", f"roads[{index}]", "0 and 0", "give one direction a lane")
 
 
 def turn_findings(spec: RoadSpec) -> list[Finding]:
@@ -45,9 +51,5 @@ def turn_findings(spec: RoadSpec) -> list[Finding]:
             if turns and len(turns) != lanes:
                 what = f"turns_{way} does not have one entry for each of lanes_{way}"
                 remedy = "count the lanes again: turn lanes are lanes; make both agree or leave the turns empty"
-                found.append(_finding(f"roads[{i}].turns_{way}", what, f"{len(turns)} turns, {lanes} lanes", remedy))
+                found.append(_finding(what, f"roads[{i}].turns_{way}", f"{len(turns)} turns, {lanes} lanes", remedy))
     return found
-
-
-def _finding(where: str, what: str, value: str, remedy: str) -> Finding:
-    return Finding(source=SOURCE, what=what, where=where, value=value, remedy=remedy)

@@ -75,12 +75,6 @@ def test_the_same_seed_gives_the_same_day():
     assert simulate(stations, times, 5).through == simulate(stations, times, 5).through
 
 
-def test_the_busiest_part_gives_way_first():
-    stations = [Station("cores", 8, 2.0), Station("server", 1, 0.3), Station("storage", 4, 0.1)]
-    outcome = simulate(stations, arrivals(2.5 * DAY_S, 3000, random.Random(1)))
-    assert outcome.first_to_give_way().station.name == "server"
-
-
 def test_a_day_with_hours_has_its_number_of_reports_and_its_peak():
     times = [t for t in arrivals(10_000, 12_000, random.Random(2), working_hours) if t < DAY_S]
     assert len(times) == pytest.approx(10_000, rel=0.05)

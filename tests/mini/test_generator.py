@@ -271,7 +271,7 @@ def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:
             continue
         ways = [(leg["lanes_in"], leg["lanes_out"], leg["median"]) for leg in report.road["legs"]]
         axes = {f"lanes.{leg.bearing % 4}" for leg in report.crash.legs}
-        if axes & report.told:  # a road that was one-way from the first
+        if axes & report.stated:  # a road that was one-way from the first
             continue
         found += 1
         assert sorted(bool(into) for into, _, _ in ways) == [False, True]
@@ -298,7 +298,7 @@ def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
     plain = {False: 0, True: 0}
     for report in (text_report(s, length=0.1) for s in range(300)):
         silent = [leg for leg in report.crash.legs if leg.kind == "road"]
-        silent = [leg for leg in silent if not {f"lanes.{leg.bearing % 4}"} & (report.told | report.doubtful)]
+        silent = [leg for leg in silent if not {f"lanes.{leg.bearing % 4}"} & (report.stated | report.doubtful)]
         for leg in silent:
             plain[max(leg.lanes_in, leg.lanes_out) == 1] += 1
     assert 0.55 < plain[True] / sum(plain.values()) < 0.9
@@ -309,8 +309,8 @@ def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> No
     for report in (text_report(s, length=0.1) for s in range(2000)):
         answers = report.behavior["actors"] if report.behavior else ()
         for actor, answer in zip(report.crash.actors, answers, strict=False):
-            if actor.meant and f"man.{actor.id}" in report.told and f"heading.{actor.id}" in report.told:
-                said = f"exit.{actor.id}" in report.told
+            if actor.meant and f"man.{actor.id}" in report.stated and f"heading.{actor.id}" in report.stated:
+                said = f"exit.{actor.id}" in report.stated
                 assert (answer["exit_road"] is not None) == said
                 found[said] += 1
     assert min(found.values()) > 2
@@ -326,7 +326,7 @@ def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over(monkeypatc
             ways = {leg.bearing for leg in plain.legs}
             assert len(ways) == 2
             assert all(way in ways for a in report.crash.actors for way in (a.leg, a.out) if way is not None)
-            if not {"layout", "legs"} & report.told and "intersection" not in report.narrative:
+            if not {"layout", "legs"} & report.stated and "intersection" not in report.narrative:
                 assert len(report.road["legs"]) > 2
                 found += 1
         return found
@@ -360,7 +360,7 @@ def test_drawings_of_junctions_rarely_show_driveways_that_no_text_tells_of() -> 
     assert 0 < sum(near) < 0.05 * len(near)
     assert sum(along) > 0.08 * len(along)
     for report in (make_report(s, length=1.0, modes={"both": 1.0}) for s in range(300)):
-        if report.crash.layout in ("t", "four") and "access" in report.told:
+        if report.crash.layout in ("t", "four") and "access" in report.stated:
             assert report.crash.accesses
 
 
@@ -376,7 +376,7 @@ def test_who_turns_has_often_stopped_or_slowed_before() -> None:
         writer.write()
         waited[writer.waited] += 1
         turner = crash.actors[writer.who[0]].id
-        assert not writer.waited or f"man.{turner}" in writer.told
+        assert not writer.waited or f"man.{turner}" in writer.stated
     assert 0.4 < waited[True] / sum(waited.values()) < 0.65
 
 
@@ -391,7 +391,7 @@ def test_driveways_are_spoken_of_where_there_is_one() -> None:
         if turning is None or report.behavior is None:
             continue
         assert report.crash.layout == "driveway"
-        assert "layout" in report.told
+        assert "layout" in report.stated
         alone += "driveway" not in report.narrative.split(".")[0]
     assert alone > 10
 
@@ -402,7 +402,7 @@ def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
         report = text_report(seed, length=0.0)
         for leg in report.crash.legs if report.behavior and "refuse" not in report.road else ():
             axis = leg.bearing % 4
-            if leg.kind == "road" and f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told:
+            if leg.kind == "road" and f"ways.{axis}" in report.stated and f"lanes.{axis}" not in report.stated:
                 lanes += [max(leg.lanes_in, leg.lanes_out)] * (not leg.two_way)
     assert len(lanes) > 40
     assert 0.7 < lanes.count(1) / len(lanes) < 0.97
@@ -429,7 +429,7 @@ def test_what_no_words_can_tell_is_not_told() -> None:
         for i, actor in enumerate(report.crash.actors if report.behavior else ()):
             if actor.maneuver == "backing":
                 backing += 1
-                assert f"exit.{actor.id}" not in report.told
+                assert f"exit.{actor.id}" not in report.stated
                 assert report.behavior["actors"][i]["exit_road"] is None
             if report.crash.config == "parked" and actor.maneuver == "departing_road_right":
                 says = [text for text, facts in sentences(report) if f"man.{actor.id}" in facts]

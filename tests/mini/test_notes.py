@@ -120,7 +120,7 @@ def test_most_told_contacts_are_noted_with_both_sides(held_out: bool) -> None:
     for seed in range(300):
         report = text_report(seed, held_out, length=0.0)
         rear_end = report.crash.contacts[0].struck_area == "back"  # often said in words that name no side
-        if "areas.0" in report.told and not rear_end:
+        if "areas.0" in report.stated and not rear_end:
             told += 1
             both += touching(report, 0) <= {name for _, some in report.notes for name in some}
     assert both > 0.7 * told > 70

@@ -13,7 +13,7 @@ from mini.generator.crash import sample_crash
 from mini.generator.settled import AXIS, FLOW, FROM_LEFT, ROAD, STEM, VAGUE, unsettled
 from mini.generator.targets import GUESS, LIKELY, RARE, SURE
 from mini.generator.world import Actor, Crash, Leg
-from mini.tags import TEXT, told
+from mini.tags import TEXT, stated_tags
 from tests.mini.reports import text_report
 
 LANES = {"lanes.0", "lanes.2"}
@@ -78,7 +78,7 @@ def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() 
     for report in reports:
         for index, leg in enumerate(report.crash.legs):
             axis = leg.bearing % 4
-            if f"ways.{axis}" in report.told and f"lanes.{axis}" not in report.told | report.doubtful:
+            if f"ways.{axis}" in report.stated and f"lanes.{axis}" not in report.stated | report.doubtful:
                 found = [report.weight(("legs", index, key)) for key in ("lanes_in", "lanes_out")]
                 if leg.two_way:
                     assert found == [GUESS, GUESS]
@@ -172,7 +172,7 @@ def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> No
                 found += 1
                 assert report.road["legs"][index]["speed_limit_mph"] == leg.limit
                 assert weight == GUESS
-            elif limit in report.told:
+            elif limit in report.stated:
                 assert weight == (RARE if leg.limit else SURE)
             if "control" in report.doubtful:
                 assert report.road["legs"][index]["control"] == leg.control
@@ -210,7 +210,7 @@ def test_what_is_told_in_part_alone_weighs_as_a_guess_and_tags_nothing(fact: str
                 TEXT[f"axis{leg.bearing % 4}.median={leg.median}"],
             }
             for facts in telling:
-                assert not asked & set(told(report.crash, frozenset({key, f"{VAGUE}.{key}"}) & facts))
+                assert not asked & set(stated_tags(report.crash, frozenset({key, f"{VAGUE}.{key}"}) & facts))
     assert seen > 10
 
 
@@ -227,10 +227,10 @@ def test_of_whom_no_maneuver_is_told_the_exit_is_a_guess_and_straight_ahead_wher
     for seed in range(600):
         report = text_report(seed, length=0.0)
         for i, actor in enumerate(report.crash.actors if report.behavior else ()):
-            if not actor.vehicle or f"man.{actor.id}" in report.told or actor.maneuver == "straight":
+            if not actor.vehicle or f"man.{actor.id}" in report.stated or actor.maneuver == "straight":
                 continue
             assert report.weight(("actors", i, "exit_road")) == GUESS
-            if f"heading.{actor.id}" in report.told and actor.out == (actor.leg + 4) % 8 and not actor.meant:
+            if f"heading.{actor.id}" in report.stated and actor.out == (actor.leg + 4) % 8 and not actor.meant:
                 ahead += report.behavior["actors"][i]["exit_road"] is not None
                 gone += report.behavior["actors"][i]["exit_road"] is None
     assert ahead > 10
@@ -242,7 +242,7 @@ def test_the_lane_of_one_parked_or_of_no_known_heading_is_not_taken_from_the_roa
     for seed in range(3000):
         report = text_report(seed, length=0.0)
         for actor, have in zip(report.crash.actors, (report.behavior or {}).get("actors", ()), strict=False):
-            told = {f"lane.{actor.id}", f"heading.{actor.id}"} & (report.told | report.doubtful)
+            told = {f"lane.{actor.id}", f"heading.{actor.id}"} & (report.stated | report.doubtful)
             if f"lane.{actor.id}" not in told and (actor.maneuver == "parked" or not told):
                 seen += 1
                 assert have["lane"] is None
@@ -254,10 +254,10 @@ def test_where_one_that_stands_goes_is_a_guess_until_it_is_told() -> None:
     for seed in range(2500):
         report = text_report(seed, length=0.0)
         for index, actor in enumerate(report.crash.actors):
-            if not actor.meant or f"man.{actor.id}" not in report.told:
+            if not actor.meant or f"man.{actor.id}" not in report.stated:
                 continue
             weight = report.weight(("actors", index, "exit_road"))
-            if f"exit.{actor.id}" in report.told:
+            if f"exit.{actor.id}" in report.stated:
                 told += weight != GUESS
             else:
                 guesses += 1
@@ -275,7 +275,7 @@ def test_a_list_of_turn_lanes_weighs_as_a_whole() -> None:
             assert len(weights) == 1
             turns = f"turns.{leg.bearing % 4}"
             named += weights == {GUESS}
-            told += weights == {SURE} and turns in report.told and bool(leg.turns_in)
+            told += weights == {SURE} and turns in report.stated and bool(leg.turns_in)
             assert turns not in report.doubtful or weights == {GUESS}
     assert named > 20 < told
 

@@ -15,7 +15,7 @@ from mini import picture, tags
 from mini.batch import Pass, Taggers
 from mini.feed import labeled, moment
 from mini.generator.crash import sample_crash
-from mini.generator.grammar import HINT, MARK, Told, unmark
+from mini.generator.grammar import HINT, MARK, StatedFacts, unmark
 from mini.generator.report import make_report
 from mini.generator.targets import THIRD_LEG
 from mini.model import Forward
@@ -51,20 +51,20 @@ def test_no_mark_is_left_and_every_sentence_ends_in_the_text(seed: int, held_out
 def test_what_a_report_tells_is_what_its_sentences_tell(seed: int) -> None:
     report = make_report(seed, modes={"text": 1.0})
     facts = {fact for _, some in report.sentences for fact in some if not fact.startswith(HINT)}
-    assert (report.told | report.doubtful) - {"legs"} == facts
-    assert not report.told & report.doubtful
-    said = {NAMES[i] for _, facts in report.sentences for i in tags.told(report.crash, facts)}
+    assert (report.stated | report.doubtful) - {"legs"} == facts
+    assert not report.stated & report.doubtful
+    said = {NAMES[i] for _, facts in report.sentences for i in tags.stated_tags(report.crash, facts)}
     for actor in report.crash.actors:
-        if f"heading.{actor.id}" in report.told and actor.id in tags.IDS:
+        if f"heading.{actor.id}" in report.stated and actor.id in tags.IDS:
             assert f"{actor.id}.heading={actor.heading}" in said
-    if "areas.0" in report.told:
+    if "areas.0" in report.stated:
         assert f"contact0.struck_area={report.crash.contacts[0].struck_area}" in said
-    for key in {"light", "weather", "surface"} & report.told:
+    for key in {"light", "weather", "surface"} & report.stated:
         assert f"{key}={getattr(report.crash, key)}" in said
 
 
 def test_told_hands_out_repeated_facts_too() -> None:
-    told = Told()
+    told = StatedFacts()
     told |= {"light"}
     assert told.take() == {"light"}
     told.add("light")
@@ -146,7 +146,7 @@ def test_a_batch_carries_the_tags_of_its_rows(coder: Coder) -> None:
     reports = [make_report(seed, length=0.2, modes={mode: 1.0}) for seed, mode in enumerate(("text", "both", "image"))]
     rows = [training_row(coder, r, *labeled(r)) for r in reports]
     batch = collate(rows, coder)
-    assert len(batch.ends) == len(batch.told) == sum(len(r.sentences) for r in reports)
+    assert len(batch.ends) == len(batch.sentence_tags) == sum(len(r.sentences) for r in reports)
     assert len(batch.drawn) == len(batch.patch_index)
     at = [i * batch.ids.shape[1] + place for i, row in enumerate(rows) for place, _ in row.text_tags]
     assert batch.ends.tolist() == at
@@ -203,9 +203,9 @@ def test_one_way_without_a_count_tells_the_direction_that_nobody_drives(coder: C
     found = 0
     for seed in range(500):
         report = text_report(seed)
-        bare = [leg for leg in report.crash.legs if not leg.two_way and f"ways.{leg.bearing % 4}" in report.told]
-        bare = [leg for leg in bare if f"lanes.{leg.bearing % 4}" not in report.told | report.doubtful]
-        said = {NAMES[i] for _, facts in report.sentences for i in tags.told(report.crash, facts)}
+        bare = [leg for leg in report.crash.legs if not leg.two_way and f"ways.{leg.bearing % 4}" in report.stated]
+        bare = [leg for leg in bare if f"lanes.{leg.bearing % 4}" not in report.stated | report.doubtful]
+        said = {NAMES[i] for _, facts in report.sentences for i in tags.stated_tags(report.crash, facts)}
         if bare:
             mute = [(end, {fact for fact in facts if not fact.startswith("ways")}) for end, facts in report.sentences]
             without = replace(report, sentences=mute)
@@ -224,7 +224,7 @@ def test_places_of_three_legs_are_read_where_the_third_is_used(coder: Coder) -> 
     for seed in range(300):
         report = text_report(seed)
         legs = report.crash.legs
-        if report.crash.layout not in ("driveway", "t") or "legs" not in report.told:
+        if report.crash.layout not in ("driveway", "t") or "legs" not in report.stated:
             continue
         stem = next(leg.bearing for leg in legs if not report.crash.is_main(leg.bearing))
         row = training_row(coder, report, None)
@@ -242,8 +242,8 @@ def test_a_turn_leads_to_a_leg_once_the_heading_is_known() -> None:
     mover = next(actor for actor in crash.actors if actor.maneuver == "turn_left")
     turn, heading = {f"man.{mover.id}"}, {f"heading.{mover.id}"}
     legs = {tags.TEXT[f"leg={mover.leg}"], tags.TEXT[f"leg={mover.out}"]}
-    assert legs.isdisjoint(tags.told(crash, turn))
-    assert legs <= set(tags.told(crash, turn, heading)) & set(tags.told(crash, heading, turn))
+    assert legs.isdisjoint(tags.stated_tags(crash, turn))
+    assert legs <= set(tags.stated_tags(crash, turn, heading)) & set(tags.stated_tags(crash, heading, turn))
 
 
 def test_every_fact_of_an_answer_has_a_name() -> None:
@@ -297,7 +297,7 @@ def test_the_side_that_hit_a_pedestrian_is_asked_where_it_is_named(coder: Coder)
     seen = 0
     for seed in range(1500):
         report = text_report(seed, length=0.0)
-        if "side.0" not in report.told or report.behavior is None:
+        if "side.0" not in report.stated or report.behavior is None:
             continue
         seen += 1
         contact, row = report.crash.contacts[0], training_row(coder, report, None)

@@ -31,12 +31,12 @@ def test_literals_and_records_are_the_same() -> None:
     ],
 )
 def test_the_schemas_that_the_weights_were_trained_on_stand(spec: type[specs.Spec], digest: str) -> None:
-    schema = json.dumps(spec.model_json_schema())
+    schema = json.dumps(specs.trained_schema(spec))
     assert hashlib.sha256(schema.encode()).hexdigest()[:16] == digest, "weights must be trained anew"
 
 
 def test_made_reports_have_the_layouts_of_the_records_with_as_many_legs() -> None:
-    legs = {record.layout: record.legs for record in kinds.JUNCTIONS}
+    legs = {record.layout: record.legs for record in kinds.JUNCTIONS if record.layout}
     seen = set()
     for seed in range(600):
         crash = sample_crash(Random(seed))
@@ -56,7 +56,7 @@ def test_every_word_for_a_place_that_cannot_be_drawn_means_a_record_and_every_re
 
 
 def test_a_kind_that_there_is_not_is_an_error() -> None:
-    with pytest.raises(KeyError, match="roundabout"):
-        kinds.junction_kind("roundabout")  # type: ignore[arg-type]
+    with pytest.raises(KeyError, match="cloverleaf"):
+        kinds.junction_kind("cloverleaf")  # type: ignore[arg-type]
     with pytest.raises(KeyError, match="t"):
         kinds.unsupported_kind("t")

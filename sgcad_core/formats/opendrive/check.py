@@ -16,6 +16,7 @@ from itertools import pairwise
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
+from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.check_control import control_findings
 from sgcad_core.formats.opendrive.geometry import (
     Pose,
@@ -28,6 +29,8 @@ from sgcad_core.formats.opendrive.geometry import (
 from sgcad_core.formats.opendrive.lanes import border_t, contact_pose, lane_offset, lane_widths
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors
 from sgcad_core.records import Finding
+
+_finding = Finder("opendrive")
 
 GAP_M = 0.01
 LENGTH_M = 0.001
@@ -55,10 +58,6 @@ def _schema() -> etree.XMLSchema:
         message = "the OpenDRIVE schema comes with scenariogeneration: `pip install scenariogeneration`"
         raise MissingTool(message) from fault
     return etree.XMLSchema(etree.parse(str(file), etree.XMLParser(no_network=True)))
-
-
-def _finding(what: str, where: str, value: str, remedy: str) -> Finding:
-    return Finding(source="opendrive", what=what, where=where, value=value, remedy=remedy)
 
 
 def _doubles(root: Element) -> Iterator[Finding]:

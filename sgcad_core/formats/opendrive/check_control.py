@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.controls import SIGNS, is_head
 from sgcad_core.formats.opendrive.furniture import STOP_LINE
 from sgcad_core.formats.opendrive.geometry import number
 from sgcad_core.formats.xml import Element
 from sgcad_core.records import Finding
+
+_finding = Finder("opendrive")
 
 BESIDE_M = 1e-6
 _DRIVEN = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "restricted", "stop")
@@ -30,10 +33,6 @@ def control_findings(root: Element) -> list[Finding]:
         *_stop_lines(signals, objects),
         *_controllers(root, [s for _, s in signals]),
     ]
-
-
-def _finding(what: str, where: str, value: object, remedy: str) -> Finding:
-    return Finding(source="opendrive", what=what, where=where, value=str(value), remedy=remedy)
 
 
 def _names(signals: Sequence[tuple[Element, Element]]) -> Iterator[Finding]:

@@ -13,8 +13,8 @@ import numpy as np
 
 from sgcad_core.formats.opendrive.geometry import Pose, cubic_lengths, hermite, wrap
 from sgcad_core.formats.opendrive.streets import Street, Strip
-from sgcad_core.formats.sumo.lane_graph import Connection
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.roads.lane_graph import Connection
 
 STRAIGHT_M = 5e-4
 STRAIGHT_RAD = 1e-5

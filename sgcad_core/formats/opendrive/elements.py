@@ -11,11 +11,11 @@ from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.marks import LINE_M, NONE, Mark, center_mark, outer_mark
 from sgcad_core.formats.opendrive.reference import Piece
 from sgcad_core.formats.opendrive.signals import posted_mph
-from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.streets import BESIDE_TYPES, Street, Strip
 from sgcad_core.formats.opendrive.widths import Width
-from sgcad_core.formats.sumo.lane_graph import Edge
-from sgcad_core.formats.sumo.told import LIMIT, MEDIAN, USUAL
+from sgcad_core.formats.sumo.parameters import LIMIT, MEDIAN, USUAL
 from sgcad_core.formats.xml import Element
+from sgcad_core.roads.lane_graph import Edge
 
 LANE_CODE = "sumoLane"
 """`<userData>` of a lane: the SUMO lane that it is."""
@@ -87,10 +87,11 @@ def _lane(side: Element, street: Street, strip: Strip, edge: Edge | None) -> Non
         _width(lane, width)
     _mark(lane, outer_mark(street, strip))
     if strip.lane is not None and edge is not None:
-        _speed(lane, edge, strip.lane.speed_mps)
+        if strip.type not in BESIDE_TYPES:
+            _speed(lane, edge, strip.lane.speed_mps)
         add(lane, "userData", code=LANE_CODE, value=strip.lane.id)
-    elif strip.type == "median" and MEDIAN in street.forward.told:
-        add(lane, "userData", code=MEDIAN, value=street.forward.told[MEDIAN])
+    elif strip.type == "median" and MEDIAN in street.forward.parameters:
+        add(lane, "userData", code=MEDIAN, value=street.forward.parameters[MEDIAN])
 
 
 def _width(lane: Element, width: Width) -> None:
@@ -108,7 +109,7 @@ def _speed(lane: Element, edge: Edge, speed_mps: float) -> None:
     """A posted limit as posted, a map's speed as it stands; an assumed one is no limit and stays out."""
     if (limit := posted_mph(edge)) is not None:
         add(lane, "speed", sOffset="0", max=f"{limit:g}", unit="mph")
-    elif edge.told.get(LIMIT) != USUAL:
+    elif edge.parameters.get(LIMIT) != USUAL:
         add(lane, "speed", sOffset="0", max=f"{speed_mps:.6g}", unit="m/s")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+from sgcad_core.formats.opendrive.crosswalks import Crosswalk
 from sgcad_core.formats.opendrive.elements import add, number
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.opendrive.streets import Street
@@ -13,9 +14,11 @@ from sgcad_core.formats.xml import Element
 STOP_LINE = "stopLine"
 
 
-def add_objects(road: Element, street: Street, stop_lines: Sequence[StopLine]) -> None:
-    """Stop lines; no <objects> where there are none."""
-    if not stop_lines:
+def add_objects(
+    road: Element, street: Street, stop_lines: Sequence[StopLine], crosswalks: Sequence[Crosswalk] = ()
+) -> None:
+    """Stop lines and crosswalks; no <objects> where there are none."""
+    if not stop_lines and not crosswalks:
         return
     objects = add(road, "objects")
     for line in stop_lines:
@@ -26,6 +29,22 @@ def add_objects(road: Element, street: Street, stop_lines: Sequence[StopLine]) -
         for name, value in (("length", STOP_LINE_M), ("width", line.width_m), ("height", 0.0)):
             made.set(name, number(value))
         _validity(made, line.lanes)
+
+    for walk in crosswalks:
+        _add_crosswalk(objects, walk)
+
+
+def _add_crosswalk(objects: Element, walk: Crosswalk) -> None:
+    """A crosswalk where the street ends, its corners relative to there: it lies beyond, in the junction."""
+    made = add(objects, "object", id=walk.id, type="crosswalk", subtype="zebra", name="crosswalk", dynamic="no")
+    made.set("orientation", "none")
+    _place(made, walk.s_m, 0.0, 0.0)
+    (low_u, low_v), (high_u, high_v) = walk.corners.min(axis=0), walk.corners.max(axis=0)
+    for name, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
+        made.set(name, number(value))
+    outline = add(add(made, "outlines"), "outline", id="0", closed="true", outer="true")
+    for i, (u, v) in enumerate(walk.corners):
+        add(outline, "cornerLocal", id=str(i), u=number(u), v=number(v), z="0", height="0")
 
 
 def add_signals(road: Element, signals: Sequence[Signal]) -> None:

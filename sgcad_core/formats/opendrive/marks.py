@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from sgcad_core.formats.opendrive.streets import Street, Strip
-from sgcad_core.formats.sumo.told import CENTER_LINE, KIND, MEDIAN
+from sgcad_core.formats.sumo.parameters import CENTER_LINE, KIND, MEDIAN
 
 LINE_M = 0.12
 """Width of one normal line (4 to 6 in)."""
@@ -46,22 +46,24 @@ def center_mark(street: Street) -> Mark:
         return NONE
     if any(s.type == "bidirectional" for s in street.right):
         return INTO_CENTER_LANE
-    return TOLD.get(street.forward.told.get(CENTER_LINE, ""), DOUBLE)
+    return TOLD.get(street.forward.parameters.get(CENTER_LINE, ""), DOUBLE)
 
 
 def outer_mark(street: Street, strip: Strip) -> Mark:
     """The marking along a lane's outer border."""
-    if _unmarked(street) or strip.type in ("shoulder", "sidewalk", "curb", "border"):
+    if _unmarked(street) or strip.type in ("shoulder", "sidewalk", "curb", "border", "parking"):
         return NONE
     if strip.type == "median":
-        return DOUBLE if street.forward.told.get(MEDIAN) == "painted" else LEFT_EDGE
+        return DOUBLE if street.forward.parameters.get(MEDIAN) == "painted" else LEFT_EDGE
     if strip.type == "bidirectional":
         return OUT_OF_CENTER_LANE
     side = street.strips("right" if strip.id < 0 else "left")
     outside = next((s for s in side if abs(s.id) == abs(strip.id) + 1), None)
+    if strip.type == "biking" and (outside is None or outside.type == "curb"):
+        return NONE
     return LANE if outside is not None and outside.type == "driving" else EDGE
 
 
 def _unmarked(street: Street) -> bool:
     """Driveways carry no paint."""
-    return street.forward.told.get(KIND) == "driveway"
+    return street.forward.parameters.get(KIND) == "driveway"

@@ -14,9 +14,9 @@ from itertools import count
 from typing import NamedTuple
 
 from sgcad_core.formats.opendrive.streets import Side, Street, Strip, streets
-from sgcad_core.formats.sumo.lane_graph import Connection, Edge, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.formats.sumo.told import CONTROL, LIMIT, POSTED
+from sgcad_core.formats.sumo.parameters import CONTROL, LIMIT, POSTED
+from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
 
 BESIDE_M = 1.0
 """From the edge of the pavement to a sign or a signal's pole."""
@@ -134,7 +134,8 @@ def control_of(graph: LaneGraph, roads: Sequence[Street]) -> Control:
 def _approaches(graph: LaneGraph, roads: Sequence[Street]) -> Iterator[_Approach]:
     for street in roads:
         for edge in street.edges:
-            if links := graph.leaving(edge.id):
+            driven = {lane.index for lane in edge.lanes if not lane.type}
+            if links := tuple(link for link in graph.leaving(edge.id) if link.from_lane in driven):
                 yield _Approach(edge, street, links)
 
 
@@ -147,7 +148,7 @@ def _signs(approach: _Approach, graph: LaneGraph, ids: Iterator[str]) -> list[Si
         return [sign, replace(_plaque(sign, next(ids)), main=sign.id)]
     if "s" in states:
         return [_beside(approach, next(ids), STOP, "stop sign")]
-    if node.told.get(CONTROL) == "yield" and "m" in states and _minor(approach.edge, graph):
+    if node.parameters.get(CONTROL) == "yield" and "m" in states and _minor(approach.edge, graph):
         return [_beside(approach, next(ids), YIELD, "yield sign")]
     return []
 
@@ -195,7 +196,7 @@ def _limits(street: Street, ids: Iterator[str]) -> Iterator[Signal]:
 
 def posted_mph(edge: Edge) -> float | None:
     """The speed limit that the report tells of a road, mph; None where it tells none."""
-    told = edge.told.get(LIMIT, "")
+    told = edge.parameters.get(LIMIT, "")
     return float(told.removeprefix(POSTED)) if told.startswith(POSTED) else None
 
 

@@ -8,7 +8,7 @@ edge's. Metres; knows no XML.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -17,8 +17,8 @@ import numpy as np
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.reference import Piece, length_of, pieces, pose_at
 from sgcad_core.formats.opendrive.widths import Width, clean, fitted, offsets_at, offsets_or_end, stations_of
-from sgcad_core.formats.sumo.lane_graph import Edge, Lane, LaneGraph, road_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, resample
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, road_of
 
 Side = Literal["left", "right"]
 SAME_M = 0.005
@@ -27,6 +27,10 @@ WIDEST_M = 40.0
 OVERLAP_M = 0.05
 """Directions farther apart than the one, or overlapping by more than the other, are roads of their own."""
 LEAST_LENGTH_M = 0.05
+BESIDE_TYPES = ("biking", "parking", "shoulder", "sidewalk")
+"""Lanes that are not for cars, by the type that the .net.xml names; OpenDRIVE calls them the same."""
+CURB_M = 0.15
+"""The outermost part of a sidewalk towards the lanes, as wide as a curb (6 in)."""
 BESIDE_SHARE = 0.3
 """Two directions that do not lie beside each other over more of the road are roads of their own."""
 
@@ -141,15 +145,6 @@ def _alone(edge: Edge, graph: LaneGraph) -> bool:
 
 
 # ------------------------------------------------------------------ one road
-@dataclass
-class _Draft:
-    """What a road is made from: the borders of both directions along the forward direction."""
-
-    forward: Edge
-    backward: Edge | None
-    ahead: Floats
-    back: Floats | None = None
-    trims: tuple[float, float] = field(default=(0.0, 0.0))
 
 
 def _street(name: str, forward: Edge, backward: Edge | None, trims: Mapping[tuple[str, bool], float]) -> Street | None:
@@ -247,12 +242,19 @@ def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, c
         widths = [(Width(0.0, gap),), *((Width(0.0, lane.width_m),) for lane in lanes)]
     wide = max(w.a for w in widths[0]) > SAME_M / 2
     rows: list[tuple[str, Lane | None, tuple[Width, ...]]] = [("median", None, widths[0])] if wide else []
-    rows += [(_lane_type(lane, edge, center_lane), lane, w) for lane, w in zip(lanes, widths[1:], strict=True)]
+    for lane, wide_m in zip(lanes, widths[1:], strict=True):
+        kind = _lane_type(lane, edge, center_lane)
+        if kind == "sidewalk":
+            rows.append(("curb", None, (Width(0.0, CURB_M),)))
+            wide_m = tuple(replace(w, a=w.a - CURB_M) for w in wide_m)
+        rows.append((kind, lane, wide_m))
     return tuple(Strip(sign * i, kind, w, lane) for i, (kind, lane, w) in enumerate(rows, 1))
 
 
 def _lane_type(lane: Lane, edge: Edge, two_way: bool) -> str:
     """A two-way left-turn lane is the innermost one, closed to through traffic (`plain_xml`)."""
+    if lane.type in BESIDE_TYPES:
+        return lane.type
     if two_way and not lane.allows_cars and lane is edge.lanes[-1]:
         return "bidirectional"
     return "driving" if lane.allows_cars else "restricted"

@@ -12,6 +12,7 @@ from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.connecting import Connector, way
+from sgcad_core.formats.opendrive.crosswalks import crosswalks_of
 from sgcad_core.formats.opendrive.elements import (
     add,
     add_connector_lanes,
@@ -23,11 +24,11 @@ from sgcad_core.formats.opendrive.elements import (
 from sgcad_core.formats.opendrive.furniture import add_objects, add_signals
 from sgcad_core.formats.opendrive.signals import control_of, posted_mph
 from sgcad_core.formats.opendrive.streets import Street, streets
-from sgcad_core.formats.sumo.lane_graph import Connection, LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.formats.sumo.told import AREA, KIND
+from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 TOUCHING_M = 0.05
 TRIM_M = 0.1
@@ -69,6 +70,7 @@ class _Document:
         crossed = dict.fromkeys(graph.edges[c.from_edge].to_node for c in links)
         self.junctions = {node: str(i) for i, node in enumerate(crossed, 1)}
         self.control = control_of(graph, roads)
+        self.crosswalks = crosswalks_of(graph, roads, first_id=len(self.control.stop_lines) + 1)
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -93,6 +95,11 @@ class _Document:
                 add(made, "control", signalId=signal, type="0")
         for node, name in self.junctions.items():
             self._junction(root, node, name)
+        for i, circle in enumerate(self.graph.circles, 1):
+            group = add(root, "junctionGroup", id=str(i), name=min(circle), type="roundabout")
+            for node, name in self.junctions.items():
+                if node in circle:
+                    add(group, "junctionReference", junction=name)
         return root
 
     def _header(self, root: Element) -> None:
@@ -116,11 +123,12 @@ class _Document:
         self._type(road, street)
         add_pieces(add(road, "planView"), street.line)
         add_street_lanes(add(road, "lanes"), street)
-        add_objects(road, street, [line for line in self.control.stop_lines if line.road == street.id])
+        lines = [line for line in self.control.stop_lines if line.road == street.id]
+        add_objects(road, street, lines, [walk for walk in self.crosswalks if walk.road == street.id])
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:
-        told = street.forward.told
+        told = street.forward.parameters
         kind = ROAD_TYPES.get(told.get(AREA, ""), ROAD_TYPES.get(told.get(KIND, ""), "unknown"))
         made = add(road, "type", s="0", type=kind)
         if (limit := posted_mph(street.forward)) is not None:

@@ -16,6 +16,7 @@ import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput, MissingTool
+from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
 from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.player import play
@@ -23,6 +24,8 @@ from sgcad_core.formats.openscenario.read import SOURCE, Node, read_root
 from sgcad_core.formats.xml import parse_xml, schema_errors
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding
+
+_finding = Finder(SOURCE)
 
 MARGIN_M = 150.0
 """Farther than this outside the network's bounding box nothing can have to do with the crash."""
@@ -221,7 +224,3 @@ def _local(node: Node) -> bool:
 def _place(node: Node) -> str:
     name = node.element.get("name")
     return f"<{node.tag}{f' name={name!r}' if name else ''}> in line {node.element.sourceline}"
-
-
-def _finding(what: str, where: str = "", value: str = "", remedy: str = "") -> Finding:
-    return Finding(source=SOURCE, what=what, where=where, value=value, remedy=remedy)

@@ -33,13 +33,13 @@ def position(node: Node) -> Where:
     """Compile a <Position> (or an element that holds one position). Raises Unsupported for one that it lacks."""
     where, compiled = node.only(), POSITIONS.compile(node.only())
 
-    def told(scene: Scene) -> Spot:
+    def located(scene: Scene) -> Spot:
         try:
             return compiled(scene)
         except ValueError as fault:
             raise where.fault(str(fault)) from fault
 
-    return told
+    return located
 
 
 def on_road(node: Node, scene: Scene, road: str, s_m: float) -> float:

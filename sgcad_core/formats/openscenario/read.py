@@ -66,7 +66,7 @@ class Node:
         return Node(element, self.scope, self.book)
 
     # -------------------------------------------------------------- faults
-    def _finding(self, what: str, value: str, remedy: str, severity: Severity = "repair") -> Finding:
+    def _found(self, what: str, value: str, remedy: str, severity: Severity = "repair") -> Finding:
         name = self.element.get("name")
         file = f" of {self.book.file}" if self.book.file else ""
         where = f"<{self.tag}{f' name={name[:60]!r}' if name else ''}> in line {self.element.sourceline}{file}"
@@ -80,17 +80,17 @@ class Node:
 
     def fault(self, what: str, value: str = "", remedy: str = "") -> InvalidOutput:
         """An error to raise, naming this element, its name attribute, its line and its file."""
-        finding = self._finding(what, value, remedy)
+        finding = self._found(what, value, remedy)
         return InvalidOutput(finding.line(), [finding])
 
     def unsupported(self, what: str = "", remedy: str = "use timed world polylines") -> Unsupported:
         """The error for what the player does not do."""
-        finding = self._finding(what or "the player does not support this element", "", remedy)
+        finding = self._found(what or "the player does not support this element", "", remedy)
         return Unsupported(finding.line(), [finding], self.tag)
 
     def note(self, what: str, value: str = "", remedy: str = "") -> None:
         """Keep a note beside the result: what is played otherwise than the file may mean it. Each place once."""
-        finding = self._finding(what, value, remedy, "note")
+        finding = self._found(what, value, remedy, "note")
         if finding not in self.book.notes:
             self.book.notes.append(finding)
 

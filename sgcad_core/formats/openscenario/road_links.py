@@ -109,7 +109,7 @@ class RoadLinks:
                 found[line.id, END[sense]].append(Leg(linked, 1 if contact == "start" else -1))
                 found[linked, contact].append(Leg(line.id, -sense))
 
-    def behind(self, leg: Leg) -> list[Leg]:
+    def onward(self, leg: Leg) -> list[Leg]:
         """The roads one may drive onto behind a road."""
         target = _target(self._roads[leg.road], leg.sense)
         if target is None:
@@ -124,7 +124,7 @@ class RoadLinks:
 
         `rest_m`: what lies ahead on the first road. Dijkstra over roads.
         """
-        queue: list[tuple[float, tuple[Leg, ...]]] = [(rest_m, (start, leg)) for leg in self.behind(start)]
+        queue: list[tuple[float, tuple[Leg, ...]]] = [(rest_m, (start, leg)) for leg in self.onward(start)]
         seen: set[Leg] = set()
         heapq.heapify(queue)
         while queue and len(seen) < MAX_VISITED:
@@ -135,7 +135,7 @@ class RoadLinks:
             if legs[-1] in goals:
                 return list(legs), way + goals[legs[-1]]
             over = way + self._roads[legs[-1].road].length_m
-            for leg in self.behind(legs[-1]):
+            for leg in self.onward(legs[-1]):
                 heapq.heappush(queue, (over, (*legs, leg)))
         return None
 

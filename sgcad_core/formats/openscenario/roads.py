@@ -240,14 +240,14 @@ class XodrRoads:
         """The lane one drives into next: the route's, else the straightest."""
         options = self._links.ahead(step)
         if route and len(options) > 1:
-            options = self._onto(options, route.behind(step.road)) or options
+            options = self._onto(options, route.legs_after(step.road)) or options
         return min(options, key=self._turn, default=None)
 
     def _onto(self, options: list[Step], ahead: Sequence[Leg]) -> list[Step]:
         """The options that a route takes: onto its next road, or over a neighbour of it onto the one behind."""
         exact = [o for o in options if ahead and o.road == ahead[0].road]
         target = {leg.road for leg in ahead[1:2]}
-        return exact or [o for o in options if target & {leg.road for leg in self._links.behind(Leg(o.road, o.sense))}]
+        return exact or [o for o in options if target & {leg.road for leg in self._links.onward(Leg(o.road, o.sense))}]
 
     def _turn(self, step: Step) -> float:
         reference = self._roads[step.road].reference

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sgcad_core.geometry.plane import arc_lengths
 from sgcad_core.records import Floats, Trajectory
 
 APART_M = 0.11
@@ -27,6 +29,8 @@ STAND_S = 1.0 + 1e-3
 BLOW_M = 0.075
 """Change from one step to the next, 30 m/s2 at 20 steps a second: three times what tires transmit."""
 _STILL = 1e-6
+LEFT_OUT_M, LEFT_OUT_RAD = 0.01, 0.005
+"""A vertex of an untimed path is left out where the way without it is this near."""
 
 
 def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
@@ -127,3 +131,31 @@ def _apart(poses: Floats, other: Floats) -> np.ndarray[tuple[int], np.dtype[np.b
     """Whether no player merges poses (n, 3) with a later one."""
     dx, dy, turn = (other - poses).T
     return np.asarray((dx * dx + dy * dy >= APART_M**2) | (turn <= TURN_RAD[0]) | (turn >= TURN_RAD[1]), dtype=np.bool_)
+
+
+# ------------------------------------------------------------------ untimed paths
+def path_rows(line: Trajectory, ahead_m: float) -> list[int]:
+    """Rows to write of an untimed path: of a timed one those that move on and do not lie between others."""
+    poses = np.column_stack((line.x_m, line.y_m, np.unwrap(line.heading_rad)))
+    rows = vertex_rows(line, ahead_m)
+    moved = np.concatenate(([True], np.hypot(*np.diff(poses[rows, :2], axis=0).T) > 1e-4))
+    return _bends(poses, np.array(rows)[moved])
+
+
+def _bends(poses: Floats, rows: NDArray[np.intp]) -> list[int]:
+    """The rows (of poses (n, 3), none in place) between which the way runs straight and turns evenly."""
+    kept, at = [int(rows[0])], 0
+    while at < len(rows) - 1:
+        after = at + 1
+        while after + 1 < len(rows) and _even(poses[rows[at : after + 2]]):
+            after += 1
+        kept, at = [*kept, int(rows[after])], after
+    return kept
+
+
+def _even(poses: Floats) -> bool:
+    """Whether what lies between two poses can be left out of a path."""
+    along = arc_lengths(poses[:, :2])
+    share = (along / along[-1])[:, None]
+    away = np.abs(poses[0] + share * (poses[-1] - poses[0]) - poses)
+    return bool(np.hypot(away[:, 0], away[:, 1]).max() < LEFT_OUT_M and away[:, 2].max() < LEFT_OUT_RAD)

@@ -85,7 +85,7 @@ class Route:
             way += length - begin
         return None
 
-    def behind(self, road: str) -> tuple[Leg, ...]:
+    def legs_after(self, road: str) -> tuple[Leg, ...]:
         """The roads behind one of its roads; none behind a road that it does not lead over."""
         roads = [leg.road for leg in self.legs]
         return self.legs[roads.index(road) + 1 :] if road in roads else ()

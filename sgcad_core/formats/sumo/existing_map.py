@@ -18,8 +18,8 @@ from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.opendrive.controls import imported_lanes, lane_links, signed_junctions, width_of
 from sgcad_core.formats.sumo.graph_spec import CONTROLS
 from sgcad_core.formats.sumo.netconvert import plain_files
-from sgcad_core.formats.sumo.plain_xml import CENTER_LANE_CLASS
-from sgcad_core.formats.sumo.told import CONTROL
+from sgcad_core.formats.sumo.parameters import CONTROL
+from sgcad_core.formats.sumo.plain_xml import BESIDE, CENTER_LANE_CLASS
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
@@ -100,6 +100,10 @@ def _restore_lanes(edge: Element, drawn: list[Element]) -> None:
         if source.get("type") == "bidirectional":
             lane.attrib.pop("disallow", "")
             lane.set("allow", CENTER_LANE_CLASS)
+        if source.get("type") == "parking":
+            lane.attrib.pop("disallow", "")
+            lane.set("allow", BESIDE["parking"].allow)
+            lane.set("type", BESIDE["parking"].type)
 
 
 # ------------------------------------------------------------------ ids
@@ -157,7 +161,7 @@ def _edge(edge: Element, roads: Mapping[str, str], names: Mapping[str, str], shi
         if edge.get(name) is not None:
             made.set(name, _moved(edge.get(name), shift) if name == "shape" else edge.get(name))
     for lane in edge.iterfind("lane"):
-        kept = {k: v for k, v in lane.attrib.items() if k in ("index", "allow", "disallow", "width", "speed")}
+        kept = {k: v for k, v in lane.attrib.items() if k in ("index", "allow", "disallow", "width", "speed", "type")}
         etree.SubElement(made, "lane", kept)
     return made
 

@@ -12,9 +12,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import Connection, Direction, Edge, Floats, LaneGraph, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import Connection, Direction, Edge, Floats, LaneGraph, road_of
 from sgcad_core.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
 
 MPH_PER_MPS = 1 / 0.44704

@@ -10,8 +10,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.lane_graph import (
+from sgcad_core.formats.xml import Element, parse_xml
+from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import (
     Connection,
+    Crossing,
     Direction,
     Edge,
     Floats,
@@ -21,13 +24,12 @@ from sgcad_core.formats.sumo.lane_graph import (
     NetworkFigures,
     Phase,
     Program,
+    contracted,
     edge_id,
     network_figures,
     road_of,
     segments,
 )
-from sgcad_core.formats.xml import Element, parse_xml
-from sgcad_core.records import Finding
 
 __all__ = [
     "Connection", "Direction", "Edge", "Floats", "Lane", "LaneGraph", "NetNode", "NetworkFigures", "edge_id",
@@ -47,7 +49,8 @@ def parse_net(net_xml: str) -> LaneGraph:
     edges = {e.get("id", ""): _edge(e) for e in root.iterfind("edge") if e.get("function", "normal") == "normal"}
     nodes = {j.get("id", ""): _node(j) for j in root.iterfind("junction") if j.get("type") != "internal"}
     _check_ends(edges, nodes)
-    return LaneGraph(edges, tuple(_connections(root, edges, inner)), nodes, _programs(root))
+    links = tuple(_connections(root, edges, inner))
+    return LaneGraph(edges, links, nodes, _programs(root), _circles(root), tuple(_crossings(root)))
 
 
 def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
@@ -56,21 +59,37 @@ def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:
     Raises InvalidOutput where it is no XML.
     """
     found: dict[tuple[str, str], int] = {}
-    for edge in parse_xml(net_xml, "net_xml").iterfind("edge"):
+    root = parse_xml(net_xml, "net_xml")
+    for edge in root.iterfind("edge"):
         ends = edge.get("from", ""), edge.get("to", "")
         lanes = sum(map(_allows_cars, edge.iterfind("lane")))
         if edge.get("function", "normal") == "normal" and lanes and ends[0] != ends[1]:
             found[ends] = found.get(ends, 0) + lanes
-    return found
+    return contracted(found, {node: min(circle) for circle in _circles(root) for node in circle})
+
+
+def _circles(root: Element) -> tuple[frozenset[str], ...]:
+    """Nodes of every roundabout that has some."""
+    found = (frozenset(circle.get("nodes", "").split()) for circle in root.iterfind("roundabout"))
+    return tuple(circle for circle in found if circle)
+
+
+def _crossings(root: Element) -> Iterator[Crossing]:
+    """Crosswalks, each an internal edge named ":<node>_c<number>"."""
+    for edge in root.iterfind("edge[@function='crossing']"):
+        for lane in edge.iterfind("lane"):
+            node = edge.get("id", "").removeprefix(":").rpartition("_")[0]
+            over = tuple(edge.get("crossingEdges", "").split())
+            yield Crossing(node, over, _shape(lane), _number(lane, "width", DEFAULT_WIDTH_M))
 
 
 def _edge(element: Element) -> Edge:
     lanes = tuple(sorted((_lane(lane) for lane in element.iterfind("lane")), key=lambda lane: lane.index))
     ends = element.get("from", ""), element.get("to", "")
-    return Edge(element.get("id", ""), *ends, lanes, int(_number(element, "priority", -1)), _told(element))
+    return Edge(element.get("id", ""), *ends, lanes, int(_number(element, "priority", -1)), _parameters(element))
 
 
-def _told(element: Element) -> dict[str, str]:
+def _parameters(element: Element) -> dict[str, str]:
     return {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
 
 
@@ -83,6 +102,7 @@ def _lane(element: Element) -> Lane:
         length_m=_number(element, "length"),
         speed_mps=_number(element, "speed"),
         allows_cars=_allows_cars(element),
+        type=element.get("type", ""),
     )
 
 
@@ -92,7 +112,7 @@ def _allows_cars(lane: Element) -> bool:
 
 
 def _node(element: Element) -> NetNode:
-    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""), _told(element))
+    return NetNode(_number(element, "x"), _number(element, "y"), element.get("type", ""), _parameters(element))
 
 
 def _number(element: Element, name: str, default: float | None = None) -> float:
@@ -124,7 +144,7 @@ def _connections(root: Element, edges: Mapping[str, Edge], inner: Mapping[str, F
     raw = list(root.iterfind("connection"))
     onward = {f"{c.get('from')}_{c.get('fromLane')}": c.get("via") for c in raw if c.get("from", "").startswith(":")}
     for c in raw:
-        if c.get("from", "").startswith(":"):
+        if ":" in (c.get("from", "")[:1], c.get("to", "")[:1]):  # within junctions, and over walking areas
             continue
         start, end = _lane_at(c, "from", edges), _lane_at(c, "to", edges)
         pieces = [start.shape[-1:], *(inner[v] for v in _chain(c.get("via"), onward) if v in inner), end.shape[:1]]

@@ -7,38 +7,59 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from typing import NamedTuple
 
 from lxml import etree
 
 from sgcad_core import settings
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.told import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
+from sgcad_core.roads.lane_graph import edge_id
 from sgcad_core.roads.road_geometry import (
+    BESIDE_M,
     Direction,
     Roadway,
+    beside,
     has_center_lane,
     lane_width_m,
     lanes,
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
-from sgcad_core.specs import Node, NodeControl, Road, RoadSpec, ToldRoad
+from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
-SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15}
+SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15, "circle": 20}
 """Where the report states no limit."""
+CIRCLE = "circle"
+"""Of a piece of a roundabout, where others tell their kind."""
 MAX_LANES = 16
 """Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
 DRIVEWAY_RADIUS_M = 1.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
 """The vehicle class that alone may use a two-way left-turn lane, so that no one counts it as a through lane."""
+CROSSWALK_M = 3.0
+"""Width of a crosswalk (10 ft; MUTCD 3B.18 asks for 6 ft and more)."""
+
+
+class Use(NamedTuple):
+    """What a lane beside those for cars is: its type (OpenDRIVE's word) and the one vehicle class that may use it."""
+
+    type: str
+    allow: str
+
+
+BESIDE: Mapping[Beside, Use] = {
+    "bike_lane": Use("biking", "bicycle"), "parking": Use("parking", "custom1"),
+    "shoulder": Use("shoulder", "emergency"), "sidewalk": Use("sidewalk", "pedestrian"),
+}  # fmt: skip
 _TYPES: Mapping[NodeControl, str] = {
     "none": "priority", "yield": "priority", "signal": "traffic_light", "stop": "priority_stop",
     "all_way_stop": "allway_stop", "flashing": "priority_stop",
@@ -53,7 +74,8 @@ def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> Pla
     if findings := spec_findings(spec):
         raise InvalidOutput("\n".join(f.line() for f in findings), findings)
     drawn = roadways(spec)
-    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=_connections(links(spec, drawn)))
+    joined = _connections(links(spec, drawn), spec)
+    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=joined)
 
 
 # ------------------------------------------------------------------ nodes
@@ -94,27 +116,51 @@ def _edges(drawn: Mapping[str, Roadway], told: Mapping[str, ToldRoad]) -> str:
         for direction in directions:
             if lanes(way.road, direction):
                 _edge(root, way, direction, told.get(way.road.id, ToldRoad()))
+    for nodes, edges in roundabouts(drawn[name].road for name in drawn):
+        etree.SubElement(root, "roundabout", nodes=" ".join(nodes), edges=" ".join(edges))
     return to_text(root)
+
+
+def roundabouts(roads: Iterable[Road]) -> list[tuple[list[str], list[str]]]:
+    """Nodes and edges of each closed circle."""
+    onward = {road.from_node: road for road in roads if road.circle}
+    found = []
+    while onward:
+        road, ring = next(iter(onward.values())), list[Road]()
+        while road.from_node in onward:
+            ring.append(onward.pop(road.from_node))
+            road = onward.get(road.to_node, road)
+        if ring[-1].to_node == ring[0].from_node:
+            found.append(([r.from_node for r in ring], [r.id for r in ring]))
+    return found
 
 
 def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> None:
     road, forward = way.road, direction == "forward"
     ends = (road.from_node, road.to_node) if forward else (road.to_node, road.from_node)
     center = forward and has_center_lane(road)
-    count = lanes(road, direction)
+    outer = beside(road)[::-1]
+    count = lanes(road, direction) + len(outer)
     edge = etree.SubElement(root, "edge", id=road.id if forward else f"-{road.id}")
     edge.set("from", ends[0])
     edge.set("to", ends[1])
     edge.set("priority", str(_priority(road)))
     edge.set("numLanes", str(count + center))
-    edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[road.kind]) * MPS_PER_MPH:.3f}")
+    kind = CIRCLE if road.circle else road.kind
+    edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[kind]) * MPS_PER_MPH:.3f}")
     edge.set("width", f"{lane_width_m(road):g}")
     edge.set("spreadType", "right")
     edge.set("shape", _shape(way.left_border(direction)))
+    for index, what in enumerate(outer):
+        use = BESIDE[what]
+        lane = etree.SubElement(edge, "lane", index=str(index), width=f"{BESIDE_M[what]:g}", type=use.type)
+        lane.set("allow", use.allow)
+    for index in range(len(outer), count) if "sidewalk" in outer else ():
+        etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
-    _tell(edge, {KIND: road.kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
+    _tell(edge, {KIND: kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
 
 
 def _tell(element: Element, told: Mapping[str, str]) -> None:
@@ -123,7 +169,7 @@ def _tell(element: Element, told: Mapping[str, str]) -> None:
 
 
 def _priority(road: Road) -> int:
-    return 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
+    return 6 if road.circle else 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
 
 
 def _shape(points: Floats) -> str:
@@ -135,7 +181,7 @@ def _m(value: float) -> str:
 
 
 # ------------------------------------------------------------------ connections
-def _connections(found: tuple[Link, ...]) -> str:
+def _connections(found: tuple[Link, ...], spec: RoadSpec) -> str:
     root = etree.Element("connections")
     for link in found:
         connection = etree.SubElement(root, "connection")
@@ -143,6 +189,11 @@ def _connections(found: tuple[Link, ...]) -> str:
         connection.set("to", link.to_edge)
         connection.set("fromLane", str(link.from_lane))
         connection.set("toLane", str(link.to_lane))
+    for road in spec.roads:
+        for node in dict.fromkeys(road.crosswalks):
+            ways: tuple[Direction, ...] = ("forward", "backward")
+            edges = " ".join(edge_id(road.id, way) for way in ways if lanes(road, way))
+            etree.SubElement(root, "crossing", node=node, edges=edges, width=f"{CROSSWALK_M:g}", priority="1")
     return to_text(root)
 
 

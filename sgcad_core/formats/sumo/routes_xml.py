@@ -8,12 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
+from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.plain_xml import sumo_findings
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.records import Finding
+from sgcad_core.roads.lane_graph import LaneGraph
 
 SOURCE = "sumo_routes"
+_finding = Finder(SOURCE)
 MOVERS = ("vehicle", "person")
 _OUTWARD = ("trip", "flow", "personFlow", "container", "include")
 """Elements that let SUMO choose or multiply, so that who drives is not what was written."""
@@ -103,7 +105,3 @@ def _ways(found: Sequence[Mover], graph: LaneGraph) -> Iterator[Finding]:
             if (a, b) not in onward:
                 ways = ", ".join(sorted({y for x, y in onward if x == a})) or "nothing"
                 yield _finding("no way leads from edge to edge", f"{m.id}.route", f"{a} to {b}", f"{a} leads to {ways}")
-
-
-def _finding(what: str, where: str, value: str, remedy: str) -> Finding:
-    return Finding(source=SOURCE, what=what, where=where, value=value, remedy=remedy)

@@ -34,4 +34,5 @@ def test_a_fresh_study_wants_a_fresh_address(made):
 
 
 def test_shards_that_were_submitted_again_are_told():
-    assert away.told(["shard 0: no sign of life for 60 s"]) == "submitted again: shard 0: no sign of life for 60 s"
+    lines = away.resubmitted_lines(["shard 0: no sign of life for 60 s"])
+    assert lines == "submitted again: shard 0: no sign of life for 60 s"

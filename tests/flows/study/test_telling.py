@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from flows.cli import app
 from flows.start import Cost
 from flows.study.plan import plan
-from flows.study.running import told
+from flows.study.running import cost_line
 from flows.study.spec import load_study
 from sgcad_core.errors import ConfigError
 
@@ -25,11 +25,11 @@ def made(tmp_path, config_file, reports):
 
 def test_orchestration_is_told_a_case_and_as_a_share(made):
     cost = Cost(done=100, elapsed_s=50.0, own_s=4.0, server_s=1.0)
-    assert told(made, cost) == (
+    assert cost_line(made, cost) == (
         "100 cases in 50 s; orchestration 50 ms of processor time a case, 5.0% of the time of 2 cores"
     )
-    assert "without the Prefect server's" in told(made, replace(cost, server_s=None))
-    assert told(made, Cost(0, 1.25)) == "all cached: 1.2 s"
+    assert "without the Prefect server's" in cost_line(made, replace(cost, server_s=None))
+    assert cost_line(made, Cost(0, 1.25)) == "all cached: 1.2 s"
 
 
 def test_check_names_the_arms_of_a_study():

@@ -13,7 +13,7 @@ from sgcad_core.asking.prompts import answer_schema, load_prompt
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.records import Context, Generation, Passage
-from sgcad_core.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
+from sgcad_core.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec, added_fields
 
 EVIDENCE = Context(narrative="V1 was northbound on a two-lane road.")
 LAYOUT = {
@@ -68,9 +68,18 @@ def test_the_prompts_example_answers_the_schema_exactly():
 
 @pytest.mark.parametrize(("name", "models"), [("road", (Node, Road)), ("layout", (Leg, RoadLayout))])
 def test_the_prompt_explains_every_field(name, models):
-    text = load_prompt(name)
+    text, places = load_prompt(name), load_prompt(f"{name}_places")
     for model in models:
-        assert [f for f in model.model_fields if f not in text] == []
+        later = added_fields(model)
+        assert [f for f in model.model_fields if f not in later and f not in text] == []
+        assert [f for f in later if f"- {f}:" not in places] == []
+
+
+def test_places_are_asked_for_where_the_model_may_know_them():
+    _, model = write(LAYOUT, form="layout", places=True)
+    query = model.asked[0][1]
+    assert "circle_lanes" in query.answer_schema["anyOf"][0]["properties"]
+    assert query.task == f"{load_prompt('layout')}\n\n{load_prompt('layout_places')}"
 
 
 def test_the_layout_form_asks_for_a_layout_and_compiles_it():

@@ -358,10 +358,20 @@ def test_a_missing_junction_gets_its_legs_where_the_told_paths_use_every_one() -
     assert [hold.at_least for hold in found.holds] == [3]
 
 
-def test_a_crash_in_a_roundabout_is_refused_and_one_at_a_railway_crossing_is_noted() -> None:
+def test_a_roundabout_that_is_told_must_be_drawn() -> None:
+    text = "V1 was northbound and entered a roundabout. V1 struck the rear of V2."
+    legs = [leg(at, 1, 1) for at in ("N", "E", "S", "W")]
+    missed = findings(text, network(*legs))[0]
+    assert (missed.severity, missed.value) == ("repair", "no roundabout")
+    spec = road_spec(RoadLayout(legs=tuple(legs), circle_lanes=1))
+    drawn = findings(text, compile_network(plain_xml(spec), spec))
+    assert not [found.what for found in drawn if found.severity != "note"]
+
+
+def test_a_crash_in_a_parking_garage_is_refused_and_one_at_a_railway_crossing_is_noted() -> None:
     plain = network(leg("N", 1, 1), leg("S", 1, 1))
-    refused = findings("V1 was northbound and entered a roundabout. V1 struck the rear of V2.", plain)[0]
-    assert (refused.severity, refused.value) == ("refuse", "a roundabout")
+    refused = findings("V1 was northbound in a parking garage. V1 struck the rear of V2.", plain)[0]
+    assert (refused.severity, refused.value) == ("refuse", "a parking garage")
     assert "which cannot be drawn yet" in refused.what
     noted = findings("The crash occurred at a railroad crossing. V1 was northbound and struck the rear of V2.", plain)
     assert [found.severity for found in noted if found.value == "a railway crossing"] == ["note"]

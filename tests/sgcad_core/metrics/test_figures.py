@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.metrics import Thresholds, criticality, displacement, generation, measure, road_network
-from sgcad_core.metrics.road_network import NetworkFigures
 from sgcad_core.records import ActorInfo, Execution, Scenario, Trajectory
 
 LIMITS = Thresholds()
@@ -19,14 +18,6 @@ LIMITS = Thresholds()
 )
 def test_relative_error_is_capped_at_one(truth, made, error):
     assert road_network.relative_error(truth, made) == error
-
-
-@given(st.integers(0, 9), st.integers(0, 9), st.floats(0.5, 6), st.floats(0.5, 6))
-def test_network_errors_are_fractions_and_zero_only_for_equals(i, j, a, b):
-    errors = road_network.network_errors(NetworkFigures(i, 1, a), NetworkFigures(j, 1, b))
-    assert all(0 <= v <= 1 for v in errors.values())
-    assert (errors["intersection_count_error"] == 0) == (i == j)
-    assert errors["lane_count_error_any"] == float(errors["lane_count_error"] > 1e-6)
 
 
 def test_success_is_counted_per_scenario_and_errors_per_file():

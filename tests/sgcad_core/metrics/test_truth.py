@@ -8,10 +8,10 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from sgcad_core.formats.sumo.lane_graph import road_counts
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.truth import Made, compare, truth_figures
 from sgcad_core.metrics.truth_motion import Path, first_touch
+from sgcad_core.roads.lane_graph import road_counts
 
 SHARED = File(__file__).resolve().parents[4] / "shared"
 SCORER, LABELS = SHARED / "tools" / "score.py", SHARED / "data" / "dev" / "truth"

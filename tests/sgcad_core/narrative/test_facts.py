@@ -12,8 +12,8 @@ from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.privacy import redact
 from sgcad_core.narrative.reading import crash_facts
 
-Told = dict[str, tuple[str | None, str | None]]
-REPORTS: tuple[tuple[str, Told, dict[str, str] | None], ...] = (
+Statement = dict[str, tuple[str | None, str | None]]
+REPORTS: tuple[tuple[str, Statement, dict[str, str] | None], ...] = (
     (
         "Vehicle #1, a 1999 Honda Civic, was southbound in the right lane. Vehicle #2, a 2001 Ford Focus, was "
         "stopped facing south ahead of it at a red light. The front of Vehicle #1 struck the back of Vehicle "
@@ -508,7 +508,7 @@ def _sides(facts: CrashFacts) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(("text", "vehicles", "sides"), REPORTS)
-def test_a_report_is_read_as_a_person_reads_it(text: str, vehicles: Told, sides: dict[str, str] | None) -> None:
+def test_a_report_is_read_as_a_person_reads_it(text: str, vehicles: Statement, sides: dict[str, str] | None) -> None:
     facts = crash_facts(text)
     for name, (heading, maneuver) in vehicles.items():
         found = facts.vehicle(name)

@@ -10,8 +10,6 @@ from sgcad_core.narrative.unsupported import refuse_unsupported
 from sgcad_core.records import Context
 
 AT = {
-    "V1 was northbound and entered a roundabout. V2 was westbound. V1 struck the left side of V2.": ("roundabout",),
-    "The crash occurred in a two-lane rotary. V1 was circulating and struck the right side of V2.": ("roundabout",),
     "Vehicle 1 was traveling north inside a parking garage when it struck the rear of Vehicle 2.": ("parking_garage",),
     "The crash occurred at a railroad crossing. V1 was northbound and struck the rear of V2.": ("rail_crossing",),
 }
@@ -33,11 +31,11 @@ def test_a_place_mentioned_in_passing_has_no_effect(text: str) -> None:
     assert road_facts(text).junction.unsupported == ()
 
 
-def test_a_roundabout_is_refused_by_name_and_not_drawn_as_a_crossing() -> None:
+def test_a_parking_garage_is_refused_by_name() -> None:
     text = next(iter(AT))
-    with pytest.raises(Refused, match="the crash happened at a roundabout, which cannot be drawn yet") as raised:
+    with pytest.raises(Refused, match="the crash happened at a parking garage, which cannot be drawn yet") as raised:
         Template().write(Context(narrative=text), (), (), ask=None, attempt=1)  # type: ignore[arg-type]
-    assert raised.value.missing == ("leave the case out: no circular road can be drawn",)
+    assert raised.value.missing == ("leave the case out: no aisles or decks can be drawn",)
 
 
 def test_a_place_whose_road_can_be_drawn_is_not_refused() -> None:

@@ -9,10 +9,10 @@ import functools
 import random
 from collections.abc import Callable
 
-from sgcad_core.formats.sumo.lane_graph import LaneGraph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Access, Actor, BehaviorSpec, Contact, Leg, RoadLayout
 

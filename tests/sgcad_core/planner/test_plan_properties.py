@@ -10,11 +10,11 @@ from crash_scenes import LAYOUTS, draw_scene, network
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.formats.sumo.lane_graph import road_of
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.choices import SLIDES
+from sgcad_core.roads.lane_graph import road_of
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 
 STEP_S = 0.05

@@ -133,8 +133,9 @@ def test_a_played_file_is_what_was_written(start, along, turn, way):
 
 
 @settings(max_examples=60, deadline=None)
-@given(start=STARTS, along=st.lists(st.floats(-6, 6), min_size=2, max_size=60), turn=st.floats(-3, 3))
+@given(start=STARTS, along=st.lists(st.floats(-2.2, 2.2), min_size=2, max_size=60), turn=st.floats(-3, 3))
 def test_what_is_left_out_of_slow_motion_moves_no_box_by_a_hand(start, along, turn):
+    """Slow: up to 2.2 m/s, where rows are nearer than players keep; a step and what is merged are 0.11 m each."""
     wanted = driven(start, along, turn)
     (played,) = play(write_xosc([actor("V1")], [wanted], None))
     assert np.hypot(played.x_m - wanted.x_m, played.y_m - wanted.y_m).max() < 0.25

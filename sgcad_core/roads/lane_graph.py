@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Literal, NamedTuple
@@ -26,7 +27,7 @@ class NetNode(NamedTuple):
     x_m: float
     y_m: float
     type: str
-    told: Mapping[str, str] = NOTHING
+    parameters: Mapping[str, str] = NOTHING
     """Parameters of the file: what was told of the node beyond its type (`plain_xml`)."""
 
 
@@ -41,6 +42,8 @@ class Lane:
     length_m: float
     speed_mps: float
     allows_cars: bool
+    type: str = ""
+    """Of a lane that is not for cars: biking, parking, shoulder, sidewalk; "" where the file names none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,7 @@ class Edge:
     to_node: str
     lanes: tuple[Lane, ...]
     priority: int = -1
-    told: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, str] = field(default_factory=dict)
     """Parameters of the file: what was told of the road beyond its lanes (`plain_xml`)."""
 
     @property
@@ -82,6 +85,15 @@ class Connection:
     link: int = -1
 
 
+class Crossing(NamedTuple):
+    """A crosswalk over edges where they meet a node; `shape`: its center line, (n, 2) metres, as one walks."""
+
+    node: str
+    edges: tuple[str, ...]
+    shape: Floats
+    width_m: float
+
+
 class Phase(NamedTuple):
     """One phase of a signal program: a letter a controlled connection (G g green, y yellow, r red, ...)."""
 
@@ -104,6 +116,19 @@ class LaneGraph:
     connections: tuple[Connection, ...]
     nodes: Mapping[str, NetNode]
     programs: Mapping[str, Program] = field(default_factory=dict)
+    circles: tuple[frozenset[str], ...] = ()
+    """Nodes of each roundabout."""
+    crossings: tuple[Crossing, ...] = ()
+
+    @cached_property
+    def center_of(self) -> Mapping[str, str]:
+        """Node of a roundabout -> the one node that stands for all of it."""
+        return {node: min(circle) for circle in self.circles for node in circle}
+
+    def is_around(self, edge: Edge) -> bool:
+        """Whether an edge is a piece of a roundabout."""
+        start = self.center_of.get(edge.from_node)
+        return start is not None and start == self.center_of.get(edge.to_node)
 
     def leaving(self, edge: str, lane: int | None = None) -> tuple[Connection, ...]:
         """Connections out of an edge (or of one of its lanes)."""
@@ -139,8 +164,11 @@ def road_of(edge: str) -> tuple[str, Literal["forward", "backward"]]:
 
 # ------------------------------------------------------------------ counting
 def segments(graph: LaneGraph) -> list[dict[str, str | int]]:
-    """Roads with their passenger lanes: [{"id", "lanes_forward", "lanes_backward"}], in the network's order."""
-    roads = {road_of(edge)[0]: None for edge in graph.edges}
+    """Roads with their passenger lanes: [{"id", "lanes_forward", "lanes_backward"}], in the network's order.
+
+    A roundabout is a junction, and its pieces are no roads.
+    """
+    roads = {road_of(edge.id)[0]: None for edge in graph.edges.values() if not graph.is_around(edge)}
     return [
         {"id": road, "lanes_forward": _car_lanes(graph, road), "lanes_backward": _car_lanes(graph, f"-{road}")}
         for road in roads
@@ -152,12 +180,22 @@ def _car_lanes(graph: LaneGraph, edge: str) -> int:
 
 
 def network_figures(graph: LaneGraph) -> NetworkFigures:
-    """Intersections (nodes with three or more neighbors), connected parts, mean lanes, contracted segments.
+    """Intersections (nodes with three or more neighbors; a roundabout is one), parts, mean lanes, contracted segments.
 
     `mean_lanes` is the mean over contracted segments and directions of the lanes of the widest piece; a
     direction that is interrupted on the way does not count.
     """
-    return road_counts(_lanes_between(graph.edges.values())).figures
+    return road_counts(contracted(_lanes_between(graph.edges.values()), graph.center_of)).figures
+
+
+def contracted(lanes: Mapping[tuple[str, str], int], center_of: Mapping[str, str]) -> dict[tuple[str, str], int]:
+    """Lanes by the two nodes of an edge, the nodes of a roundabout as one and its own lanes left out."""
+    found: dict[tuple[str, str], int] = {}
+    for (a, b), count in lanes.items():
+        ends = center_of.get(a, a), center_of.get(b, b)
+        if ends[0] != ends[1]:
+            found[ends] = found.get(ends, 0) + count
+    return found
 
 
 def road_counts(lanes: Mapping[tuple[str, str], int]) -> RoadCounts:

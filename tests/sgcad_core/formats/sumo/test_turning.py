@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
 from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
-from sgcad_core.roads.turning import best_turn, prolonged, turned
 
 ANGLES = st.floats(-math.pi, math.pi, allow_nan=False)
 LEGS = st.lists(st.tuples(st.integers(0, 7), st.integers(0, 4), st.integers(0, 4)), min_size=1, max_size=5,
