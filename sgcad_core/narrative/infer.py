@@ -40,7 +40,8 @@ def settle(draft: Draft) -> Settled:
 
 def _still_moving(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
     """In a near crash one who comes to a stop is seen to slow; only who stood all the time stands."""
-    for v in {name for b in pairs[:1] for name in (b.actor, b.other)} if draft.near else ():
+    pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(draft.who.ids[:2])
+    for v in sorted(pair) if draft.near else ():
         cue = out.sources.get(f"{v} maneuver")
         if out.maneuvers[v] == "stopped" and cue and rule("near_events.came_to_stop").match(cue.words):
             out.maneuvers[v] = "slowing"

@@ -71,7 +71,7 @@ def near_miss(told: Sequence[Statement], cut: Sequence[Segment], who: Roster, *,
     pair = (first.actor, first.other)
     clearance = next(((m, t) for t in told if t.role in _READ and (m := told_clearance_m(t.text))), None)
     return NearMiss(
-        missed, evaded(cut, first.number, pair), clearance[0] if clearance else None,
+        missed, evaded(cut, first.number, pair, who.ids[0]), clearance[0] if clearance else None,
         Cue(clearance[1].number, "", "near_events.clearance") if clearance else None,
     )  # fmt: skip
 
@@ -117,14 +117,18 @@ def _could_not(match: re.Match[str]) -> bool:
     return bool(rule("near_events.could_not").search(match.string[: match.start()]))
 
 
-def evaded(cut: Sequence[Segment], number: int, pair: tuple[str, ...]) -> tuple[Evaded, ...]:
-    """What a pair did in a sentence or beside it, one maneuver each; nothing of whoever just drove."""
+def evaded(cut: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[Evaded, ...]:
+    """What a pair did in a sentence or beside it, one maneuver each.
+
+    Of anybody but the one who is `watched` only what was done to avoid: others brake for reasons of their own.
+    """
     found: dict[str, Evaded] = {}
     for segment in sorted(cut, key=lambda s: (abs(s.number - number), s.number)):
         if abs(segment.number - number) > _NEAR or segment.role not in _READ:
             continue
         for vehicle in segment.subjects:
-            if vehicle in pair and vehicle not in found and (how := _maneuver(segment)):
+            told = vehicle == watched or rule("near_events.act").search(segment.text)
+            if vehicle in pair and vehicle not in found and told and (how := _maneuver(segment)):
                 found[vehicle] = Evaded(vehicle, *how)
     return tuple(found.values())
 

@@ -113,14 +113,15 @@ class _Parting:
     def best(self, near: NearCrash) -> Parted | None:
         """As told; else with the other means that there are, and a note that says so."""
         told = [e for e in near.evasions if e.maneuver != "none"]
-        as_told = self._evaded(told) if told else self._shifted()
+        follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
+        as_told = self._evaded(told) if told else None if follows else self._shifted()
         if as_told is not None:
             return as_told
         for evasion in self._instead(near):
             if parted := self._evaded([evasion]):
                 words = "evades otherwise than told" if told else "evades, though nobody says so"
                 return parted._replace(notes=(f"{evasion.actor} {words}", *parted.notes))
-        return self._shifted() if told else None
+        return self._shifted() if told or follows else None
 
     def _instead(self, near: NearCrash) -> Iterator[Evasion]:
         """Other evasions: of who was told to evade, then of who would have struck, then of the other one."""
@@ -172,9 +173,13 @@ class _Parting:
             return all(m.drivable for m in motions) and self._least(motions) >= self.closest_m
 
         share = _least_enough(clear, 1.0, _HALVINGS) if clear(1.0) else None
-        if share is None or self._least(self._motions(most, share)) > self.closest_m + _EXACT_M:
+        if share is None or self._too_far(self._motions(most, share)):
             return None  # too little, or a swerve that only as a whole passes on the other side
         return share
+
+    def _too_far(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> bool:
+        """Whether the two never come as near as declared in the shortest scenario there may be."""
+        return self._least(motions, shift_s, LEAD_S[0]) > self.closest_m + _EXACT_M
 
     def _motions(self, most: dict[str, Reaction], share: float) -> tuple[Motion, Motion]:
         first, second = (self._motion(side, most.get(side.id), share) for side in self.sides)
@@ -185,9 +190,9 @@ class _Parting:
             return side.motion
         return reacted(side.option, side.motion, most.scaled(share))
 
-    def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> float:
-        """The least distance of the boxes over the whole scenario, metres; the first one comes `shift_s` later."""
-        times = clock(-round(LEAD_S[1] / STEP_S), round(_AFTER_S / STEP_S) + 1)
+    def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0, lead_s: float = LEAD_S[1]) -> float:
+        """The least distance of the boxes over a scenario with that lead, metres; the first one comes `shift_s` later."""
+        times = clock(-round(lead_s / STEP_S), round(_AFTER_S / STEP_S) + 1)
         first, second = (
             np.repeat(m.poses([s.own_s]), len(times), axis=0) if m.standing else m.poses(s.own_s + times - by)
             for m, s, by in zip(motions, self.sides, (shift_s, 0.0), strict=True)
@@ -225,7 +230,8 @@ class _Parting:
         enough = next((float(s) for s in steps if self._least(motions, sign * s) >= self.closest_m), None)
         if enough is None:
             return None
-        return sign * _least_enough(lambda by: self._least(motions, sign * by) >= self.closest_m, enough, _HALVINGS)
+        by = sign * _least_enough(lambda by: self._least(motions, sign * by) >= self.closest_m, enough, _HALVINGS)
+        return None if self._too_far(motions, by) else by
 
 
 def _least_enough(enough: Callable[[float], bool], most: float, halvings: int) -> float:
