@@ -183,7 +183,7 @@ class _Run:
         notes = self.report.notes if self.report else ()
         reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        return CaseRecord(*about, reading, self.judgement)
+        return CaseRecord(*about, reading, self.judgement, bool(self.report and self.report.diagrams))
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""

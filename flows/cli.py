@@ -20,7 +20,7 @@ import typer
 from flows.drives.commands import drive
 from flows.index import index_app
 from flows.plugin_commands import plugins_app
-from flows.results.commands import report, table
+from flows.results.commands import report, score, table
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
@@ -227,6 +227,7 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
 app.command()(drive)
 app.command()(table)
 app.command()(report)
+app.command()(score)
 
 
 def main() -> None:

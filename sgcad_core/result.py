@@ -14,6 +14,7 @@ from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.narrative.limits import beyond
 from sgcad_core.records import (
     ActorInfo,
     Execution,
@@ -51,6 +52,8 @@ class CaseRecord:
     reading: Reading | None = None
     """What the rules read of the narrative."""
     judgement: Judgement | None = None
+    drawn: bool = False
+    """Whether the report has a drawing that the writers were shown."""
 
     @property
     def network(self) -> RoadNetwork | None:
@@ -89,7 +92,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "sentences": _sentences(record.reading),
         "facts": [fact.model_dump(mode="json") for fact in facts_of(record)],
         "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
-        "notes": [*record.notes, *_stage_notes(record)],
+        "notes": [*record.notes, *(beyond(record.reading) if record.reading else ()), *_stage_notes(record)],
     }
 
 
@@ -106,9 +109,10 @@ def facts_of(record: CaseRecord) -> tuple[Fact, ...]:
     found = list(record.reading.facts)
     network, scenario = record.network, record.scenario
     if network is not None:
-        found += road_facts_written(network, record.reading, _answer(record, "road"))
+        found += road_facts_written(network, record.reading, _answer(record, "road"), record.drawn)
     if network is not None and scenario is not None:
-        found += actor_facts_written(scenario, network, record.reading, _answer(record, "scenario"))
+        answer = _answer(record, "scenario")
+        found += actor_facts_written(scenario, network, record.reading, answer, record.drawn)
     return tuple(found)
 
 

@@ -21,10 +21,10 @@ from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VER
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.motion import Access
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.roads.describe import describe_network
@@ -123,7 +123,7 @@ class Text2Scenario(ScenarioWriter):
         beside = [_beside(role, behavior.actors[0]) for role in parsed.roles if role.id not in taken]
         contacts = behavior.contacts or tuple(_contact(c) for c in _strikes(parsed))
         changed = {"actors": (*behavior.actors, *beside), "contacts": contacts}
-        lost = tells_lost_control(context.reading.narrative)
+        lost = context.reading.lost_control
         return compile_scenario(
             behavior.model_copy(update=changed), network, self.openscenario, self.encoding, may_skid=lost
         )
@@ -166,9 +166,9 @@ def facts_of(parsed: Representation) -> CrashFacts:
 
 def _vehicle(role: Role, parsed: Representation) -> VehicleFacts:
     done = _before_contact(role.id, parsed)
-    origin: Access | None = "driveway" if role.comes_from == "driveway" else None
-    if role.comes_from == "ramp":
-        origin = "ramp"
+    origin: Access | None = DRIVEWAY if role.comes_from == DRIVEWAY else None
+    if role.comes_from == RAMP:
+        origin = RAMP
     return VehicleFacts(
         id=role.id, kind=role.kind, heading=role.heading, heading_stated=role.heading is not None,
         maneuver=done[-1] if done else "straight", maneuver_stated=bool(done), lane=role.lane,

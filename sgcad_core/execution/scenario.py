@@ -21,6 +21,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses
 
 _finding = Finder("scenario")
 
@@ -32,6 +33,7 @@ def compile_scenario(
     encoding: Encoding = DEFAULT_ENCODING,
     *,
     may_skid: bool = False,
+    courses: Courses = NOTHING_TOLD,
     signals: Mapping[str, str] | None = None,
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
@@ -39,13 +41,13 @@ def compile_scenario(
     `encoding`: timed polylines, or maneuver events that people edit by hand.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say. `may_skid`: the report tells that somebody lost control. `signals`: what the traffic
-    signal showed to a vehicle, by id, where it is told.
+    for the validators to say. `may_skid`: the report tells that somebody lost control. `courses`: what it tells of
+    every vehicle's evasion and rest. `signals`: what the traffic signal showed to a vehicle, by id, where it is told.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
+    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid, courses=courses)
     actors = actor_infos(behavior)
     origins = [origin_motion(actor, move) for actor, move in zip(actors, planned.trajectories, strict=True)]
     times = signal_times(network, origins, signals or {}, planned.contact.t_s if planned.contact else None)

@@ -11,6 +11,7 @@ from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
 from sgcad_core.narrative.near_crash import NearFacts
+from sgcad_core.narrative.roadside import with_roadside
 from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, NearCrash, RoadSpec
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
@@ -34,8 +35,10 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     if not contacts:
         actors, contacts = _with_others(actors, facts)
     near = _near_crash(facts, contacts)
+    met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
+    cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(
-        actors=tuple(actors), contacts=() if near else tuple(_contact(c) for c in contacts[:_MOST_CONTACTS]),
+        actors=cast, contacts=blows,
         light=facts.light, weather=facts.weather, surface=facts.surface, near_crash=near,
     )  # fmt: skip
 

@@ -6,7 +6,7 @@ what it says (relation words, critical events, the sides that touched) and marke
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
@@ -17,6 +17,7 @@ from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
+from sgcad_core.told_course import Courses, ImpactTold
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,10 @@ class CrashFacts:
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    courses: Courses = field(default_factory=dict)
+    """Evasion, spin and rest by vehicle, of those of which anything is told."""
+    impacts: tuple[ImpactTold, ...] = ()
+    """Contacts behind the first one with things, and of the same pair once more, in order."""
     near_crash: NearFacts | None = None
     """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
@@ -138,8 +143,10 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        _near(draft) if contacts else None,
-        bool(settled.stated),
+        near_crash=_near(draft) if contacts else None,
+        courses=draft.course.courses,
+        impacts=tuple(read.impact for read in draft.impacts),
+        oriented=bool(settled.stated),
     )
 
 

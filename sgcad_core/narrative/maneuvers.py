@@ -70,7 +70,7 @@ def _last_state(motion: Motion) -> Decision | None:
         return None
     last = states[-1]
     if last.kind in _STANDING:
-        return Decision(last.kind if last.kind == "parked" else _stands(states), deed=last)
+        return Decision("parked" if last.kind == "parked" else _stands(states), deed=last)
     if last.kind in ("backing", "u_turn"):
         return Decision("backing" if last.kind == "backing" else "u_turn", deed=last)
     stood = [d.when for d in states if d.kind in (*_STANDING, "backing")]

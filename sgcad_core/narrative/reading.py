@@ -18,15 +18,19 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.course import CoursesRead, courses_told, cut_by_deeds
+from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses, tells_hit
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
@@ -38,6 +42,8 @@ from sgcad_core.narrative.study import tells_study
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
+
+_LOST = rule("meeting.lost")
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,8 @@ class Reading:
     roads: RoadFacts
     signals: Mapping[str, SignalState] = field(default_factory=dict)
     """What the traffic signal showed to a vehicle, by its id, where that is told."""
+    lost_control: bool = False
+    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -130,9 +138,13 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     near = None if struck else near_miss(named.statements, cut, who, of_study=of_study)
     hits = near.blows if near else struck
     subject = who.ids[0] if who.ids else None
-    first = next((b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids)), None)
-    moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, first)
-    return Events(Draft(who, moved, hits, near), conditions(found), signal_states(cut))
+    met = (b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
+    moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, next(met, None))
+    deeds = cut_by_deeds(named.statements, who)
+    course = CoursesRead() if near else courses_told(named.statements, deeds, who)
+    impacts = () if near else with_props(later_impacts(named.statements, deeds, who, struck), course)
+    draft = Draft(who, moved, hits, course, impacts, near)
+    return Events(draft, conditions(found), signal_states(cut))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
@@ -142,12 +154,14 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
     lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
+    course = course_provenance(telling, seen.draft)
     roles = role_facts(telling, named.statements, roads.crash)
-    facts = (*crash_provenance(telling, as_read), *lights, *roles, *road_provenance(telling, roads))
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
     states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
-    return Reading(narrative, found, crash, replace(roads, crash=crash), states, facts)
+    lost = bool(_LOST.search(narrative))
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts)
 
 
 def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:

@@ -17,7 +17,6 @@ from sgcad_core.planner.role import (
     Role,
     Twist,
     along_with,
-    facing,
     is_beside,
     is_standing,
     mismatch,
@@ -30,9 +29,14 @@ SWERVE_MPS2 = 6.0
 _CORNER_RUN_M = 10.0
 """Before and behind a junction in which one who cuts its corner is beside the lane."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
+_TOLD_SPEED = 0.25
+"""More for another speed than told where a told spin could be had by it."""
+_NOT_EVADING = 0.3
+"""Cost of the own line for one of whom it is told that he steered aside."""
+_EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
-_ASKEW, _STEERS = "stands askew", "steers aside before contact"
+ASKEW, _STEERS = "stands askew", "steers aside before contact"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
@@ -49,13 +53,34 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     wanted = _maneuver_shift(role)
     if wanted is not None:
         shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
+        if role.spins or role.glances:
+            shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
         gentle = [_drift(role, wanted * k, cost, 1.7) for k, cost in shares]
         hard = [_drift(role, wanted * k, cost + 0.12, 1.0) for k, cost in shares[:3]]
         sharp = [_drift(role, wanted * k, cost + 0.4, 0.6) for k, cost in shares[:3]]
         return [*gentle, *hard, *sharp, Drift(0.8)]
     near = _in_lane(role) if fine else []
+    if evading := _evading(role):
+        return [
+            *evading,
+            Drift(_NOT_EVADING),
+            *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
+        ]
     return [Drift(0.0), *near, *_corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _evading(role: Role) -> list[Drift]:
+    """Swerves to the told hand; none where no steering is told, or where the maneuver is a way of its own."""
+    if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
+        return []
+    hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
+    ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
+    return [
+        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")
+        for left, cost, ease in ways
+        for hand in hands
+    ]
 
 
 def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
@@ -176,8 +201,9 @@ def _from_beside(role: Role) -> list[Drift]:
 def pacings(role: Role) -> list[Pacing]:
     if role.actor.kind == "pedestrian":
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
-    found = [Pacing(0.0), *_following(role), Pacing(0.2, 0.75, note=_SLOWER), Pacing(0.3, 1.3, note=_FASTER)]
-    found.append(Pacing(0.4, 0.5, note=_SLOWER))
+    told = _TOLD_SPEED if role.spins and role.actor.speed_mph else 0.0
+    found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
+    found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]
     if role.actor.maneuver in TURNING or role.course.passages:
         found.append(Pacing(0.25, 1.0, True, "starts from a stop"))
     return found
@@ -207,7 +233,7 @@ def aiming(role: Role) -> list[Twist]:
 def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
     """The ways to come to an angle: standing so, steering there, and in a skid where the report tells one."""
     if is_standing(role):
-        return [Twist(cost, angle_rad, _ASKEW)]
+        return [Twist(cost, angle_rad, ASKEW)]
     found = [Twist(cost, angle_rad, _STEERS)]
     if abs(role.place.aside_m) < 16:
         found.append(Twist(cost + 0.05, angle_rad, _STEERS, through=True))
@@ -252,39 +278,3 @@ def homing(role: Role) -> list[Drift]:
         return lines
     bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, "leaves its course")
     return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]
-
-
-def stand_offs(role: Role) -> list[Drift]:
-    """How far beside its lane a standing actor stands."""
-    width, right = role.size[1], role.course.right_edge_m
-    if role.actor.maneuver == "parked":
-        curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
-        lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
-        beside = role.course.beside_m
-        if aside_m := beside.get("parking", beside.get("shoulder")):
-            lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]
-        return [Drift(cost, left) for left, cost in lines]
-    return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
-
-
-def askew(role: Role) -> list[Twist]:
-    """Straight in its lane, a little turned, or turned to the other one."""
-    small = [Twist(0.2 + abs(a) / 60, math.radians(a), _ASKEW) for a in (15, -15, 35, -35)]
-    return [Twist(0.0), *small, *aiming(role)]
-
-
-def beside_the_way(role: Role) -> list[Drift]:
-    reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
-    offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
-    return [Drift(0.05 * i, left) for i, left in enumerate(offsets)]
-
-
-def any_angle(role: Role) -> list[Twist]:
-    """An object has no heading of its own: its wanted side is turned to the one that comes."""
-    side = facing(role.side) if role.side else 0.0
-    bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
-    return [Twist(cost, math.radians(degrees) - side) for degrees, cost in bearings]
-
-
-def steps_aside() -> list[Drift]:
-    return [Drift(abs(left) / 5, left, 1.0, -1e4) for left in (0.0, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0)]

@@ -191,7 +191,7 @@ class _Parting:
         return reacted(side.option, side.motion, most.scaled(share))
 
     def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0, lead_s: float = LEAD_S[1]) -> float:
-        """The least distance of the boxes over a scenario with that lead, metres; the first one comes `shift_s` later."""
+        """The least distance of the boxes in a scenario with that lead, metres; the first comes `shift_s` later."""
         times = clock(-round(lead_s / STEP_S), round(_AFTER_S / STEP_S) + 1)
         first, second = (
             np.repeat(m.poses([s.own_s]), len(times), axis=0) if m.standing else m.poses(s.own_s + times - by)

@@ -10,23 +10,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.aftermath import run_out, strikes_of
 from sgcad_core.planner.bystanders import stand_clear, strike_later
-from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.casting import course_of, facing_other, is_declared, other_of, seen_s
+from sgcad_core.planner.course import Course
+from sgcad_core.planner.motion import LEAD_S, STEP_S, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.parting import parted
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
-from sgcad_core.planner.role import Role, met_by, usual_speed
+from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
-from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
+from sgcad_core.planner.walkers import crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, NearCrash, size_m
+from sgcad_core.specs import Actor, BehaviorSpec, Contact, NearCrash, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
+_FURTHER_S = 3.0
+"""More time behind the first contact where somebody goes on far."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 400)
@@ -36,6 +42,7 @@ _LAST_TRIES = 90
 _ONE_TURNS = 24
 """Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
+_THINGS = ("object", "pedestrian", "bicycle")
 _SPEED_SHOWS_S = 0.3
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
@@ -59,53 +66,39 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by_force: bool = True) -> Plan:
+def plan(
+    behavior: BehaviorSpec,
+    graph: LaneGraph,
+    *,
+    may_skid: bool = False,
+    by_force: bool = True,
+    courses: Courses = NOTHING_TOLD,
+) -> Plan:
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
+
+    `courses`: what the report tells of evasion and rest, by actor.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
     Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
-    cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
-    contacts = cast.usable_contacts()
-    first, near = contacts[0] if contacts else None, behavior.near_crash
-    scene = cast.encounter(first) if first else cast.near_crash(near) if near else None
+    lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
+    cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
+    contacts = cast.usable(behavior.contacts)
+    near = behavior.near_crash
+    scene = cast.encounter(contacts[0]) if contacts else cast.near_crash(near) if near else None
     scene = scene or Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
     for contact in contacts[1:]:
         cast.later(scene, contact)
     cast.rest(scene)
     scene.settle()
+    cast.notes += run_out(scene, behavior, contacts[1:], courses, graph)
     observed = scene.first_contact()
-    realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
-    order = tuple(a.id for a in behavior.actors)
+    realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     return Plan(
-        trajectories=scene.trajectories(order), contact=observed,
+        trajectories=scene.trajectories(tuple(a.id for a in behavior.actors)), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
     )  # fmt: skip
-
-
-def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
-    course = find_course(graph, actor, gentle)
-    if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
-        return course.reversed()
-    keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
-    return at_the_edge(course) if keeps_right else course
-
-
-def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
-    """How long before the contact the clock must begin to show a told speed; 0 where it is never driven."""
-    if motion.standing or role.actor.speed_mph is None:
-        return 0.0
-    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
-    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0
-
-
-def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool:
-    if seen is None or declared is None:
-        return seen is None and declared is None
-    sides = {seen.actor: seen.actor_area, seen.other: seen.other_area}
-    return sides == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
 @dataclass
@@ -117,6 +110,7 @@ class _Cast:
     tractors: dict[str, str]
     may_skid: bool = False
     by_force: bool = True
+    told: Courses = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -125,11 +119,13 @@ class _Cast:
         for course in self.courses.values():
             self.notes += course.notes
 
-    def usable_contacts(self) -> list[Contact]:
-        """Declared contacts between two different actors of the behavior."""
-        return self._usable(self.behavior.contacts)
+    @cached_property
+    def things(self) -> frozenset[str]:
+        """What is struck on the way to rest: placed when that way is known."""
+        return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.behavior.contacts[1:]))
 
-    def _usable(self, contacts: Sequence[Contact]) -> list[Contact]:
+    def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
+        """Contacts between two different actors of the behavior."""
         found: list[Contact] = []
         for c in contacts:
             known = c.striker in self.actors and c.struck in self.actors and c.striker != c.struck
@@ -147,16 +143,16 @@ class _Cast:
 
     def near_crash(self, near: NearCrash) -> Scene | None:
         """The scene of a conflict with its evasion; None where the two cannot be brought near, or not be parted."""
-        apart = parted(self._course_of(near.conflict) if self._usable((near.conflict,)) else None, near)
-        self.notes += apart.notes
-        return self._staged(apart.encounter) if apart.encounter else None
+        found, notes = parted(self._course_of(near.conflict) if self.usable((near.conflict,)) else None, near)
+        self.notes += notes
+        return self._staged(found) if found else None
 
     def _course_of(self, conflict: Contact) -> Encounter | None:
         """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
         a, b = self._roles(conflict)
         ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
-        found = search(ordinary, (conflict.striker_area, conflict.struck_area)) or search(ordinary, None)
-        return found or self._conflict(conflict)
+        sides = (conflict.striker_area, conflict.struck_area)
+        return search(ordinary, sides) or search(ordinary, None) or self._conflict(conflict)
 
     def _conflict(self, contact: Contact) -> Encounter | None:
         """How the declared pair comes to touch; None where they cannot be brought together."""
@@ -188,12 +184,12 @@ class _Cast:
             a = self._set_rolling(a, b)
         places = self._places(a, b)
         pair = [
-            Role(actor, self.courses[actor.id], size_m(actor), place, side,
-                 surface=self.behavior.surface, may_skid=self.may_skid)
+            Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()))
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
-        return met_by(first, second), met_by(second, first)
+        return facing_other(first, second), facing_other(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
@@ -230,10 +226,11 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
+        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
-        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
+        after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
+        scene = Scene(contact + round(after / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
@@ -242,6 +239,11 @@ class _Cast:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
         return scene
+
+    def _runs_on(self) -> bool:
+        """Whether anybody goes on far behind the first contact: off the road, or into something else."""
+        afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
+        return afar or len(self.behavior.contacts) > 1
 
     def _struck_again(self) -> frozenset[str]:
         return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
@@ -269,24 +271,22 @@ class _Cast:
         return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
 
     def later(self, scene: Scene, contact: Contact) -> None:
-        """A further declared contact, where one of the two is not placed yet; best effort."""
+        """A further declared contact of vehicles, where one of the two is not placed yet; best effort."""
         placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
-        if len(placed) != 1:
+        if len(placed) != 1 or contact.struck in self.things:
             return
         partner = placed[0]
-        new = contact.struck if partner == contact.striker else contact.striker
-        sides: tuple[Area, Area] = (contact.striker_area, contact.struck_area)
-        own = sides if partner == contact.striker else sides[::-1]
+        new, sides = other_of(contact, partner)
         role = self._own_role(new)
         target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
-        role = replace(role, place=place_near(role.course, target), side=own[1], other_side=own[0])
-        if not strike_later(scene, role, partner, own):
+        role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
+        if not strike_later(scene, role, partner, sides):
             self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
 
     def rest(self, scene: Scene) -> None:
-        """Everybody who is not placed yet, clear of the others."""
+        """Everybody who is not placed yet and is not struck on the way, clear of the others."""
         for actor in self.behavior.actors:
-            if actor.id in scene.tracks or self.tractors.get(actor.id):
+            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things:
                 continue
             note = stand_clear(scene, self._own_role(actor.id))
             self.notes += [note] if note else []

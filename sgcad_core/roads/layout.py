@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import get_args
 
+from sgcad_core.kinds import RAMP
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
 from sgcad_core.roads.road_geometry import BESIDE_M, LANE_M, MEDIAN_M
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
@@ -52,7 +53,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
-        length_m = min(leg_m, ARC_M) if leg.kind == "ramp" else leg_m  # a long ramp would meet the road that it joins
+        length_m = min(leg_m, ARC_M) if leg.kind == RAMP else leg_m  # a long ramp would meet the road that it joins
         drawn = _LegDrawing(leg, _path(leg, legs, rim), _clearance(leg, legs, rim), _crowd(layout, leg), length_m, rim)
         leg_nodes, leg_roads = drawn.draw(accesses)
         nodes += leg_nodes
@@ -126,7 +127,7 @@ def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
     bend = {"none": 0.0, "left": -1 / RADIUS_M, "right": 1 / RADIUS_M}[leg.curve]
     if rim:
         return _Path(_angle(leg.bearing), bend, rim.radius_m)
-    return _Path(_ramp_angle(leg, legs) if leg.kind == "ramp" else _angle(leg.bearing), bend)
+    return _Path(_ramp_angle(leg, legs) if leg.kind == RAMP else _angle(leg.bearing), bend)
 
 
 def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
@@ -134,7 +135,7 @@ def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
     own = _angle(leg.bearing)
     for other in legs:
         gap = (_angle(other.bearing) - own + math.pi) % (2 * math.pi) - math.pi
-        if other.kind != "ramp" and 0.1 < abs(gap) < math.radians(50):
+        if other.kind != RAMP and 0.1 < abs(gap) < math.radians(50):
             return _angle(other.bearing) - math.copysign(RAMP_ANGLE, gap)
     return own
 

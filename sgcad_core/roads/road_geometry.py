@@ -13,6 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.circle import SPLITTER_M
 from sgcad_core.specs import Beside, Node, Road, RoadSpec
 
@@ -103,7 +104,7 @@ def lane_width_m(road: Road) -> float:
     """Lane width in metres."""
     if road.circle:
         return CIRCLE_LANE_M
-    return DRIVEWAY_LANE_M if road.kind == "driveway" else LANE_M
+    return DRIVEWAY_LANE_M if road.kind == DRIVEWAY else LANE_M
 
 
 def beside(road: Road) -> tuple[Beside, ...]:

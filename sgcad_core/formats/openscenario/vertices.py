@@ -8,6 +8,7 @@ APART_M / 0.05 s = 2.2 m/s that is nothing. Knows no XML.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -49,6 +50,21 @@ def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
     return rows
 
 
+def settled(move: Trajectory) -> Trajectory:
+    """The motion of whom a blow hardly moves from where it stands: it stays there.
+
+    Of a standstill and so small a motion behind it to the end, esmini keeps the first and the last vertex only, and
+    creeps between them from the start on.
+    """
+    poses = np.column_stack((move.x_m, move.y_m, np.unwrap(move.heading_rad)))
+    end = len(poses) - 1
+    stands = [b for a, b in _standstills(poses) if b < end and move.t_s[b] - move.t_s[a] >= STAND_S]
+    if not stands or _apart(poses[stands[-1] :], poses[stands[-1]]).any():
+        return move
+    rows = np.minimum(np.arange(len(poses)), stands[-1])
+    return move.model_copy(update={name: getattr(move, name)[rows] for name in ("x_m", "y_m", "heading_rad")})
+
+
 @dataclass(frozen=True)
 class _Stretch:
     """Rows from one that is written to another: times (n,) and the origin's poses (n, 3)."""
@@ -63,27 +79,49 @@ class _Stretch:
         The final vertex of a polyline is never merged, so its neighbor may be near.
         """
         end = len(self.poses) - 1
+        neighbors = self._neighbors(final)
+        errors = self._errors([(k, row) for row in range(1, end + 1) for k in neighbors[row]])
         least, before = np.full(end + 1, np.inf), np.zeros(end + 1, int)
         least[0] = 0.0
         for row in range(1, end + 1):
-            closes = final and row == end
-            reach = np.flatnonzero(np.isfinite(least[:row]) & (closes | _apart(self.poses[:row], self.poses[row])))
-            for k in reach if closes else reach[-NEAREST:]:
-                if (error := least[k] + self._error(int(k), row)) <= least[row]:  # of equals the nearest
+            for k in neighbors[row]:
+                if (error := least[k] + errors[k, row]) <= least[row]:  # of equals the nearest
                     least[row], before[row] = error, k
         rows = [end]
         while (row := int(before[rows[-1]])) > 0:
             rows.append(row)
         return rows[::-1]
 
-    def _error(self, first: int, last: int) -> float:
-        """Sum of squared distances of the box centers between two rows from even motion, m2."""
-        if last - first < 2:
-            return 0.0
-        t_s, poses = self.t_s[first : last + 1], self.poses[first : last + 1]
-        share = ((t_s - t_s[0]) / (t_s[-1] - t_s[0]))[:, None]
-        away = self._centers(poses[0] + share * (poses[-1] - poses[0])) - self._centers(poses)
-        return float((away * away).sum())
+    def _neighbors(self, final: bool) -> list[list[int]]:
+        """For each row the rows that may be written before it, rising."""
+        end = len(self.poses) - 1
+        reached, found = np.arange(end + 1) == 0, [list[int]()]
+        for row in range(1, end + 1):
+            closes = final and row == end
+            reach = np.flatnonzero(reached[:row] & (closes | _apart(self.poses[:row], self.poses[row])))
+            found.append((reach if closes else reach[-NEAREST:]).tolist())
+            reached[row] = bool(found[row])
+        return found
+
+    def _errors(self, pairs: Sequence[tuple[int, int]]) -> dict[tuple[int, int], float]:
+        """(first, last) -> sum of squared distances of the box centers between two rows from even motion, m2.
+
+        All pairs in one computation: (N, 3) poses of even motion, those of a pair behind those of the one before.
+        """
+        far = np.array([pair for pair in pairs if pair[1] - pair[0] > 1], dtype=int).reshape(-1, 2)
+        first, last = far.T
+        counts = last - first + 1
+        ends = np.cumsum(counts)
+        rows = np.arange(counts.sum()) - np.repeat(ends - counts - first, counts)
+        first, last = np.repeat(first, counts), np.repeat(last, counts)
+        share = ((self.t_s[rows] - self.t_s[first]) / (self.t_s[last] - self.t_s[first]))[:, None]
+        even = self.poses[first] + share * (self.poses[last] - self.poses[first])
+        away = self._centers(even) - self._centers(self.poses)[rows]
+        squares = away * away
+        found = dict.fromkeys(pairs, 0.0)
+        for pair, end, count in zip(far.tolist(), ends.tolist(), counts.tolist(), strict=True):
+            found[pair[0], pair[1]] = float(squares[end - count : end].sum())
+        return found
 
     def _centers(self, poses: Floats) -> Floats:
         reach = np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
