@@ -263,7 +263,7 @@ class BehaviorSpec(Spec):
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
-    near_crash: NearCrash | None = None
+    near_crash: NearCrash | None = added(None, "what was avoided where nobody touches; contacts is then empty")
 
 
 class Refusal(Spec):

@@ -49,6 +49,14 @@ def _near_crash(facts: CrashFacts, contacts: list[ContactFacts]) -> NearCrash | 
     return None if near is None or not contacts else near_crash_of(near, _contact(contacts[0]))
 
 
+def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
+    """An answered behavior whose first contact did not come about, where the text tells a near crash; else as it is."""
+    near = facts.near_crash
+    if near is None or not near.stated or not behavior.contacts:
+        return behavior
+    return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
+
+
 def near_crash_of(near: NearFacts, conflict: Contact) -> NearCrash:
     """A told near crash on a conflict."""
     pair = (conflict.striker, conflict.struck)
