@@ -146,10 +146,13 @@ class _Builder:
         return (*self._through(main, stem), drive)
 
     def _merge(self, main: RoadFact) -> tuple[Leg, ...]:
-        """A one-lane ramp that joins from behind on the right, or where its vehicle comes from."""
+        """A one-lane ramp that joins from behind on the right, or where its vehicle comes from, or leaves ahead."""
         flow = self._main_flow(main)
         ramp = next((r for r in self.facts.roads if r.kind == "ramp"), None)
         count = (ramp.lanes.total or 1) if ramp else 1
+        if self.facts.leaves:
+            off = Leg(bearing=turned(flow, 45), lanes_in=0, lanes_out=count, kind="ramp")
+            return (*self._through(main, off.bearing), off)
         at = self.facts.junction.stem
         if at is None or axis_of(at) == main.axis or between(flow, at) not in (135, 225):
             at = turned(flow, 135)

@@ -45,7 +45,9 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     Not `fine`: without those that differ by less than a metre.
     """
     if role.actor.maneuver in _LANE_CHANGES:
-        return _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        joins = role.actor.maneuver == "merge" and any(p.is_junction for p in role.course.passages)
+        changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
     if wanted is not None:
         shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
