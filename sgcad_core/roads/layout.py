@@ -47,7 +47,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     A leg with an access far out is longer. A roundabout has a circle of nodes in place of the hub.
     """
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
-    mouths = [Mouth(leg.bearing, _angle(leg.bearing), _width(leg), "sidewalk" in leg.beside) for leg in legs]
+    mouths = [Mouth(leg.bearing, _angle(leg), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
     nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
@@ -114,8 +114,9 @@ def _node(name: str, place: tuple[float, float], control: NodeControl = "none") 
     return Node(id=name, x_m=round(place[0], 2), y_m=round(place[1], 2), control=control)
 
 
-def _angle(bearing: Compass) -> float:
-    return math.radians(90 - 45 * COMPASS.index(bearing))
+def _angle(leg: Leg) -> float:
+    """Where a leg lies, radians counter-clockwise from east."""
+    return math.radians(90 - 45 * COMPASS.index(leg.bearing) - leg.skew_deg)
 
 
 def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
@@ -125,17 +126,17 @@ def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
     """
     bend = {"none": 0.0, "left": -1 / RADIUS_M, "right": 1 / RADIUS_M}[leg.curve]
     if rim:
-        return _Path(_angle(leg.bearing), bend, rim.radius_m)
-    return _Path(_ramp_angle(leg, legs) if leg.kind == "ramp" else _angle(leg.bearing), bend)
+        return _Path(_angle(leg), bend, rim.radius_m)
+    return _Path(_ramp_angle(leg, legs) if leg.kind == "ramp" else _angle(leg), bend)
 
 
 def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
     """A ramp leans to the road that it joins where that lies within 45 degrees."""
-    own = _angle(leg.bearing)
+    own = _angle(leg)
     for other in legs:
-        gap = (_angle(other.bearing) - own + math.pi) % (2 * math.pi) - math.pi
+        gap = (_angle(other) - own + math.pi) % (2 * math.pi) - math.pi
         if other.kind != "ramp" and 0.1 < abs(gap) < math.radians(50):
-            return _angle(other.bearing) - math.copysign(RAMP_ANGLE, gap)
+            return _angle(other) - math.copysign(RAMP_ANGLE, gap)
     return own
 
 
