@@ -119,10 +119,37 @@ def _right_hook(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs), _crash(turner, cyclist, ("right", "left")))
 
 
+def _lot_backs(r: random.Random, kind: str) -> Place:
+    """One who backs out of a stall strikes one in the aisle, who drives or stands."""
+    own = r.choice(COMPASS)
+    ends = (own, _turned(own, 4))
+    backing = _actor("V1", own, "backing")
+    other = _actor("V2", own, r.choice(["straight", "stopped"]))
+    return Place(kind, RoadLayout(legs=_aisles(ends)), _crash(backing, other, ("back", "right")))
+
+
+def _lot_crosses(r: random.Random, kind: str) -> Place:
+    """Two who cross where two aisles do."""
+    own, left, ahead, right = _cross(r)
+    crash = _crash(_actor("V1", own, exit_road=ahead), _actor("V2", left, exit_road=right), ("front", "right"))
+    return Place(kind, RoadLayout(legs=_aisles((own, left, ahead, right))), crash)
+
+
+def _aisles(ends: tuple[Compass, ...]) -> tuple[Leg, ...]:
+    return tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", beside=("parking",)) for end in ends)
+
+
+def _skewed(r: random.Random, legs: tuple[Leg, ...], crossing: tuple[Compass, ...]) -> tuple[Leg, ...]:
+    """The same legs, those of the crossing road turned as one in half of all places."""
+    skew = r.choice([0, 0, r.randint(-35, 35)])
+    return tuple(leg.model_copy(update={"skew_deg": skew}) if leg.bearing in crossing else leg for leg in legs)
+
+
 def _crossing(r: random.Random, kind: str) -> Place:
     """Two who cross."""
     own, left, ahead, right = _cross(r)
     legs = _legs(r, (own, left, ahead, right), beside=_edges(r), control=_control(r))
+    legs = _skewed(r, legs, (left, right))
     crash = _crash(_actor("V1", own, exit_road=ahead), _actor("V2", left, exit_road=right), ("front", "right"))
     return Place(kind, RoadLayout(legs=legs), crash)
 
@@ -130,15 +157,20 @@ def _crossing(r: random.Random, kind: str) -> Place:
 def _left_turn(r: random.Random, kind: str) -> Place:
     """One who turns left at a T before one who comes towards him."""
     own, left, ahead, _ = _cross(r)
-    legs = _legs(r, (own, left, ahead), beside=_edges(r), control=_control(r))
+    legs = _skewed(r, _legs(r, (own, left, ahead), beside=_edges(r), control=_control(r)), (left,))
     turner = _actor("V2", own, "turn_left", exit_road=left)
     return Place(kind, RoadLayout(legs=legs), _crash(_actor("V1", ahead, exit_road=own), turner, ("front", "right")))
+
+
+def _freeway(r: random.Random, own: Compass) -> tuple[Leg, ...]:
+    fields = {"beside": r.choice([(), ("shoulder",)]), "median": r.choice(["grass", "barrier"])}
+    return _legs(r, (own, _turned(own, 4)), speed_limit_mph=r.choice([55, 60, 65]), **fields)
 
 
 def _ramp(r: random.Random, kind: str) -> Place:
     """One who merges touches one on the road."""
     own = r.choice(COMPASS)
-    legs = _legs(r, (own, _turned(own, 4)), beside=_edges(r), median=r.choice(["grass", "barrier"]))
+    legs = _freeway(r, own)
     ramp = Leg(bearing=_turned(own, -1), lanes_in=1, lanes_out=0, kind="ramp")
     merging = _actor("V1", ramp.bearing, "merge", exit_road=_turned(own, 4))
     crash = _crash(merging, _actor("V2", own, lane=1, exit_road=_turned(own, 4)), ("left", "right"))
@@ -148,7 +180,7 @@ def _ramp(r: random.Random, kind: str) -> Place:
 def _exit(r: random.Random, kind: str) -> Place:
     """One who leaves by a ramp is struck from behind."""
     own = r.choice(COMPASS)
-    legs = _legs(r, (own, _turned(own, 4)), beside=_edges(r), median=r.choice(["grass", "barrier"]))
+    legs = _freeway(r, own)
     ramp = Leg(bearing=_turned(own, 3), lanes_in=0, lanes_out=1, kind="ramp")
     crash = _crash(
         _actor("V1", own, lane=1, exit_road=ramp.bearing),
@@ -170,5 +202,6 @@ def _driveway(r: random.Random, kind: str) -> Place:
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
-    "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
+    "parking lot, backs": _lot_backs,
+    "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
 }  # fmt: skip

@@ -68,6 +68,8 @@ def junction_of(
         return JunctionFacts(stated=stated)
     control, control_at = control_of(told)
     record = junction_kind(kind)
+    if record.legs == 2:
+        return JunctionFacts(kind, stated=stated, where=_where(kind=_named(story)[1]))
     where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
     halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()

@@ -14,7 +14,7 @@ from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
-from sgcad_core.narrative.layout_places import circle_lanes, offset, skewed, with_edges
+from sgcad_core.narrative.layout_places import circle_lanes, offset, parking_lot, skewed, with_edges
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
@@ -55,6 +55,8 @@ class _Builder:
         junction = self.facts.junction
         if junction.kind == "none":
             return RoadLayout(legs=self._plain(main))
+        if junction.kind == "parking_lot":
+            return parking_lot(self.facts, main.axis or "N")
         if junction.kind == "ramp":
             return RoadLayout(legs=self._merge(main))
         if junction.kind == "driveway":

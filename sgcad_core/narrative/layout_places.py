@@ -6,9 +6,10 @@ Knows no geometry and no file format.
 from __future__ import annotations
 
 from sgcad_core.kinds import junction_kind
-from sgcad_core.narrative.compass import between
+from sgcad_core.narrative.compass import between, turned
+from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFacts
-from sgcad_core.specs import Access, Leg, RoadLayout
+from sgcad_core.specs import Access, Compass, Leg, RoadLayout
 
 OFFSET_M = 35.0
 """Between the two T junctions of an offset crossing: reports tell that it is offset, seldom by how much."""
@@ -28,6 +29,16 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
     walked = facts.crosswalk and (len(legs) > 2 or leg is legs[0])
     sides = (*facts.beside, "sidewalk") if facts.crosswalk else facts.beside
     return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
+
+
+def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
+    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both."""
+    told = [v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "backing"]
+    axes = (axis, *dict.fromkeys(axis_of(heading) for heading in told if axis_of(heading) != axis))[:2]
+    ends = [end for way in axes for end in (turned(way, 180), way)]
+    return RoadLayout(
+        legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", beside=("parking",)) for end in ends)
+    )
 
 
 def circle_lanes(facts: RoadFacts, legs: tuple[Leg, ...]) -> int:

@@ -178,6 +178,8 @@ def _from_beside(role: Role) -> list[Drift]:
 def pacings(role: Role) -> list[Pacing]:
     if role.actor.kind == "pedestrian":
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
     found = [Pacing(0.0), *_following(role), Pacing(0.2, 0.75, note=_SLOWER), Pacing(0.3, 1.3, note=_FASTER)]
     found.append(Pacing(0.4, 0.5, note=_SLOWER))
     if role.actor.maneuver in TURNING or role.course.passages:
@@ -270,7 +272,9 @@ def stand_offs(role: Role) -> list[Drift]:
 
 
 def askew(role: Role) -> list[Twist]:
-    """Straight in its lane, a little turned, or turned to the other one."""
+    """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
+    if role.course.stalls and role.actor.maneuver == "parked":
+        return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), _ASKEW) for a in (15, -15, 35, -35)]
     return [Twist(0.0), *small, *aiming(role)]
 

@@ -20,6 +20,7 @@ from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
+from sgcad_core.planner.stalls import out_of_stall
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
@@ -87,6 +88,8 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
 
 def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
     course = find_course(graph, actor, gentle)
+    if actor.maneuver == "backing" and course.stalls:
+        return out_of_stall(course, size_m(actor)[0])
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
         return course.reversed()
     keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
+from sgcad_core.metrics.driving import REAR_AXLE
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
@@ -149,6 +150,8 @@ def facing(side: Area) -> float:
 
 
 def line_m(role: Role) -> float:
-    """Where it would stand at the last stop line before the meeting place."""
+    """Where it would stand at the last stop line before the meeting place; in its stall where it backs out of one."""
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return REAR_AXLE * role.size[0]
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
     return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
-from sgcad_core.roads.road_geometry import BESIDE_M, LANE_M, MEDIAN_M
+from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m, is_aisle
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -24,6 +24,8 @@ LEG_M = 240.0
 """Length of a leg: 8 s at 65 mph, so that every approach begins on the road."""
 ARC_M = 120.0
 """A curved leg bends over this length from the hub; beyond, it runs straight."""
+_LONGEST_M = {"ramp": ARC_M, "aisle": 80.0}
+"""Legs that are shorter than others: a long ramp would meet the road that it joins, and aisles are no longer."""
 ACCESS_M = 45.0
 ACCESS_ROAD_M = 80.0
 BEYOND_JOINT_M = 60.0
@@ -52,7 +54,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
-        length_m = min(leg_m, ARC_M) if leg.kind == "ramp" else leg_m  # a long ramp would meet the road that it joins
+        length_m = min(leg_m, _LONGEST_M.get("aisle" if is_aisle(leg) else leg.kind, leg_m))
         drawn = _LegDrawing(leg, _path(leg, legs, rim), _clearance(leg, legs, rim), _crowd(layout, leg), length_m, rim)
         leg_nodes, leg_roads = drawn.draw(accesses)
         nodes += leg_nodes
@@ -150,7 +152,7 @@ def _clearance(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> float:
 def _width(leg: Leg) -> float:
     """Lanes and median of a leg, metres."""
     lanes = (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
-    return lanes + sum(BESIDE_M[what] for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
+    return lanes + sum(beside_m(leg, what) for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
 
 
 def _crowd(layout: RoadLayout, leg: Leg) -> float:

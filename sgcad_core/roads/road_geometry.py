@@ -14,7 +14,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.specs import Beside, Node, Road, RoadSpec
+from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]
 
@@ -27,6 +27,10 @@ MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier":
 """Gap between the directions. Grass medians are often wider; beyond this a junction no longer looks like one."""
 BESIDE_M: Mapping[Beside, float] = {"bike_lane": 1.5, "parking": 2.4, "shoulder": 2.4, "sidewalk": 1.8}
 """Usual widths (AASHTO 2018: 5, 8, 8 and 6 ft)."""
+STALL_M = 5.5
+"""Depth of the stalls along an aisle of a parking lot (18 ft): one parks square to it."""
+AISLE_LANE_M = 3.6
+"""Half of an aisle between square stalls (24 ft)."""
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
@@ -103,7 +107,19 @@ def lane_width_m(road: Road) -> float:
     """Lane width in metres."""
     if road.circle:
         return CIRCLE_LANE_M
+    if is_aisle(road):
+        return AISLE_LANE_M
     return DRIVEWAY_LANE_M if road.kind == "driveway" else LANE_M
+
+
+def is_aisle(road: Road | Leg) -> bool:
+    """Whether it is an aisle of a parking lot: a driveway with room to park beside it."""
+    return road.kind == "driveway" and "parking" in road.beside
+
+
+def beside_m(road: Road | Leg, what: Beside) -> float:
+    """Width of what lies beside the lanes, metres."""
+    return STALL_M if what == "parking" and is_aisle(road) else BESIDE_M[what]
 
 
 def beside(road: Road) -> tuple[Beside, ...]:

@@ -37,7 +37,8 @@ def road(name: int, x: int, length: int, lanes: str, link: str = "", junction: s
     center = '<center><lane id="0" type="none" level="false"/></center>'
     line = f'<geometry s="0" x="{x}" y="0" hdg="0" length="{length}"><line/></geometry>'
     return (
-        f'<road name="" length="{length}" id="{name}" junction="{junction}"><link>{link}</link><planView>{line}</planView>'
+        f'<road name="" length="{length}" id="{name}" junction="{junction}"><link>{link}</link>'
+        f"<planView>{line}</planView>"
         f'<lanes><laneSection s="0">{center}<right>{lanes}</right></laneSection></lanes></road>'
     )
 
