@@ -181,7 +181,7 @@ def _exit(r: random.Random, kind: str) -> Place:
     """One who leaves by a ramp is struck from behind."""
     own = r.choice(COMPASS)
     legs = _freeway(r, own)
-    ramp = Leg(bearing=_turned(own, 3), lanes_in=0, lanes_out=1, kind="ramp")
+    ramp = Leg(bearing=_turned(own, 5), lanes_in=0, lanes_out=1, kind="ramp")
     crash = _crash(
         _actor("V1", own, lane=1, exit_road=ramp.bearing),
         _actor("V2", own, "slowing", lane=1, exit_road=ramp.bearing), ("front", "back"),

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
-from sgcad_core.metrics.driving import REAR_AXLE
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.specs import Actor, Area, Surface
 
 MPH = 0.44704
+IN_STALL_M = -1.0
+"""Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -152,6 +153,6 @@ def facing(side: Area) -> float:
 def line_m(role: Role) -> float:
     """Where it would stand at the last stop line before the meeting place; in its stall where it backs out of one."""
     if role.course.stalls and role.actor.maneuver == "backing":
-        return REAR_AXLE * role.size[0]
+        return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
     return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2

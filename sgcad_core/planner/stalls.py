@@ -17,7 +17,7 @@ from sgcad_core.planner.path import draw
 
 RADIUS_M = 5.0
 """Of the rear axle when it backs out with the wheel turned full."""
-STRAIGHT_M = 2.5
+STRAIGHT_M = 4.5
 """First it goes straight, until its nose clears the cars beside."""
 REACH_M = 1.0
 """Behind the edge of the lane to where it is met there."""

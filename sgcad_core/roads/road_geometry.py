@@ -14,6 +14,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.roads.circle import SPLITTER_M
+from sgcad_core.roads.ramps import joined
 from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]
@@ -141,7 +142,20 @@ def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequen
     there = meeting[road.from_node], meeting[road.to_node]
     opens = _opens(road, there[0]), _opens(road, there[1])
     gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
-    return Roadway(road, smooth(points), median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+    line = smooth(points) + _beside_road(road, nodes, meeting)
+    return Roadway(road, line, median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+
+
+def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
+    """How far a ramp lies to the right of a line through its nodes, so that it meets its road's outer lane: (2,)."""
+    way = joined(road, nodes, meeting)
+    if way is None:
+        return np.zeros(2)
+    both, width = two_way(way.road), lane_width_m(way.road)
+    inner = (median_gap_m(way.road) + has_center_lane(way.road) * width) / 2 if both else -way.lanes * width / 2
+    right = np.array([way.travel[1], -way.travel[0]])
+    found: Floats = right * (inner + (way.lanes - 0.5) * width)
+    return found
 
 
 def _opens(road: Road, meeting: Sequence[Road]) -> bool:

@@ -28,16 +28,16 @@ def test_one_told_on_a_ramp_and_changing_lanes_merges_from_the_ramp() -> None:
     assert made.behavior is not None
     v1, v2 = made.behavior.actors
     assert (v1.road, v1.maneuver, v2.road) == ("SW", "merge", "W")
-    assert made.oddity == 0.0
+    assert made.oddity < 0.3
 
 
 def test_who_merges_stays_on_the_ramp_and_the_road() -> None:
     motion = next(t for t in scenario(MERGES).planned if t.actor == "V1")
-    on_ramp = motion.x_m < -30.0
+    on_ramp = motion.x_m < -15.0
     assert on_ramp.any()
     across = motion.y_m[on_ramp] - motion.x_m[on_ramp] * 0.5317  # the ramp leans by 28 degrees
     assert float(across.max() - across.min()) < 1.0
-    beyond = motion.x_m > -15.0
+    beyond = motion.x_m > 2.0
     assert motion.y_m[beyond].min() > -11.5
 
 
