@@ -15,15 +15,16 @@ help: ## list the targets
 
 setup: $(READY) ## create .venv with everything installed
 
-$(READY): pyproject.toml
+$(READY): pyproject.toml deploy/constraints.txt
 	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else f"Python 3.11 to 3.13 is needed, found {v[0]}.{v[1]}: make PYTHON=python3.11 ...")'
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo 'Installing everything into $(VENV): about 3 GB and three minutes, once.'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint deploy/constraints.txt -e '.[dev]'
 	@touch $@
 
-demo: setup ## three bundled reports become scenarios; prints where to look
-	$(BIN)/sgcad evaluate docs/demo --config configs/template.yaml --out runs/demo
+demo: setup ## three bundled reports become scenarios; prints where to look and what to do next
+	@$(BIN)/python -m flows.demo
 
 test: setup ## the whole test suite, as many tests at once as there are cores (WORKERS=2)
 	$(BIN)/python -m pytest $(SIDE_BY_SIDE)

@@ -26,8 +26,7 @@ from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.losses import tells_lost_control
-from sgcad_core.narrative.reading import crash_facts
+from sgcad_core.narrative.reading import read
 from sgcad_core.records import Trajectory
 
 MPH = 0.44704
@@ -78,12 +77,11 @@ def count(case: Path, figures: Figures) -> None:
     motions = read_motions(case / "trajectories.csv")
     sizes = {a["id"]: (a["length_m"], a["width_m"]) for a in result["actors"]}
     touches = first_touches(motions, sizes)
-    text = (case / "report.txt").read_text(encoding="utf-8")
-    facts = crash_facts(text)
+    reading = read((case / "report.txt").read_text(encoding="utf-8"))
     kinds = {a["id"]: a for a in result["actors"]}
     for motion in motions:
         if kinds[motion.actor]["type"] in WHEELED:
-            _vehicle(case.name, motion, kinds[motion.actor], (touches, facts, tells_lost_control(text)), figures)
+            _vehicle(case.name, motion, kinds[motion.actor], (touches, reading.crash, reading.lost_control), figures)
     _overlaps(case.name, motions, sizes, figures)
 
 

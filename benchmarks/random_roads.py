@@ -1,4 +1,4 @@
-"""Seeded random road networks: any layout that a report can tell, every field of it drawn."""
+"""Seeded random road networks and crashes on them: any layout that a report can tell, every field of it drawn."""
 
 from __future__ import annotations
 
@@ -6,12 +6,30 @@ import random
 from collections.abc import Iterator
 from typing import Any, get_args
 
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.scenario import compile_scenario
+from sgcad_core.formats.openscenario.writer import Encoding
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import RoadNetwork
+from sgcad_core.records import RoadNetwork, Scenario
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Compass, Leg, Median, RoadLayout, RoadSpec, Turn
+from sgcad_core.specs import (
+    Access,
+    Actor,
+    Area,
+    BehaviorSpec,
+    Compass,
+    Contact,
+    Leg,
+    Median,
+    RoadLayout,
+    RoadSpec,
+    Turn,
+)
 
+MANEUVERS = ("straight", "straight", "turn_left", "turn_right", "stopped", "lane_change_left", "lane_change_right",
+             "crossing_centerline", "slowing", "backing", "negotiating_curve")  # fmt: skip
+KINDS = ("car", "car", "suv", "pickup", "van", "truck", "bus", "motorcycle")
 CONTROLS = ("none", "signal", "flashing", "stop", "yield")
 
 
@@ -50,3 +68,37 @@ def random_networks(count: int, first: int = 0) -> Iterator[tuple[str, RoadNetwo
     for seed in range(first, first + count):
         spec = random_layout(seed)
         yield f"random-{seed}", compile_network(plain_xml(spec), spec)
+
+
+def random_behavior(seed: int, spec: RoadSpec) -> BehaviorSpec:
+    """Two vehicles that start on roads with lanes for them, and a contact between them."""
+    r = random.Random(seed)
+    starts = [
+        (road.id, direction)
+        for road in spec.roads
+        for direction, lanes in (("forward", road.lanes_forward), ("backward", road.lanes_backward))
+        if lanes
+    ]
+    actors = [_actor(r, f"V{n}", r.choice(starts)) for n in (1, 2)]
+    areas = [r.choice(get_args(Area)) for _ in range(2)]
+    contact = Contact(striker="V1", struck="V2", striker_area=areas[0], struck_area=areas[1])
+    return BehaviorSpec(actors=tuple(actors), contacts=(contact,))
+
+
+def _actor(r: random.Random, name: str, start: tuple[str, Any]) -> Actor:
+    return Actor(
+        id=name, kind=r.choice(KINDS), road=start[0], direction=start[1], maneuver=r.choice(MANEUVERS),
+        speed_mph=r.choice([None, None, 15, 30, 45, 60]),
+    )  # fmt: skip
+
+
+def random_crashes(count: int, encoding: Encoding = "timed") -> Iterator[tuple[str, RoadNetwork, Scenario | str]]:
+    """(name, network, scenario) on as many random maps; what cannot be planned has the planner's words instead."""
+    for seed, (name, network) in enumerate(random_networks(count)):
+        if network.net_xml is None or network.spec is None:
+            yield name, network, f"no network: {network.log[-200:]}"
+            continue
+        try:
+            yield name, network, compile_scenario(random_behavior(seed, network.spec), network, encoding=encoding)
+        except InvalidOutput as fault:
+            yield name, network, str(fault)

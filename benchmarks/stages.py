@@ -59,12 +59,12 @@ def cost(count: int, overrides: list[str]) -> Cost:
 def inside(cases: Path, out: Path, overrides: list[str]) -> None:
     """The measured process: one batch; prints the processor seconds of this process without its children."""
     from flows import batch as batches
-    from flows import start, summary
+    from flows import start, summary, watching
     from flows.cases import cases_in
 
     made = batches.batch_of(cases_in([cases]), [Path("template.yaml")], out, overrides)
-    with summary.progress(summary.Tally(made)) as on_ending:
-        start.evaluate(made, on_ending)
+    with watching.watching(summary.Tally(made)) as watch:
+        start.evaluate(made, watch.ended)
     usage = resource.getrusage(resource.RUSAGE_SELF)
     sys.stdout.write(f"{usage.ru_utime + usage.ru_stime}\n")
     sys.stdout.flush()

@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows import cases, chain, sharing, store
+from flows import cases, chain, named, sharing, store
 from flows.cases import Case
 from flows.chain import Ending
 from flows.sharing import Sharing
@@ -110,6 +110,8 @@ def batch_over(
     out = out.resolve()
     store.check_writable(out)
     for config in configs:
+        config.tracker.ready(out)
+    for config in configs:
         store.check_writable(out / config.name)
         store.clear_partial(out / config.name)
     asks = any(config.backbone for config in configs)
@@ -121,7 +123,7 @@ def _load_all(paths: Sequence[Path], overrides: tuple[str, ...]) -> tuple[Config
     loaded: list[Config] = []
     for path in paths:
         try:
-            loaded.append(load(path, overrides))
+            loaded.append(named.named(load(path, overrides), overrides))
         except ConfigError as fault:
             faults.append(str(fault))
     twice = [name for name, n in Counter(c.name for c in loaded).items() if n > 1]
@@ -138,11 +140,16 @@ def cores() -> int:
 
 
 # ------------------------------------------------------------------ doing it
+OnTurn = Callable[[Job, str], None]
+"""Told, from any thread, that an attempt of a job with a model begins; its name is such as "road[2]"."""
+
+
 @dataclass
 class Crew:
     """Does jobs: those without a model at once in the background, those with one when they are waited for."""
 
     batch: Batch
+    on_turn: OnTurn | None = None
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
     _workers: list[Worker] = field(default_factory=list)
@@ -154,6 +161,8 @@ class Crew:
 
     def begin(self, plan: Sequence[Job]) -> None:
         """Start what needs no model, and load the first model that will be asked while the server starts."""
+        for config in {job.config.name: job.config for job in plan}.values():
+            named.write(self.batch.out / config.name, config)
         asking = (job for job in plan if job.config.backbone and self.reusable(job) is None)
         if model := next((job.config.backbone for job in asking), None):
             threading.Thread(target=_load, args=(model,), daemon=True, name="load").start()
@@ -179,7 +188,7 @@ class Crew:
             return self._begun[job.name].result()
         if done := self.reusable(job):
             return done
-        watched = self._unless_stopped(on_attempt)
+        watched = self._unless_stopped(job, on_attempt)
         with self._places:
             self._check()
             return chain.run_case(job.config, job.case, self.batch.out, job.digest, watched, sharing=job.sharing)
@@ -201,9 +210,11 @@ class Crew:
             self._idle.put(worker)
         return ending
 
-    def _unless_stopped(self, on_attempt: OnAttempt) -> OnAttempt:
+    def _unless_stopped(self, job: Job, on_attempt: OnAttempt) -> OnAttempt:
         def checked(name: str, turn: Callable[[], object]) -> object:
             self._check()
+            if self.on_turn:
+                self.on_turn(job, name)
             return on_attempt(name, turn)  # type: ignore[arg-type]
 
         return checked  # type: ignore[return-value]

@@ -20,6 +20,7 @@ from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
 from sgcad_core.report_files import is_regular
+from sgcad_core.strangers import code_of
 
 TEXTS = {"report.txt", "narrative.txt"}
 SUFFIXES = {".txt", ".xml", ".pdf"}
@@ -38,15 +39,36 @@ class Case:
 
 def cases_of(sources: Sequence[Path]) -> tuple[Case, ...]:
     """Reports named one by one. Raises ConfigError for a missing one or two of the same name."""
-    missing = [str(s) for s in sources if not s.exists()]
+    missing = [str(s) for s in sources if not _is_there(s)]
     if missing:
         raise ConfigError(f"no such report: {', '.join(missing)}; give a case folder or a .txt, .xml or .pdf file")
-    cases = tuple(Case(s, safe_id(s.resolve().name)) for s in sources)
+    cases = tuple(Case(s, name) for s, name in zip(sources, _names(sources), strict=True))
     twice = [name for name, n in Counter(c.id.casefold() for c in cases).items() if n > 1]
     if twice:
         same = [str(c.source) for c in cases if c.id.casefold() == twice[0]]
         raise ConfigError(f"{' and '.join(same)} would share the folder {twice[0]!r}: rename one or use --out")
     return cases
+
+
+def _is_there(source: Path) -> bool:
+    """Whether it is there, as far as anybody lets us look; what cannot be read costs its own case later."""
+    try:
+        return source.exists()
+    except PermissionError:
+        return True
+
+
+def _names(sources: Sequence[Path]) -> list[str]:
+    """Folder names: a file's without its suffix, unless another report of the same batch is called so too."""
+    plain = [_name(source, whole=False) for source in sources]
+    count = Counter(name.casefold() for name in plain)
+    return [_name(source, whole=count[name.casefold()] > 1) for source, name in zip(sources, plain, strict=True)]
+
+
+def _name(source: Path, *, whole: bool) -> str:
+    place = source.resolve()
+    suffixed = source.is_file() and place.suffix.lower() in {*SUFFIXES, ".md"}
+    return safe_id(place.stem if suffixed and not whole else place.name)
 
 
 def cases_in(folders: Iterable[Path]) -> tuple[Case, ...]:
@@ -101,7 +123,7 @@ def config_digest(config: Config) -> str:
     about = {
         "raw": raw,
         "name": config.name,
-        "plugins": {qualified(p): (type(p).version, p.stamp) for p in _plugins(config)},
+        "plugins": {qualified(p): identity(p) for p in _plugins(config)},
         "files": sorted(set(named_digests(raw))),
         "package": version("sg-cadvlm"),
         "code": code_digest(asks_model=config.backbone is not None),
@@ -140,6 +162,12 @@ def _folder_digest(folder: Path) -> str:
     return _files_digest(files, folder) if small else hashlib.sha256(repr(sizes).encode()).hexdigest()
 
 
+def identity(plugin: Plugin) -> tuple[str, ...]:
+    """What makes a plugin's results its own beside its fields: version, stamp, and a stranger's code."""
+    stranger = code_of(type(plugin))
+    return (type(plugin).version, plugin.stamp, *([stranger] if stranger else []))
+
+
 def qualified(plugin: Plugin) -> str:
     """A plugin's class as module:name."""
     return f"{type(plugin).__module__}:{type(plugin).__qualname__}"
@@ -147,7 +175,10 @@ def qualified(plugin: Plugin) -> str:
 
 def source_digest(source: Path) -> str:
     """Fingerprint of every file of a report."""
-    files = sorted(f for f in source.rglob("*") if f.is_file()) if source.is_dir() else [source]
+    try:
+        files = sorted(f for f in source.rglob("*") if f.is_file()) if source.is_dir() else [source]
+    except OSError as fault:  # the reader will say so, and it costs this case alone
+        return hashlib.sha256(str(fault).encode("utf-8", "surrogateescape")).hexdigest()
     return _files_digest(files, source)
 
 

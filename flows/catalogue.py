@@ -9,22 +9,30 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from flows import fitting
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
-from sgcad_core.registry import KINDS, catalogue, plugin_class
+from sgcad_core.registry import KINDS, catalogue, installed, plugin_class
 
 TRAITS = ("asks_model", "needs_prior", "gives_logits", "stage")
 
 
 def list_plugins() -> None:
-    """All installed names with where they come from; imports none of them."""
-    table = Table("kind", "name", "from")
+    """All installed names with where they come from, and which entry points lead nowhere; imports none of them."""
+    table, gone = Table("kind", "name", "from"), []
     for kind in KINDS:
+        there = installed(kind)
         for name, point in catalogue(kind).items():
-            table.add_row(kind, name, f"{point.dist.name if point.dist else '?'}: {point.value}")
+            origin = f"{point.dist.name if point.dist else '?'}: {point.value}"
+            if name in there:
+                table.add_row(kind, escape(name), escape(origin))
+            else:
+                gone.append(f"{kind}/{name} is registered by {origin}, which does not exist: install that package anew")
     _console().print(table)
+    for line in gone:
+        _console().print(escape(line), soft_wrap=True)
 
 
 def show_plugin(name: str) -> None:
@@ -75,15 +83,20 @@ def describe_config(config: Config) -> None:
     table = Table("kind", "plugin", "fields")
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:
-            table.add_row(kind, *_row(plugin))
-    for plugin in config.validators:
-        table.add_row(f"validator ({plugin.stage})", *_row(plugin))
+            table.add_row(kind, *_row(config.raw[kind], plugin))
+    for driven in config.drive.drivers if config.drive else ():
+        table.add_row("driver", *_row(driven.raw, driven.driver))
+    for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
+        table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)
+    if line := fitting.told(config):
+        console.print(escape(line), soft_wrap=True)
 
 
-def _row(plugin: Plugin) -> tuple[str, str]:
-    fields = plugin.model_dump(mode="json")
-    return escape(type(plugin).__name__), escape(", ".join(f"{k}={v}" for k, v in fields.items()))
+def _row(entry: Any, plugin: Plugin) -> tuple[str, str]:
+    """The plugin's name in the YAML, and its fields."""
+    name, fields = entry["name"] if isinstance(entry, dict) else entry, plugin.model_dump(mode="json")
+    return escape(str(name)), escape(", ".join(f"{k}={v}" for k, v in fields.items()))
 
 
 def _console() -> Console:

@@ -183,7 +183,7 @@ class _Run:
         notes = self.report.notes if self.report else ()
         reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        return CaseRecord(*about, reading, self.judgement)
+        return CaseRecord(*about, reading, self.judgement, bool(self.report and self.report.diagrams))
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""
@@ -201,6 +201,7 @@ class _Run:
         if self.execution:
             store.write_trajectories(folder / "trajectories.csv", self.execution.trajectories)
         if self.metrics is not None:
+            self._drive(folder, record)
             store.write_json(folder / "metrics.json", self.metrics)
         if self.trace:
             (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
@@ -210,6 +211,14 @@ class _Run:
             result["shared"] = self.shared
         store.write_json(folder / "result.json", result)
         return result
+
+    def _drive(self, folder: Path, record: CaseRecord) -> None:
+        """Hand the executed scenario to the config's drivers; what came of it stands under `drive` in the metrics."""
+        if self.config.drive and self.metrics is not None and record.scenario and record.network and self.execution:
+            from flows.drives.stage import driven
+
+            with self._clock("drive"):
+                self.metrics["drive"] = driven(self.config.drive, record, folder)
 
     def _draw(self, folder: Path, record: CaseRecord) -> None:
         """player.html and picture.png of an executed case."""

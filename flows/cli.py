@@ -17,13 +17,15 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
+from flows.drives.commands import drive
 from flows.index import index_app
-from flows.results.commands import report, table
+from flows.plugin_commands import plugins_app
+from flows.results.commands import report, score, table
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
     from flows.batch import Batch
-    from flows.tracking import OnEnding
+    from flows.watching import Watch
 
 Result = TypeVar("Result")
 
@@ -35,9 +37,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Turns crash reports into road networks and scenarios that a simulator runs.",
 )
-plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`.")
 app.add_typer(plugins_app, name="plugins")
 app.add_typer(index_app, name="index")
 
@@ -48,6 +48,21 @@ Jobs = Annotated[int | None, typer.Option("--jobs", "-j", help="Cases at a time;
 Encoding = Annotated[str, typer.Option("--encoding", help="How the .xosc tells the plan: timed or events.")]
 Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini: does it play the same?")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Do finished cases again.")]
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        typer.echo(f"sgcad {version('sg-cadvlm')}")
+        raise typer.Exit
+
+
+@app.callback()
+def whole(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Which one.")] = False,
+) -> None:
+    """Turns crash reports into road networks and scenarios that a simulator runs."""
 
 
 @app.command()
@@ -103,18 +118,21 @@ def _batch(
     made = batches.batch_of(found, config or [DEFAULT_CONFIG], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
     from flows import start
 
-    raise typer.Exit(_carry_out(made, lambda on_ending: start.evaluate(made, on_ending))[0])
+    raise typer.Exit(_carry_out(made, lambda watch: start.evaluate(made, watch.ended, on_turn=watch.turn))[0])
 
 
-def _carry_out(made: Batch, work: Callable[[OnEnding], Result]) -> tuple[int, Result]:
+def _carry_out(made: Batch, work: Callable[[Watch], Result]) -> tuple[int, Result]:
     """Work under a progress bar, told at its end; the exit code and what the work returned."""
-    from flows import summary
+    from flows import named, summary, watching
 
+    for config in made.configs:
+        if line := named.replaced(made.out / config.name, config):
+            sys.stderr.write(f"sgcad: note: {line}\n")
     tally = summary.Tally(made)
     stopped = _heed_interrupts()
     try:
-        with summary.progress(tally) as on_ending:
-            result = work(on_ending)
+        with watching.watching(tally) as watch:
+            result = work(watch)
     except BaseException as fault:
         # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
         if not (stopped.is_set() or isinstance(fault, KeyboardInterrupt)):
@@ -136,18 +154,22 @@ def study(
     hosts: Annotated[str, typer.Option("--hosts", help="fsspec address where hosts meet (docs/scale.md).")] = "",
     deployment: Annotated[str, typer.Option(help="What the hosts' workers serve.")] = "shard/shard",
 ) -> None:
-    """Compare arms over the same cases: stages that arms share are computed once; run again to go on."""
-    from flows.study import away, plan, running, spec
+    """Compare arms over the same cases: stages that arms share are computed once.
 
-    made = plan.plan(
-        spec.load_study(file), out, cases=cases or (), truth=truth, overrides=overrides or (), jobs=jobs, fresh=fresh
-    )
+    A study begun before goes on by its name alone, with the cases and overrides it was begun with.
+    """
+    from flows.study import again, away, plan, running, spec
+
+    known = again.before(file, out)
+    given = again.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
+    study = spec.load_study(known.file)
+    made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)
     if hosts:
         meeting = away.Away(hosts, deployment)
-        code, again = _carry_out(made.batch, lambda on_ending: away.run(made, meeting, on_ending))
-        typer.echo(away.resubmitted_lines(again))
+        code, submitted = _carry_out(made.batch, lambda watch: away.run(made, meeting, watch.ended))
+        typer.echo(away.resubmitted_lines(submitted))
         raise typer.Exit(code)
-    code, cost = _carry_out(made.batch, lambda on_ending: running.run(made, on_ending))
+    code, cost = _carry_out(made.batch, lambda watch: running.run(made, watch.ended, watch.turn))
     typer.echo(running.cost_line(made, cost))
     raise typer.Exit(code)
 
@@ -184,22 +206,6 @@ def play(
         typer.echo(str(folder / "player.html"))
 
 
-@plugins_app.command("list")
-def plugins_list() -> None:
-    """Every installed plugin, kind by kind."""
-    from flows.catalogue import list_plugins
-
-    list_plugins()
-
-
-@plugins_app.command("show")
-def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or kind/name.")]) -> None:
-    """A plugin's job and its fields with types and defaults."""
-    from flows.catalogue import show_plugin
-
-    show_plugin(name)
-
-
 @app.command()
 def explain(
     case: Annotated[Path, typer.Argument(help="A case's folder in a run, or a report, which is read on the spot.")],
@@ -218,16 +224,25 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
     raise typer.Exit(0 if examine(out) else 1)
 
 
+app.command()(drive)
 app.command()(table)
 app.command()(report)
+app.command()(score)
 
 
 def main() -> None:
+    """The command."""
+    guarded(app)
+
+
+def guarded(command: Callable[[], object]) -> None:
     """The edge: every error becomes one message on stderr and an exit code."""
     try:
-        app()
+        command()
     except SgcadError as fault:
         _end(str(fault), 2)
+    except KeyboardInterrupt:
+        _interrupted()
     except Exception as fault:  # noqa: BLE001 - the command line's edge
         import traceback
 

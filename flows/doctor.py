@@ -38,13 +38,17 @@ def examine(out: Path) -> bool:
     """Run every check and print a line each; True if none failed."""
     settings.quiet_libraries()
     console = Console(emoji=False, highlight=False)
-    fine = True
+    fine, wrong = True, set[str]()
     for name, test in CHECKS.items():
         started = time.perf_counter()
+        if stands_on := wrong & NEEDS.get(name, set()):
+            console.print(f"[yellow]not looked at[/] {name}: mend {', '.join(sorted(stands_on))} first")
+            continue
         try:
             said, mark = test(out), "[green]ok[/]   "
         except (Trouble, SgcadError, OSError, subprocess.SubprocessError) as fault:
             said, mark, fine = str(fault), "[red]wrong[/]", False
+            wrong.add(name)
         seconds = time.perf_counter() - started
         console.print(f"{mark} {escape(name)}: {escape(said)} [dim]({seconds:.1f} s)[/]", soft_wrap=True)
     return fine
@@ -98,6 +102,18 @@ def _writable(out: Path) -> str:
     if free < LOW_MB:
         raise Trouble(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
     return f"{out.resolve()} can be written, {free:,} MB free"
+
+
+def _home(out: Path) -> str:
+    """Prefect keeps its database in a folder of the user's, and would try to make it for half a minute."""
+    home = settings.prefect_home()
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(prefix=".sgcad-", dir=home):
+            pass
+    except OSError as fault:
+        raise Trouble(f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can") from fault
+    return f"{home} can be written"
 
 
 def _flow(out: Path) -> str:
@@ -187,8 +203,11 @@ CHECKS: dict[str, Callable[[Path], str]] = {
     "netconvert": _netconvert,
     "configs": _configs,
     "output": _writable,
+    "home": _home,
     "flow": _flow,
     "tracking": _database,
     "services": _services,
     "leftovers": _leftovers,
 }
+NEEDS: dict[str, set[str]] = {"flow": {"home", "output"}, "tracking": {"output"}, "services": {"home"}}
+"""Checks that take seconds and tell nothing new where one of these is wrong."""

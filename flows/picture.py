@@ -54,7 +54,7 @@ def _draw(view: View) -> bytes:
     _contact(axes, view)
     _legend(axes, view)
     out = io.BytesIO()
-    figure.savefig(out, format="png", pil_kwargs={"compress_level": 6})
+    figure.savefig(out, format="png", pil_kwargs={"compress_level": 2})
     return out.getvalue()
 
 

@@ -49,13 +49,14 @@ class Server:
         with socket.socket() as bound:
             bound.bind(("127.0.0.1", 0))
             self.address = f"http://127.0.0.1:{bound.getsockname()[1]}/api"
-            self.process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
-                [sys.executable, "-m", "flows.server", str(bound.fileno())],
-                stdin=subprocess.PIPE,
-                pass_fds=[bound.fileno()],
-                start_new_session=True,
-                env=LEAN | settings.subprocess_environment(),
-            )
+            with settings.starting(sys.executable):
+                self.process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
+                    [sys.executable, "-m", "flows.server", str(bound.fileno())],
+                    stdin=subprocess.PIPE,
+                    pass_fds=[bound.fileno()],
+                    start_new_session=True,
+                    env=LEAN | settings.subprocess_environment(),
+                )
 
     def wait(self) -> None:
         """Return when the server answers. Raises MissingTool if it never does."""

@@ -76,7 +76,7 @@ def _stage(config: Config, writer: Any, stage: str) -> str:
 def _about(plugins: Sequence[Plugin], asks_model: bool) -> dict[str, Any]:
     fields = [p.model_dump(mode="json") for p in plugins]
     return {
-        "plugins": [(cases.qualified(p), type(p).version, p.stamp) for p in plugins],
+        "plugins": [(cases.qualified(p), *cases.identity(p)) for p in plugins],
         "fields": fields,
         "files": sorted(set(cases.named_digests(fields))),
         "package": version("sg-cadvlm"),

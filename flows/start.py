@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flows import tracking
-from flows.batch import Batch, Crew, Job
+from flows.batch import Batch, Crew, Job, OnTurn
 from flows.chain import Ending
 from flows.server import Server, prefect_server
 from flows.tracking import OnEnding
@@ -29,7 +29,9 @@ class Cost:
     server_s: float | None = None
 
 
-def evaluate(batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None) -> Cost:
+def evaluate(
+    batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None, on_turn: OnTurn | None = None
+) -> Cost:
     """Run a batch, or some of its jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
     Finished cases stay, whatever happens.
@@ -37,7 +39,7 @@ def evaluate(batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = Non
     settings.quiet_libraries()
     started, spent = time.perf_counter(), time.process_time()
     plan = batch.plan() if plan is None else plan
-    crew = Crew(batch)
+    crew = Crew(batch, on_turn)
     if (done := _all_done(plan, crew)) is not None:
         for job, ending in done:
             on_ending(job, ending, "")

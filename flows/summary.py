@@ -1,23 +1,20 @@
-"""What a person sees of a batch: a progress bar while it runs, a short table at its end. Writes to stderr
-what is progress and to stdout what is the answer."""
+"""What a person sees of a batch at its end: a short table, reasons, where to look; of one case, what happens in it.
+
+Writes to stdout; what is shown on the way stands in flows/watching.py."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from flows import judging
+from flows import judging, single
 from flows.batch import Batch, Job
 from flows.chain import Ending
 from flows.store import CaseFolder
 from flows.terminal import escape
-from flows.tracking import OnEnding
 from sgcad_core.result import STATUSES
 
 MAX_REASONS = 10
@@ -62,27 +59,13 @@ class Tally:
         return next((str(page) for page in pages if page.is_file()), None)
 
 
-@contextmanager
-def progress(tally: Tally) -> Iterator[OnEnding]:
-    """A bar on stderr; what is yielded counts an ending and moves the bar."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True, emoji=False), transient=True) as bar:
-        cases = bar.add_task("starting", total=len(tally.batch.configs) * len(tally.batch.cases))
-
-        def on_ending(job: Job, ending: Ending, untracked: str) -> None:
-            tally.add(job, ending, untracked)
-            bar.update(cases, advance=1, description=escape(tally.in_words()))
-
-        yield on_ending
-
-
 def show(tally: Tally) -> None:
     """Print the table, reasons, and where to look."""
     console = Console(emoji=False, highlight=False)
     console.width = max(console.width, TABLE_WIDTH)
     console.print(_table(tally))
     judging.show(console, {c.name: [e.result for e in tally.of(c.name)] for c in tally.batch.configs})
-    for line in _reasons(tally):
+    for line in [*_reasons(tally), *single.lines([ending.result for _, ending in tally.endings])]:
         console.print(escape(line), soft_wrap=True)
     console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)
     if page := tally.first_player():

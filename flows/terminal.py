@@ -12,4 +12,9 @@ def escape(text: str) -> str:
 
     Names of files and reasons hold what strangers wrote: an escape sequence could colour, move and clear.
     """
-    return markup.escape("".join(c if c == "\n" or unicodedata.category(c) != "Cc" else "\ufffd" for c in text))
+    return markup.escape(escape_plain(text))
+
+
+def escape_plain(text: str) -> str:
+    """The same for lines that rich does not write."""
+    return "".join(c if c == "\n" or unicodedata.category(c) != "Cc" else "\ufffd" for c in text)

@@ -150,6 +150,8 @@ def params_of(config: Config) -> dict[str, Any]:
         plugin = getattr(config, kind)
         if plugin is not None and kind != "tracker":
             found[kind] = _fields(_name(config.raw[kind]), plugin)
+    if config.drive:
+        found["drive"] = {"drivers": [entry.raw for entry in config.drive.drivers], "roles": list(config.drive.roles)}
     return found | {"validators": [_fields(name, plugin) for name, plugin in _validators(config)]}
 
 
@@ -166,8 +168,7 @@ def _plugins(config: Config) -> Iterator[tuple[str, str]]:
     named: list[tuple[str, Plugin | None]] = [(kind, getattr(config, kind)) for kind in SINGLE if kind != "tracker"]
     for name, plugin in [*named, *((f"validator.{name}", plugin) for name, plugin in _validators(config))]:
         if plugin is not None:
-            about = f"{cases.qualified(plugin)} {type(plugin).version} {plugin.stamp}"
-            yield name, about.strip()
+            yield name, " ".join(filter(None, [cases.qualified(plugin), *cases.identity(plugin)]))
 
 
 def _name(entry: Any) -> str:

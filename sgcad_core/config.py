@@ -5,17 +5,20 @@ Flat: one mapping a plugin, its `name` and its fields. Knows the registry; no pl
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
 import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
-from sgcad_core import settings
+from sgcad_core import config_faults, settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
     Backbone,
     Decoder,
+    Driver,
     Plugin,
     ReportReader,
     Retriever,
@@ -25,12 +28,34 @@ from sgcad_core.interfaces import (
     Tracker,
     Validator,
 )
+from sgcad_core.kinds import CrashRole
+from sgcad_core.names import nearest
 from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings")
 OPTIONAL = {"backbone", "decoder"}
+
+
+class DriverEntry(Record):
+    """A driver with the words that chose it; `label` names its results."""
+
+    label: str
+    driver: Driver
+    raw: dict[str, Any]
+
+
+class DriveStage(Record):
+    """The stage `drive`: who is put into the crash that was written, in whose place."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    drivers: tuple[DriverEntry, ...] = Field(min_length=1)
+    roles: tuple[CrashRole, ...] = ("initiator", "responder")
+    role_of: Mapping[str, CrashRole] = {}
+    """A person's word on who has which role, by actor; holds for every case."""
+    release_s: float = Field(4.0, ge=0, le=30)
 
 
 class Config(Record):
@@ -53,6 +78,8 @@ class Config(Record):
     scenario_writer: ScenarioWriter
     validators: tuple[Validator, ...] = ()
     simulator: Simulator
+    drive: DriveStage | None = None
+    """Drivers into whose hands the generated scenarios are given."""
     judge: Simulator | None = None
     """A second simulator, whose playing of the generated scenarios is compared with ours."""
     tracker: Tracker
@@ -92,8 +119,8 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
     """Build a Config from a mapping. Raises ConfigError listing every fault with its key path."""
     faults: list[str] = []
     fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
-    known = {*SINGLE, "judge", "validators", *SCALARS}
-    faults += [f"{key}: unknown key; known: {', '.join(sorted(known))}" for key in raw if key not in known]
+    known = {*SINGLE, "judge", "drive", "validators", *SCALARS}
+    faults += [f"{key}: {config_faults.unknown('key', str(key), sorted(known))}" for key in raw if key not in known]
     for kind in SINGLE:
         if raw.get(kind) is None:
             if kind not in OPTIONAL:
@@ -102,6 +129,8 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
             fields[kind] = _plugin(kind, raw[kind], kind, faults)
     if raw.get("judge") is not None:
         fields["judge"] = _plugin("simulator", raw["judge"], "judge", faults)
+    if raw.get("drive") is not None:
+        fields["drive"] = _drive(raw["drive"], faults)
     validators = raw.get("validators") or []
     if not isinstance(validators, list):
         faults.append(f"validators: expected a list, found {validators!r}")
@@ -114,7 +143,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
         try:
             config = Config(name=name, raw=raw, **fields)
         except ValidationError as fault:
-            faults += _lines("", fault)
+            faults += config_faults.lines("", fault, Config)
     if config is None:
         raise ConfigError("\n".join([f"{where}: {len(faults)} fault(s)", *(f"  {f}" for f in faults)]))
     return config
@@ -127,19 +156,50 @@ def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | Non
         faults.append(f"{path}: expected a mapping with a `name`, found {entry!r}")
         return None
     try:
-        return plugin_class(kind, entry["name"])(**{k: v for k, v in entry.items() if k != "name"})
+        found = plugin_class(kind, entry["name"])
     except ConfigError as fault:
         faults.append(f"{path}: {fault}")
+        return None
+    try:
+        return found(**{str(k): v for k, v in entry.items() if k != "name"})
     except ValidationError as fault:
-        faults += _lines(path, fault)
+        faults += config_faults.lines(path, fault, found)
     return None
 
 
-def _lines(path: str, fault: ValidationError) -> list[str]:
-    return [
-        f"{'.'.join([p for p in (path, *map(str, e['loc'])) if p])}: {e['msg']} (found {e['input']!r})"
-        for e in fault.errors(include_url=False)
-    ]
+def driver_entry(entry: Any) -> DriverEntry:
+    """A driver of its name, or of a mapping with name and fields (`label` names its results). Raises ConfigError."""
+    faults: list[str] = []
+    found = _driver(entry, "driver", faults)
+    if found is None:
+        raise ConfigError("\n".join(faults))
+    return found
+
+
+def _driver(entry: Any, path: str, faults: list[str]) -> DriverEntry | None:
+    raw = {"name": entry} if isinstance(entry, str) else dict(entry) if isinstance(entry, dict) else entry
+    given = raw.pop("label", None) if isinstance(raw, dict) else None
+    driver = _plugin("driver", raw, path, faults)
+    if driver is None:
+        return None
+    told = [str(v) for v in raw.values() if isinstance(v, str | int | float)]
+    label = re.sub(r"[^A-Za-z0-9_.=-]+", "_", str(given or "-".join(told)))[:60].strip(".") or raw["name"]
+    return DriverEntry(label=label, driver=cast("Driver", driver), raw=raw)
+
+
+def _drive(entry: Any, faults: list[str]) -> DriveStage | None:
+    """The stage `drive`: a mapping with `drivers` (one or a list), or just those."""
+    raw = dict(entry) if isinstance(entry, dict) and "drivers" in entry else {"drivers": entry}
+    named = raw.pop("drivers")
+    named = named if isinstance(named, list) else [named]
+    drivers = [_driver(e, f"drive.drivers[{i}]", faults) for i, e in enumerate(named)]
+    if None in drivers:
+        return None
+    try:
+        return DriveStage(drivers=tuple(cast("list[DriverEntry]", drivers)), **raw)
+    except ValidationError as fault:
+        faults += config_faults.lines("drive", fault, DriveStage)
+    return None
 
 
 def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
@@ -152,6 +212,12 @@ def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
         faults.append(f"backbone: missing, but {' and '.join(asking)} ask a model")
     if asking and decoder is None:
         faults.append("decoder: missing; use `decoder: {name: greedy}`")
+    if decoder and backbone is None and not asking:
+        faults.append(
+            f"decoder: {_name(raw['decoder'])!r} would decode nothing: road_writer {_name(raw['road_writer'])!r} and "
+            f"scenario_writer {_name(raw['scenario_writer'])!r} ask no model; leave it out, or choose a config with a "
+            "backbone, such as mini.yaml"
+        )
     if backbone and decoder and decoder.needs_prior and not backbone.gives_logits:
         faults.append(
             f"decoder {_name(raw['decoder'])!r} needs logits; backbone {_name(raw['backbone'])!r} gives none; "
@@ -169,8 +235,9 @@ def _find(path: Path) -> Path:
         if file.is_file():
             return file
     found = sorted(f.relative_to(settings.CONFIGS) for f in settings.CONFIGS.rglob("*.yaml"))
-    known = ", ".join(str(f) for f in found if f.parts[0] != "studies")
-    raise ConfigError(f"{path}: no such config; in configs/: {known}")
+    known = {str(f.with_suffix("")): str(f) for f in found if f.parts[0] != "studies"}
+    meant = nearest(str(path.with_suffix("")), known)
+    raise ConfigError(f"{path}: no such config.{meant} In configs/: {', '.join(known.values())}")
 
 
 def _override(raw: dict[str, Any], text: str) -> None:

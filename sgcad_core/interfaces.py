@@ -1,4 +1,4 @@
-"""The whole extension surface: nine plugin kinds, one abstract method each.
+"""The whole extension surface: ten plugin kinds, one abstract method each.
 
 A plugin is one frozen pydantic class in one file: its fields are its configuration, its method is its
 job, heavy state is a `functools.cached_property`. Register it under the entry-point group
@@ -27,6 +27,7 @@ from sgcad_core.records import (
     RoadNetwork,
     Scenario,
 )
+from sgcad_core.seat import Seat, Task
 
 Ask = Callable[[Context, Query], Generation]
 """How a writer speaks to the model: backbone and decoder are already chosen, the call is recorded."""
@@ -112,6 +113,10 @@ class Backbone(Plugin):
         What it raises the first question raises again.
         """
 
+    def weights_gb(self) -> float | None:
+        """Memory that its weights will take on this machine, decimal GB; None: none here, or nobody can tell."""
+        return None
+
 
 class RoadWriter(Plugin):
     """Evidence to a road network."""
@@ -172,6 +177,16 @@ class Simulator(Plugin):
         """Execute in a process that may die. Raises SimulationFailed."""
 
 
+class Driver(Plugin):
+    """Drives one road user of a reconstructed crash in the report's driver's place."""
+
+    kind = "driver"
+
+    @abstractmethod
+    def take_over(self, task: Task) -> Seat:
+        """A driver for one drive, asked 20 times a second. Raises ConfigError, MissingTool or SimulationFailed."""
+
+
 class Tracker(Plugin):
     """Where results can be compared. Called from one thread, after the case is on disk.
 
@@ -180,6 +195,10 @@ class Tracker(Plugin):
     """
 
     kind = "tracker"
+
+    def ready(self, out: Path) -> None:
+        """Called before anything starts, quick. Raises ConfigError where it can never log; the default is ready."""
+        return
 
     def begin(self, arm: Arm) -> None:
         """Told before the first case of a config; the default keeps nothing."""

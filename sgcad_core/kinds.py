@@ -89,3 +89,8 @@ def junction_kind(kind: JunctionKind) -> Junction:
 def unsupported_kind(kind: str) -> Unsupported:
     """The record of a kind that cannot be drawn. Raises KeyError for one that there is not."""
     return {record.kind: record for record in UNSUPPORTED}[kind]
+
+
+CrashRole = Literal["initiator", "responder", "bystander"]
+"""Who made a crash's conflict, who was left to deal with it, who took no part in the first contact."""
+CRASH_ROLES: tuple[CrashRole, ...] = ("initiator", "responder", "bystander")

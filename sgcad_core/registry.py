@@ -5,13 +5,16 @@ Built-ins come through the same door as strangers (`sgcad.<kind>` groups). Knows
 
 from __future__ import annotations
 
-import difflib
+import re
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING
 
-from sgcad_core import interfaces
+from pydantic import PydanticUserError
+
+from sgcad_core import interfaces, strangers
 from sgcad_core.errors import ConfigError
+from sgcad_core.names import nearest
 
 if TYPE_CHECKING:
     from sgcad_core.interfaces import Plugin
@@ -21,7 +24,7 @@ BASES: dict[str, type[Plugin]] = {
     for base in (
         interfaces.ReportReader, interfaces.Retriever, interfaces.Backbone, interfaces.Decoder,
         interfaces.RoadWriter, interfaces.ScenarioWriter, interfaces.Validator, interfaces.Simulator,
-        interfaces.Tracker,
+        interfaces.Driver, interfaces.Tracker,
     )
 }  # fmt: skip
 KINDS: tuple[str, ...] = tuple(BASES)
@@ -38,15 +41,37 @@ def plugin_class(kind: str, name: str) -> type[Plugin]:
     """Import one plugin. Raises ConfigError naming the nearest and all installed names."""
     known = catalogue(kind)
     if name not in known:
-        near = difflib.get_close_matches(name, known, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"unknown {kind} {name!r}.{hint} Installed: {', '.join(known) or 'none'}")
-    try:
-        found = known[name].load()
-    except (ImportError, AttributeError) as fault:
-        raise ConfigError(f"{kind} {name!r} ({known[name].value}) cannot be imported: {fault}") from fault
+        raise ConfigError(f"unknown {kind} {name!r}.{nearest(name, known)} Installed: {', '.join(known) or 'none'}")
+    found, where = _imported(kind, name, known[name]), f"{kind} {name!r} ({known[name].value})"
     if not (isinstance(found, type) and issubclass(found, BASES[kind])):
-        raise ConfigError(
-            f"{kind} {name!r} ({known[name].value}) is no {BASES[kind].__name__}: derive it from that class"
-        )
+        raise ConfigError(f"{where} is no {BASES[kind].__name__}: derive it from that class")
+    if lacks := strangers.faults(found, BASES[kind]):
+        raise ConfigError(f"{where}: {'; '.join(lacks)}")
     return found
+
+
+def _imported(kind: str, name: str, point: EntryPoint) -> object:
+    """What an entry point names. A stranger's module may fail in any way: each is told as its author's fault."""
+    where = f"{kind} {name!r} ({point.value})"
+    try:
+        return point.load()
+    except (ImportError, AttributeError) as fault:
+        raise ConfigError(f"{where} cannot be imported: {fault}") from fault
+    except PydanticUserError as fault:
+        raise ConfigError(f"{where} is no valid plugin class: {_plainly(fault)}") from fault
+    except Exception as fault:
+        raise ConfigError(f"{where} fails while it is imported: {type(fault).__name__}: {fault}") from fault
+
+
+def _plainly(fault: PydanticUserError) -> str:
+    """Pydantic's complaint about a class; of a field without a type, with the line that mends it."""
+    first = str(fault).splitlines()[0]
+    if fault.code == "model-field-missing-annotation" and (named := re.search(r"`(\w+) = (.*?)`", first)):
+        field, value = named.groups()
+        return f"the field {field!r} has no type: write `{field}: float = {value}`, or whatever type it has"
+    return first
+
+
+def installed(kind: str) -> dict[str, EntryPoint]:
+    """Plugins of a kind whose module and class are there; imports none of them."""
+    return {name: point for name, point in catalogue(kind).items() if strangers.leads_somewhere(point)}

@@ -50,6 +50,8 @@ class CaseRecord:
     reading: Reading | None = None
     """What the rules read of the narrative."""
     judgement: Judgement | None = None
+    drawn: bool = False
+    """Whether the report has a drawing that the writers were shown."""
 
     @property
     def network(self) -> RoadNetwork | None:
@@ -104,9 +106,10 @@ def facts_of(record: CaseRecord) -> tuple[Fact, ...]:
     found = list(record.reading.facts)
     network, scenario = record.network, record.scenario
     if network is not None:
-        found += road_facts_written(network, record.reading, _answer(record, "road"))
+        found += road_facts_written(network, record.reading, _answer(record, "road"), record.drawn)
     if network is not None and scenario is not None:
-        found += actor_facts_written(scenario, network, record.reading, _answer(record, "scenario"))
+        answer = _answer(record, "scenario")
+        found += actor_facts_written(scenario, network, record.reading, answer, record.drawn)
     return tuple(found)
 
 
@@ -126,6 +129,8 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
             return outcome.status, f"{stage}: {outcome.reason}", outcome.missing
     if record.execution is None:
         return "failed", "the scenario was never executed", ()
+    if record.scenario and record.scenario.declared and record.execution.contact is None:
+        return "exhausted", "scenario: the declared contact does not come about when the scenario runs", ()
     return "generated", "", ()
 
 

@@ -9,6 +9,8 @@ import importlib.util
 import os
 import shutil
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from sgcad_core.errors import MissingTool
@@ -40,13 +42,18 @@ def environment(name: str) -> str:
     return os.environ.get(name, "")
 
 
+def prefect_home() -> Path:
+    """The folder of Prefect's database and profiles."""
+    return Path(environment("PREFECT_HOME") or Path.home() / ".prefect")
+
+
 def prefect_url() -> str:
     """The Prefect server that the user has named, by variable or active profile; empty if none is."""
     if url := environment("PREFECT_API_URL"):
         return url
-    home = Path(environment("PREFECT_HOME") or Path.home() / ".prefect")
+    file = Path(environment("PREFECT_PROFILES_PATH") or prefect_home() / "profiles.toml")
     try:
-        profiles = tomllib.loads(Path(environment("PREFECT_PROFILES_PATH") or home / "profiles.toml").read_text())
+        profiles = tomllib.loads(file.read_text())
     except (OSError, ValueError):
         return ""
     active = profiles.get("profiles", {}).get(environment("PREFECT_PROFILE") or profiles.get("active", ""), {})
@@ -92,6 +99,18 @@ def program(name: str, path: str, variable: str, source: str) -> Path:
 def plain_environment() -> dict[str, str]:
     """What a program of somebody else's needs of the environment: where things are, no keys."""
     return {name: os.environ[name] for name in ("PATH", "HOME", "LANG", "LD_LIBRARY_PATH") if name in os.environ}
+
+
+@contextmanager
+def starting(program: str) -> Iterator[None]:
+    """Around the start of a process. Raises MissingTool where the program cannot be started at all."""
+    try:
+        yield
+    except OSError as fault:
+        raise MissingTool(
+            f"{program} cannot be started ({fault.strerror or fault}): look whether it is there and may be run, and "
+            "whether memory and processes are left (`ulimit -u`); an environment that was moved: `make setup` anew"
+        ) from fault
 
 
 def subprocess_environment() -> dict[str, str]:

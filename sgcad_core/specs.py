@@ -24,7 +24,7 @@ from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
-ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTO][0-9]{1,2}$")]
+ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$")]
 Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
@@ -202,7 +202,7 @@ class RoadLayout(Spec):
 class Actor(Spec):
     """A road user or object and its pre-crash motion."""
 
-    id: ActorId = Field(description="V<n> as the report numbers it, P pedestrian, B cyclist, T trailer, O object")
+    id: ActorId = Field(description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object")
     kind: ActorKind
     road: Id = Field(description="road on which it starts")
     direction: Literal["forward", "backward"] = Field(description="forward: from the road's from_node to its to_node")

@@ -95,15 +95,16 @@ class _Process:
         self.owner = os.getpid()
         self.errors = _append_file()
         paths = os.pathsep.join(p for p in sys.path if p)
-        self.popen = subprocess.Popen(  # noqa: S603 - our own interpreter and module
-            [sys.executable, "-m", "sgcad_core.workers", target],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self.errors,
-            env=settings.subprocess_environment() | {"PYTHONPATH": paths},
-            start_new_session=True,  # Ctrl-C is for the parent, whose end closes the pipe
-            bufsize=0,
-        )
+        with settings.starting(sys.executable):
+            self.popen = subprocess.Popen(  # noqa: S603 - our own interpreter and module
+                [sys.executable, "-m", "sgcad_core.workers", target],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self.errors,
+                env=settings.subprocess_environment() | {"PYTHONPATH": paths},
+                start_new_session=True,  # Ctrl-C is for the parent, whose end closes the pipe
+                bufsize=0,
+            )
         self.finalize = weakref.finalize(self, _end, self.popen, self.errors)
         self.ready = False
         self.busy = False

@@ -96,3 +96,21 @@ def _write(file: Path, content: bytes) -> None:
         file.write_bytes(content)
     except OSError as fault:
         raise ConfigError(f"{file}: cannot be written ({fault.strerror}); choose another place") from fault
+
+
+def score(
+    runs: Annotated[Path, typer.Argument(help="The folder of one config's cases, such as runs/template.")],
+    truth: Annotated[Path | None, typer.Argument(help="A folder of truth files, <case>.json.")] = None,
+    labels: Annotated[Path | None, typer.Option("--labels", help="A folder of labels of the whole course.")] = None,
+    second: Annotated[Path | None, typer.Option("--second", help="Another reading of these labels.")] = None,
+    only: Annotated[str, typer.Option("--only", help="Cases whose name begins so.")] = "",
+    each: Annotated[bool, typer.Option("--cases", help="Name the cases that have a field wrong.")] = False,
+    file: Annotated[Path | None, typer.Option("--json", help="Write all marks to a file.")] = None,
+) -> None:
+    """Hold runs against what is true of their cases: roads, motion, contacts, evasion, rest, later impacts."""
+    from flows import scoring  # only where it is asked for: --help is to be quick
+
+    scored = scoring.score(runs, truth, labels, second, only)
+    if file:
+        file.write_text(scoring.as_json(scored), encoding="utf-8")
+    typer.echo(scored.text(each))

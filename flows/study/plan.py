@@ -42,6 +42,8 @@ class Plan:
     batch: Batch
     jobs: tuple[Job, ...]
     truth: Path | None = None
+    folders: tuple[Path, ...] = ()
+    overrides: tuple[str, ...] = ()
 
     @property
     def folder(self) -> Path:
@@ -63,6 +65,11 @@ class Plan:
             "title": self.study.title,
             "reference": self.study.reference,
             "truth": str(self.truth) if self.truth else None,
+            "again": {
+                "file": str(self.study.file.resolve()),
+                "cases": [str(folder.resolve()) for folder in self.folders],
+                "set": list(self.overrides),
+            },
             "cases": [case.id for case in self.batch.cases],
             "dataset_digest": dataset_digest(self.batch.cases),
             "arms": [_told_of(*pair) for pair in zip(self.study.arms, self.batch.configs, strict=True)],
@@ -108,7 +115,7 @@ def plan(
     folder = folder_of(study.name, out)
     batch = batch_over(found, loaded, folder, jobs, fresh)
     batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF)
-    return Plan(study, batch, batch.plan(), truth)
+    return Plan(study, batch, batch.plan(), truth, tuple(cases) or study.cases, tuple(overrides))
 
 
 def folder_of(name: str, out: Path) -> Path:

@@ -12,26 +12,26 @@ import shutil
 from collections.abc import Sequence
 
 from flows import start
-from flows.batch import Job
+from flows.batch import Job, OnTurn
 from flows.start import Cost
 from flows.study.plan import Plan
 from flows.tracking import OnEnding
 
 
-def run(plan: Plan, on_ending: OnEnding) -> Cost:
+def run(plan: Plan, on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
     """Write study.json and do all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
     A fresh study forgets what was shared before.
     """
     if plan.batch.fresh and plan.batch.shelf:
         shutil.rmtree(plan.batch.shelf, ignore_errors=True)
-    return run_jobs(plan, plan.jobs, on_ending)
+    return run_jobs(plan, plan.jobs, on_ending, on_turn)
 
 
-def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding) -> Cost:
+def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
     """Write study.json and do some of a plan's jobs, as one flow run; finished ones are not repeated."""
     plan.write()
-    return start.evaluate(plan.batch, on_ending, jobs)
+    return start.evaluate(plan.batch, on_ending, jobs, on_turn)
 
 
 def cost_line(plan: Plan, cost: Cost) -> str:

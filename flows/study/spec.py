@@ -27,7 +27,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from flows.cases import safe_id
 from flows.study import crossing
 from sgcad_core import settings
+from sgcad_core.config_faults import unknown
 from sgcad_core.errors import ConfigError
+from sgcad_core.names import nearest
 
 STUDIES = settings.CONFIGS / "studies"
 MAX_ARMS = 500
@@ -156,8 +158,8 @@ def find_study(path: Path) -> Path:
     for file in (path, STUDIES / path, STUDIES / f"{path}.yaml"):
         if file.is_file():
             return file
-    known = ", ".join(sorted(f.stem for f in STUDIES.glob("*.yaml")))
-    raise ConfigError(f"{path}: no such study; in configs/studies/: {known}")
+    known = sorted(f.stem for f in STUDIES.glob("*.yaml"))
+    raise ConfigError(f"{path}: no such study.{nearest(path.stem, known)} In configs/studies/: {', '.join(known)}")
 
 
 def _parsed(raw: dict[str, Any]) -> tuple[_File | None, list[str]]:
@@ -181,7 +183,7 @@ def _line(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         parts: dict[str, type[_Part]] = {"arms": Arm, "cross": Cross} if len(error["loc"]) > 1 else {}
         part = parts.get(str(error["loc"][0]), _File)
-        return f"{place}: unknown key; known: {', '.join(sorted(part.model_fields))}"
+        return f"{place}: {unknown('key', str(error['loc'][-1]), list(part.model_fields))}"
     return f"{place}: {error['msg']} (found {error['input']!r})"
 
 

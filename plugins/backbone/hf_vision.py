@@ -14,7 +14,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
-from plugins.backbone import hf_run
+from plugins.backbone import hf_run, hf_size
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.interfaces import Backbone, Decoder
@@ -65,6 +65,12 @@ class HfVision(Backbone):
     def load(self) -> None:
         """Import what runs the model and load its weights."""
         self._loaded()
+
+    def weights_gb(self) -> float | None:
+        """By the folder's files, else by the number of parameters in the name."""
+        place = Path(self.model)
+        folder = place if place.is_dir() else settings.ROOT / self.model
+        return hf_size.weights_gb(folder, self.model, self.dtype, self.quantization)
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answer a query; blocks until the loop has it.

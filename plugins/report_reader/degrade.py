@@ -18,6 +18,7 @@ from typing import Literal, get_args
 
 from PIL import Image, ImageFilter
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.traced import Traced, joined, placed, runs
 from sgcad_core.records import CrashReport, Diagram
 
@@ -30,33 +31,13 @@ SIGMA_PX = {"blur_weak": 1.0, "blur_medium": 3.0, "blur_strong": 6.0}
 REFERENCE_WIDTH_PX = 512
 SPARSE = "A collision occurred."
 
-_SMALL = "one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|sixteen|seventeen"
-_WORDS = (
-    rf"(?:{_SMALL}|eighteen|nineteen|twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety|hundred|thousand"
-    r"|single|first|second|third|fourth|fifth|both|half)"
-)
-_UNIT = (
-    r"(?:\s*-?\s*(?:mph|kmph|kpmh|kph|km/h|mi/h|miles?(?: per hour)?|meters?|metres?|feet|foot|ft|inch(?:es)?|cm|km|m"
-    r"|degrees?|percent|%|hours?|minutes?|seconds?)(?![a-z]))?"
-)
-_ACTOR = r"(?<!vehicle )(?<!vehicle # )(?<!vehicle #)(?<![VvPp#])(?<![VvPp] )"
-_DIGITS = re.compile(rf"{_ACTOR}(?<![\w.])[+-]?\d[\d,.]*(?:st|nd|rd|th)?(?:\s*-\s*\d[\d,.]*)?{_UNIT}", re.IGNORECASE)
-_SPELLED = re.compile(rf"{_ACTOR}\b{_WORDS}(?:[- ]{_WORDS})*\b{_UNIT}", re.IGNORECASE)
+_DIGITS, _SPELLED = rule("degrade.digits"), rule("degrade.spelled")
 _TURNED = {
     "north": "east", "east": "south", "south": "west", "west": "north", "left": "right", "right": "left",
     "front": "back", "back": "front", "rear": "front",
 }  # fmt: skip
-_DIRECTED = re.compile(
-    r"(north|south|east|west)(?=bound|ern|erly|ward|east|west|\b)|\b(left|right|front|back|rear)\b", re.I
-)
-_CRITICAL = re.compile(
-    r"north|south|east|west|\b(?:left|right|front|back|rear|struck|impact\w*|contact\w*|hit|collid\w*|intersection"
-    r"|direction|turn\w*)\b",
-    re.IGNORECASE,
-)
-_SENTENCE = re.compile(r"(?<=[.!?])\s+")
-_LEFT_OVER = re.compile(r"(?<=\s)-(?=\w)|\(\s*\)")
-_GAP = re.compile(r"[ \t]{2,}")
+_DIRECTED, _CRITICAL = rule("degrade.directed"), rule("degrade.critical")
+_SENTENCE_GAP, _LEFT_OVER, _SPACES = rule("degrade.sentence_gap"), rule("degrade.left_over"), rule("privacy.spaces")
 
 
 def degrade(report: CrashReport, level: Level) -> CrashReport:
@@ -80,7 +61,7 @@ def _without_numbers(text: Traced) -> tuple[Traced, str]:
     digits = len(_DIGITS.findall(text.text))
     bare = text.sub(_DIGITS, "")
     words = len(_SPELLED.findall(bare.text))
-    bare = bare.sub(_SPELLED, "").sub(_LEFT_OVER, "").sub(_GAP, " ")
+    bare = bare.sub(_SPELLED, "").sub(_LEFT_OVER, "").sub(_SPACES, " ")
     return bare.strip(), f"{digits + words} numbers removed"
 
 
@@ -95,7 +76,7 @@ def _turned_round(text: Traced) -> tuple[Traced, str]:
 
 
 def _without_critical(text: Traced) -> tuple[Traced, str]:
-    sentences = text.split(_SENTENCE)
+    sentences = text.split(_SENTENCE_GAP)
     kept = [s for s in sentences if not _CRITICAL.search(s.text)]
     left = joined(kept, " ")
     nothing = Traced(SPARSE, [0] * len(SPARSE), [0] * len(SPARSE))

@@ -17,7 +17,6 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import RoadSpec
 
@@ -44,9 +43,15 @@ class Rules(ScenarioWriter):
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
         facts = context.reading.crash
-        lost = tells_lost_control(context.reading.narrative)
+        lost = context.reading.lost_control
         scenario = compile_scenario(
-            behavior_of_facts(facts, spec), network, self.openscenario, self.encoding, may_skid=lost
+            behavior_of_facts(facts, spec),
+            network,
+            self.openscenario,
+            self.encoding,
+            may_skid=lost,
+            courses=facts.courses,
+            signals=context.reading.signals,
         )
         return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 

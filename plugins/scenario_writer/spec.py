@@ -16,7 +16,6 @@ from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.specs import BehaviorSpec, RoadSpec
@@ -55,8 +54,11 @@ class SpecScenario(ScenarioWriter):
             attempt=attempt,
         )
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        lost = tells_lost_control(context.reading.narrative)
-        return compile_scenario(behavior, network, self.openscenario, self.encoding, may_skid=lost)
+        reading = context.reading
+        return compile_scenario(
+            behavior, network, self.openscenario, self.encoding,
+            may_skid=reading.lost_control, courses=reading.crash.courses, signals=reading.signals,
+        )  # fmt: skip
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:
         if self.roads == "described":

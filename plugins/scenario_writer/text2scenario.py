@@ -24,7 +24,6 @@ from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.motion import Access
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.roads.describe import describe_network
@@ -123,7 +122,7 @@ class Text2Scenario(ScenarioWriter):
         beside = [_beside(role, behavior.actors[0]) for role in parsed.roles if role.id not in taken]
         contacts = behavior.contacts or tuple(_contact(c) for c in _strikes(parsed))
         changed = {"actors": (*behavior.actors, *beside), "contacts": contacts}
-        lost = tells_lost_control(context.reading.narrative)
+        lost = context.reading.lost_control
         return compile_scenario(
             behavior.model_copy(update=changed), network, self.openscenario, self.encoding, may_skid=lost
         )

@@ -12,6 +12,7 @@ from typing import Any
 
 from pydantic import Field, PrivateAttr
 
+from plugins.tracker import mlflow_ready
 from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
 from plugins.tracker.mlflow_store import CONFIG, Parent, Store, store_of
 from sgcad_core.experiment import Arm
@@ -33,6 +34,10 @@ class MlflowTracker(Tracker):
     system_metrics_s: float = Field(10.0, ge=0, description="seconds between samples of the machine; 0: none")
     _runs: dict[tuple[str, str], tuple[Store, str]] = PrivateAttr(default_factory=dict)
     _begun: dict[str, Parent] = PrivateAttr(default_factory=dict)
+
+    def ready(self, out: Path) -> None:
+        """Look whether the database or server can be logged to. Raises ConfigError within some 20 s."""
+        mlflow_ready.check(self._address(out))
 
     def begin(self, arm: Arm) -> None:
         """Open the arm's parent run, with the data set, plugin versions, commit and hardware."""
@@ -91,8 +96,10 @@ class MlflowTracker(Tracker):
         return log_training(self._store(Path()), name, parameters(params), lines)
 
     def _store(self, out: Path) -> Store:
-        address = self.uri or f"sqlite:///{(self.database or out / 'mlflow.db').resolve()}"
-        return store_of(address, self.experiment, self.files_at)
+        return store_of(self._address(out), self.experiment, self.files_at)
+
+    def _address(self, out: Path) -> str:
+        return self.uri or f"sqlite:///{(self.database or out / 'mlflow.db').resolve()}"
 
 
 def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, float]]:

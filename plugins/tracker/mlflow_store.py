@@ -19,6 +19,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
+from plugins.tracker import mlflow_ready
 from plugins.tracker.mlflow_database import alone, make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
@@ -66,9 +67,13 @@ class Store:
             client = mlflow.MlflowClient(tracking_uri=self.uri)
             client.get_experiment("0")
         except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
+            if self._file and isinstance(fault, OSError | SQLAlchemyError):
+                mlflow_ready.check_file(self._file)  # says it in plain words, if it finds it too
+            full = mlflow_ready.is_full(fault)
+            way_out = "make room on the disk" if full else "move it away, or set tracker.database=<file>"
             raise ConfigError(
                 f"{self._file or _no_password(self.uri)}: cannot be used as MLflow's database ({_first_line(fault)}); "
-                "move it away, or set tracker.database=<file>, or tracker=jsonl"
+                f"{way_out}, or tracker=jsonl"
             ) from fault
         return client
 

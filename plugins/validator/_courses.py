@@ -17,7 +17,7 @@ _NEAR_RAD = math.radians(50)
 SIDES: Mapping[Maneuver, int] = {"turn_left": 1, "turn_right": -1}
 """Signs of the change of heading that a turn to a side is, counterclockwise."""
 _NUMBERS = range(1, 10)
-UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTO" for n in _NUMBERS)
+UNNUMBERED = tuple(f"{letter}{n}" for letter in "PBTOA" for n in _NUMBERS)
 """Road users and objects that reports do not number as vehicles."""
 _IDS = (*(f"V{n}" for n in _NUMBERS), *UNNUMBERED)
 Course = Mapping[str, tuple[str, ...]]

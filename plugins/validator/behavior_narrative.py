@@ -65,9 +65,9 @@ class BehaviorNarrative(Validator):
 
 # ------------------------------------------------------------------ vehicles
 def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
-    """Every numbered vehicle is an actor and no other number is."""
+    """Everybody whom the report tells of is an actor and no other number is."""
     told = [v.id for v in facts.vehicles]
-    acting = [a.id for a in behavior.actors if a.id.startswith("V")]
+    acting = [a.id for a in behavior.actors if a.id.startswith("V") or a.id in told]
     for v in facts.vehicles:
         if v.id not in acting:
             named = " ".join(str(w) for w in (v.year, v.make, v.model) if w)

@@ -12,7 +12,6 @@ from typing import ClassVar, Literal
 
 from sgcad_core.interfaces import Validator
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.specs import Actor, BehaviorSpec, size_m
 
@@ -29,7 +28,7 @@ class Drivable(Validator):
         if not isinstance(artifact, Scenario) or artifact.behavior is None or not artifact.planned:
             return []
         rest = self._at_rest(artifact, artifact.behavior)
-        if tells_lost_control(evidence.report.reading.narrative):
+        if evidence.report.reading.lost_control:
             return rest
         remedy = "choose roads, maneuvers, speeds and sides that steering alone brings about"
         return [

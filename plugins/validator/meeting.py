@@ -17,7 +17,6 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
-from sgcad_core.narrative.losses import tells_lost_control
 from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
@@ -45,7 +44,7 @@ class Meeting(Validator):
         network, reading = evidence.network, evidence.report.reading
         if network is None or network.net_xml is None:
             return []
-        if artifact.oddity < self.odd_from or tells_lost_control(reading.narrative):
+        if artifact.oddity < self.odd_from or reading.lost_control:
             return []
         holds: tuple[Hold, ...] = ()
         if self.try_others and network.spec is not None:

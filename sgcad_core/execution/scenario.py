@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.editable import write_editable
+from sgcad_core.execution.signals import signal_times
 from sgcad_core.findings import Finder
 from sgcad_core.formats.openscenario.events import Handover
-from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version, write_xosc
+from sgcad_core.formats.openscenario.writer import (
+    DEFAULT_ENCODING,
+    DEFAULT_VERSION,
+    Encoding,
+    Version,
+    origin_motion,
+    write_xosc,
+)
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records import ActorInfo, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses
 
 _finding = Finder("scenario")
 
@@ -21,28 +33,37 @@ def compile_scenario(
     encoding: Encoding = DEFAULT_ENCODING,
     *,
     may_skid: bool = False,
+    courses: Courses = NOTHING_TOLD,
+    signals: Mapping[str, str] | None = None,
 ) -> Scenario:
     """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
 
     `encoding`: timed polylines, or maneuver events that people edit by hand.
 
     What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say. `may_skid`: the report tells that somebody lost control.
+    for the validators to say. `may_skid`: the report tells that somebody lost control. `courses`: what it tells of
+    every vehicle's evasion and rest. `signals`: what the traffic signal showed to a vehicle, by id, where it is told.
     """
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")
-    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid)
+    planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid, courses=courses)
     actors = actor_infos(behavior)
-    handover = Handover(planned.contact, network.xodr) if encoding == "events" else None
+    origins = [origin_motion(actor, move) for actor, move in zip(actors, planned.trajectories, strict=True)]
+    times = signal_times(network, origins, signals or {}, planned.contact.t_s if planned.contact else None)
+    plan_of = actors, planned.trajectories, behavior
+    if encoding == "events":
+        xosc = write_editable(*plan_of, Handover(planned.contact, network.xodr), version, times.controllers)
+    else:
+        xosc = write_xosc(*plan_of, version=version, signals=times.controllers)
     return Scenario(
-        xosc=write_xosc(actors, planned.trajectories, behavior, version=version, handover=handover),
+        xosc=xosc,
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
         planned=planned.trajectories,
         oddity=planned.oddity,
-        notes=planned.notes,
+        notes=(*planned.notes, *times.notes),
     )
 
 

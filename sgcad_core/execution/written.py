@@ -30,19 +30,27 @@ class Grounds:
 
     told: Mapping[str, Fact]
     answer: Generation | None = None
+    drawn: bool = False
+    """Whether the model saw a drawing too."""
 
     def fact(self, field: str, value: Value, path: str, sources: tuple[str, ...], otherwise: str) -> Fact:
         """A model's answer (at `path`), else what the first known of the told `sources` suggests, else a default."""
         if self.answer is not None and path:
-            return self._answered(field, value, path)
-        known = next((self.told[name] for name in sources if name in self.told), None)
+            return self._answered(field, value, path, sources)
+        known = self._known(sources)
         if known is None or known.status == "default":
             return default(field, value, otherwise)
         return Fact.model_validate(known.model_dump() | {"field": field, "value": value, **_followed(known, value)})
 
-    def _answered(self, field: str, value: Value, path: str) -> Fact:
+    def _known(self, sources: tuple[str, ...]) -> Fact | None:
+        return next((self.told[name] for name in sources if name in self.told), None)
+
+    def _answered(self, field: str, value: Value, path: str, sources: tuple[str, ...]) -> Fact:
+        """What the evidence carries and no sentence tells is from the drawing, where there is one."""
         nats = self.answer.grounding.get(path) if self.answer else None
-        basis: Basis = "model"
+        known = self._known(sources)
+        silent = known is None or known.status == "default"
+        basis: Basis = "diagram" if self.drawn and silent and nats is not None and nats > 0 else "model"
         status: Status = "stated" if nats is None or nats > 0 else "inferred"
         rule, sure = ("grounding" if nats is not None else "answer"), CONFIDENCE.model
         return Fact(field=field, value=value, basis=basis, status=status, rule=rule, confidence=sure, nats=nats)
@@ -55,9 +63,11 @@ def _followed(known: Fact, value: Value) -> dict[str, object]:
     return {"status": "inferred", "confidence": min(known.confidence, CONFIDENCE.inferred)}
 
 
-def road_facts_written(network: RoadNetwork, reading: Reading, answer: Generation | None) -> Iterator[Fact]:
-    """Lanes each way and limit of every road drawn from a spec, by the road's id."""
-    grounds = Grounds({f.field: f for f in reading.facts}, answer)
+def road_facts_written(
+    network: RoadNetwork, reading: Reading, answer: Generation | None, drawn: bool = False
+) -> Iterator[Fact]:
+    """Lanes each way and limit of every road drawn from a spec, by the road's id; `drawn`: a model saw a drawing."""
+    grounds = Grounds({f.field: f for f in reading.facts}, answer, drawn)
     for number, road in enumerate(network.spec.roads if network.spec else ()):
         at, leg = f"roads.{road.id}", _leg(network, road)
         told = road_of_bearing(reading.roads, road.id)
@@ -80,10 +90,11 @@ def _leg(network: RoadNetwork, road: Road) -> int | None:
 
 
 def actor_facts_written(
-    scenario: Scenario, network: RoadNetwork, reading: Reading, answer: Generation | None
+    scenario: Scenario, network: RoadNetwork, reading: Reading, answer: Generation | None, drawn: bool = False
 ) -> Iterator[Fact]:
     """Start road, lane (1 at the right curb), planned speed (mph) and exit of every actor; what a model answered."""
-    grounds, graph = Grounds({f.field: f for f in reading.facts}, answer), parse_net(network.net_xml or "<net/>")
+    grounds = Grounds({f.field: f for f in reading.facts}, answer, drawn)
+    graph = parse_net(network.net_xml or "<net/>")
     tracks = {track.actor: track for track in scenario.planned}
     for number, actor in enumerate(scenario.behavior.actors if scenario.behavior else ()):
         yield from _actor(actor, tracks.get(actor.id), graph, grounds, f"actors[{number}]")
@@ -102,7 +113,7 @@ def _actor(actor: Actor, track: Trajectory | None, graph: LaneGraph, grounds: Gr
         yield grounds.fact(f"{at}.exit_road", actor.exit_road, f"{path}.exit_road", sources, "planner: straight on")
     if grounds.answer is not None:
         for name in ("kind", "maneuver"):
-            yield grounds.fact(f"{at}.{name}", getattr(actor, name), f"{path}.{name}", (), "")
+            yield grounds.fact(f"{at}.{name}", getattr(actor, name), f"{path}.{name}", (f"{at}.{name}",), "")
 
 
 def _speed(actor: Actor, planned_mph: float, grounds: Grounds, at: str, path: str) -> Fact:

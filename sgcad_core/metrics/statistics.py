@@ -50,6 +50,15 @@ def share_interval(outcomes: ArrayLike, level: float = LEVEL, seed: int = SEED) 
     return mean_interval(x, level, seed)
 
 
+def wilson(hits: int, n: int, level: float = LEVEL) -> tuple[float, float]:
+    """Score interval of hits of n (E. B. Wilson, JASA 22 (1927) 209): no wider than [0, 1], never empty; n > 0."""
+    z = _NORMAL.inv_cdf((1 + level) / 2)
+    share, weight = hits / n, 1 + z * z / n
+    middle = (share + z * z / (2 * n)) / weight
+    half = z / weight * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n))
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
 def mean_interval(values: ArrayLike, level: float = LEVEL, seed: int = SEED) -> Interval | None:
     """Bootstrap interval of a mean over cases; None of no cases."""
     x = np.asarray(values, dtype=float)

@@ -129,11 +129,17 @@ def _contact_marks(label: Mapping[str, Any], touch: Touch | None) -> dict[str, f
     hit = next((e for e in events if str(e.get("other", "")).startswith("V")), None)
     if hit is None:
         return {}
-    want = {hit[who].split(" ")[0]: _side(hit.get(f"{who}_area")) for who in ("actor", "other")}
+    want = {hit[who].split(" ")[0]: _sides(hit, who) for who in ("actor", "other")}
     seen = touch.areas if touch else {}
     pair = set(seen) == set(want)
-    right = float(pair and dict(seen) == want) if all(want.values()) else None
+    right = float(pair and all(seen[v] in want[v] for v in want)) if all(want.values()) else None
     return {"collision_any": float(touch is not None), "collision_pair": float(pair), "collision_areas": right}
+
+
+def _sides(hit: Mapping[str, Any], who: str) -> tuple[str, ...]:
+    """The side that a label names and, of a corner, the other one that is right too; empty where it names none."""
+    told = _side(hit.get(f"{who}_area"))
+    return tuple(filter(None, (told, _side(hit.get(f"{who}_area_also"))))) if told else ()
 
 
 def _side(text: str | None) -> str:

@@ -10,6 +10,7 @@ from sgcad_core.errors import Refused
 from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
+from sgcad_core.narrative.roadside import with_roadside
 from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
@@ -23,7 +24,9 @@ _MOST_ACTORS, _MOST_CONTACTS = 12, 8
 
 
 def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
-    """The crash on that network. Raises Refused where the text names no vehicle at all."""
+    """The crash on that network. Raises Refused where the text tells no crash or names no vehicle."""
+    if facts.gap:
+        raise Refused(facts.gap.reason, list(facts.gap.missing))
     if not facts.vehicles:
         raise Refused("the narrative names no vehicle", ["which vehicles were involved", "how they traveled"])
     vehicles = facts.vehicles[:_MOST_ACTORS]
@@ -32,8 +35,10 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     contacts = [c for c in facts.contacts if all(x in {a.id for a in actors} for x in (c.striker, c.struck))]
     if not contacts:
         actors, contacts = _with_others(actors, facts)
+    met = [_contact(c) for c in contacts[:_MOST_CONTACTS]]
+    cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(
-        actors=tuple(actors), contacts=tuple(_contact(c) for c in contacts[:_MOST_CONTACTS]),
+        actors=cast, contacts=blows,
         light=facts.light, weather=facts.weather, surface=facts.surface,
     )  # fmt: skip
 

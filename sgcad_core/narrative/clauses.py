@@ -8,7 +8,7 @@ preposition stands before it ("behind V2", "struck V2"), or where a relative cla
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from sgcad_core.language import rule
@@ -25,6 +25,8 @@ class Segment(NamedTuple):
     role: Role
     number: int
     """Of the sentence."""
+    at: int = 0
+    """Where in the sentence it begins."""
 
 
 class Statement(NamedTuple):
@@ -58,6 +60,8 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
+        if role == "rest" and who.counted and all(t.role != "impact" for t in told):
+            role = "approach"  # one account in order: nobody is at rest for good before the blow
         current = _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several))
         several = _of_several(text, several)
@@ -108,7 +112,7 @@ def _cut(told: Statement, who: Roster) -> list[Segment]:
     starts = subject_starts(told, who)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
     return [
-        Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number)
+        Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number, begin)
         for (_, begin, subjects), end in zip(starts, ends, strict=True)
         if subjects
     ]
@@ -122,11 +126,20 @@ def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[s
     if pronoun and told.subject:
         everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
         starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
-    for m in _SUBJECT.finditer(text):
+    for m in _subjects(text):
         subjects = _whom(m, who)
-        if (subjects or m.group("stranger")) and _is_subject(text, m):
+        stranger = m.group("stranger") or (not subjects and m.group("one") in who.bystanders)
+        if (subjects or stranger) and _is_subject(text, m):
             starts.append((m.start(), m.end(), subjects))
     return starts
+
+
+def _subjects(text: str) -> Iterator[re.Match[str]]:
+    """Mentions that may be subjects; of "V2, and V2", which is no list, the second alone."""
+    for m in _SUBJECT.finditer(text):
+        named = list(MENTION.finditer(text, m.start(), m.end())) if m.group("list") else []
+        again = len(named) > 1 and len({n[0] for n in named}) == 1
+        yield (_SUBJECT.match(text, named[-1].start()) or m) if again else m
 
 
 def _means_all(told: Statement, pronoun: re.Match[str]) -> bool:
@@ -138,17 +151,22 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
         return ()
     if match.group("both"):
         return who.ids if len(who.ids) > 1 else ()
-    return tuple(v for v in MENTION.findall(match.group()) if v in who.ids)
+    return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
 
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
-    if _DRIVER_OF.search(before):
-        return bool(_VERB.match(behind))
     if _BESIDE.search(before):
         return bool(rule("clauses.relative").match(behind))
+    if _DRIVER_OF.search(before):
+        return _acts(behind)
     if _PREPOSITION.search(before):
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
-    return bool(_VERB.match(behind))
+    return _acts(behind)
+
+
+def _acts(behind: str) -> bool:
+    """Whether a verb follows a mention, at once or behind words that say where the vehicle is."""
+    return bool(_VERB.match(behind) or _VERB.match(rule("clauses.located").sub("", behind)))

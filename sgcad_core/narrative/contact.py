@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Statement, subject_starts
-from sgcad_core.narrative.contact_nouns import Touch, paired_areas, struck_pair, together, touches
+from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, struck_pair, together, touches
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
@@ -35,7 +35,7 @@ class Blow:
     mutual: bool = False
     """They collided: the text names no striker."""
     noun: bool = False
-    """Told by nouns ("the impact was between ..."), not by a verb of hitting."""
+    """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
 
     @property
     def cue(self) -> Cue:
@@ -47,8 +47,9 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[Blow] = []
     retold: list[Blow] = []
+    told = tuple(told)
     for t in told:
-        if t.role in ("codes", "factors", "police", "health"):
+        if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
         into = (
             crash
@@ -59,7 +60,15 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     first = min((b.number for b in crash if b.other in who.ids), default=0)
     early = [b for b in retold if b.number < first and b.other in who.ids]
     late = [b for b in retold if b not in early]
-    return (*early, *crash, *late)
+    return (*early, *crash, *late) or _only_named(told, who)
+
+
+def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+    """Contacts of which a report says no more than who collided with whom."""
+    named = ((t, touch) for t in told for touch in involved(plain(t, who)))
+    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True)
+             for t, m in named)  # fmt: skip
+    return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
 
 
 def _sentence(told: Statement, who: Roster) -> list[Blow]:
@@ -157,6 +166,8 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
     pair = paired_areas(scope)
     scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
+    if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
+        own = None  # "made contact with the left door": whose door it is stands elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
     other, other_area = _object(told, actor, rest, who)

@@ -52,6 +52,12 @@ def together(text: str) -> Iterator[Touch]:
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
 
 
+def involved(text: str) -> Iterator[Touch]:
+    """ "V1 was in a collision involving V2": of use only where nothing tells how."""
+    for m in rule("contact_nouns.involved").finditer(text):
+        yield Touch(m["v1"], m["v2"], None, None, "involved")
+
+
 def _maybe(words: str | None) -> Zone | None:
     return area_of(words) if words else None
 

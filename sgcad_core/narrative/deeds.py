@@ -16,9 +16,12 @@ _LATER = rule("deeds.later")
 _TRY = rule("deeds.try")
 _EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
+_HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
+"""What a vehicle may wait or prepare to do and never does."""
 
 
-def read_deeds(motion: Motion, text: str, weight: int, number: int) -> None:
+def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
+    """Add what one segment tells; `at`: where in its sentence it begins."""
     for m in _TURNING.finditer(text):
         side = next(
             filter(None, (m.groupdict().get(k) for k in ("side", "side2", "side3", "side4", "side5"))), "left"
@@ -27,21 +30,27 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int) -> None:
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
             continue
         later = _LATER.search(before) and not _TRY.search(before[-14:])
-        motion.deeds.append(Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id))
+        motion.deeds.append(
+            Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
+        )
     for deed in of_role("deed"):
         for m in deed.finditer(text):
-            if not _NOT.search(text[max(0, m.start() - 30) : m.start()]):
-                _note_deed(motion, deed, m, weight, number)
+            before = text[max(0, m.start() - 60) : m.start()]
+            hoped = motion.ordered and deed.yields["deed"] in _HOPED and _LATER.search(before)
+            if not _NOT.search(before[-30:]) and not hoped:
+                _note_deed(motion, deed, m, (weight, number, at + m.end()))
 
 
-def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], weight: int, number: int) -> None:
+def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:
+    """`told`: weight, sentence, place."""
     kind, rule_id = deed.yields["deed"], deed.id
+    weight, number, at = told
     if kind == "from_side":
         motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
     elif kind == "into_lane":
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None
         if entered and own and turned(entered, 180) == own:
-            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id))
+            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id, at))
     else:
-        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id))
+        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id, at))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, get_args
 
 from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.course import CoursesRead, ImpactRead
 from sgcad_core.narrative.motion import Cue, Motion
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.narrative.zones import Zone
@@ -31,6 +32,8 @@ class Draft:
     who: Roster
     motions: dict[str, Motion]
     blows: tuple[Blow, ...]
+    course: CoursesRead = field(default_factory=CoursesRead)
+    impacts: tuple[ImpactRead, ...] = ()
 
 
 AREAS: tuple[Area, ...] = get_args(Area)

@@ -6,15 +6,17 @@ what it says (relation words, critical events, the sides that touched) and marke
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
+from sgcad_core.narrative.gaps import Gap
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
+from sgcad_core.told_course import Courses, ImpactTold
 
 
 @dataclass(frozen=True)
@@ -82,8 +84,14 @@ class CrashFacts:
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    courses: Courses = field(default_factory=dict)
+    """Evasion, spin and rest by vehicle, of those of which anything is told."""
+    impacts: tuple[ImpactTold, ...] = ()
+    """Contacts behind the first one with things, and of the same pair once more, in order."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
+    gap: Gap | None = None
+    """Why no crash can be drawn from the text, if so."""
 
     def vehicle(self, id: str) -> VehicleFacts | None:
         """The vehicle of that number."""
@@ -132,5 +140,7 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        bool(settled.stated),
+        courses=draft.course.courses,
+        impacts=tuple(read.impact for read in draft.impacts),
+        oriented=bool(settled.stated),
     )

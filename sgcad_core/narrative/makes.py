@@ -15,6 +15,12 @@ MAKES: dict[str, str] = {
 """Lower-case spelling -> make."""
 BODY_WORDS: dict[str, ActorKind] = values("body")
 """Lower-case body word -> kind."""
+ROAD_USERS: dict[str, str] = values("road_user")
+"""Lower-case word for people and animals on the road -> what they are."""
+_USER_KIND: dict[str, ActorKind] = {
+    "pedestrian": "pedestrian", "bicycle": "bicycle", "motorcycle": "motorcycle", "animal": "pedestrian",
+}  # fmt: skip
+"""Kind of actor that stands for each; an animal walks."""
 _MAKE_KIND: dict[str, ActorKind] = {
     word: make["kind"] for word, make in values("make").items() if isinstance(make, dict)
 }
@@ -26,12 +32,21 @@ _MODEL_KIND: dict[ActorKind, tuple[str, ...]] = {
 def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
     """Kind of vehicle from its description, and whether a body word states it."""
     text = words.lower()
+    for user in sorted(ROAD_USERS, key=len, reverse=True):
+        if rule("makes.whole_word").given(word=user).search(text):
+            return _USER_KIND[ROAD_USERS[user]], True
     for body in sorted(BODY_WORDS, key=len, reverse=True):
         if rule("makes.whole_word").given(word=body).search(text):
             if BODY_WORDS[body] == "truck" and body == "truck" and _by_model(text, model) == "pickup":
                 return "pickup", True
             return BODY_WORDS[body], True
     return _by_model(text, model) or _by_make(text) or "car", False
+
+
+def is_animal(words: str) -> bool:
+    """Whether a description is of an animal."""
+    animals = (word for word, kind in ROAD_USERS.items() if kind == "animal")
+    return any(rule("makes.whole_word").given(word=word).search(words.lower()) for word in animals)
 
 
 def _by_model(text: str, model: str | None) -> ActorKind | None:

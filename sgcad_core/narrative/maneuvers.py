@@ -33,6 +33,8 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
     `hit`: sides of the vehicle that were struck, in order. `same_way`: the turn that a critical event
     "turning into same direction" means.
     """
+    if motion.ordered and (last := _last_state(motion)):
+        return last
     for sure in _SURE:
         if deed := motion.deed(sure, 3):
             return Decision(sure, deed=deed)
@@ -44,6 +46,60 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
     if _standing(motion, hit):
         return Decision("stopped", deed=motion.deed("stopped") or motion.deed("code:stopped"))
     return _moving(motion, 2 if hit[:1] == ("back",) else 3)
+
+
+_STANDING = ("stopped", "parked")
+_MOVING = (
+    "moved_on",
+    "came_on",
+    "straight",
+    "leaving_parking",
+    "slowing",
+    "turn_left",
+    "turn_right",
+    "overtaking",
+    *_PLAIN,
+)
+
+
+def _last_state(motion: Motion) -> Decision | None:
+    """What a vehicle did last in an account in order: it stands, backs, or what is told since it stood."""
+    acts = sorted((d for d in motion.deeds if d.weight >= 3), key=lambda d: d.when)
+    states = [d for d in acts if d.kind in (*_STANDING, "backing", *_MOVING, "u_turn")]
+    if not states:
+        return None
+    last = states[-1]
+    if last.kind in _STANDING:
+        return Decision("parked" if last.kind == "parked" else _stands(states), deed=last)
+    if last.kind in ("backing", "u_turn"):
+        return Decision("backing" if last.kind == "backing" else "u_turn", deed=last)
+    stood = [d.when for d in states if d.kind in (*_STANDING, "backing")]
+    since = [d for d in acts if not stood or d.when > stood[-1]]
+    return _moving_since(motion, since)
+
+
+def _stands(states: list[Deed]) -> Maneuver:
+    """Parked where it was parked and is not told to have moved since, else stopped."""
+    moves = [d.when for d in states if d.kind in _MOVING or d.kind == "backing"]
+    parked = [d.when for d in states if d.kind == "parked"]
+    return "parked" if parked and (not moves or parked[-1] > moves[-1]) else "stopped"
+
+
+def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
+    """The maneuver of a vehicle that moves: a turn, meant before or made, else a change of lane, else straight on."""
+    turns = [d for d in since if d.kind in _TURNS]
+    if turns:
+        return _as_told(turns[-1])
+    for kind in _PLAIN:
+        if deed := next((d for d in since if d.kind == kind), None):
+            return Decision(kind, deed=deed)
+    wants = [d for d in motion.deeds if d.kind.startswith("want_turn_") and d.weight >= 3]
+    if wants and any(d.kind == "moved_on" and d.when > wants[-1].when for d in since):
+        return _as_told(wants[-1])
+    if deed := next((d for d in since if d.kind == "lane_change"), None):
+        return Decision("lane_change_left", False, deed)
+    slowing = next((d for d in since if d.kind == "slowing"), None)
+    return Decision("slowing" if slowing else "straight", deed=slowing or (since[-1] if since else None))
 
 
 def changed_lanes_after_turn(motion: Motion) -> bool:

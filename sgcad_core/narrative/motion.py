@@ -29,11 +29,18 @@ class Deed(NamedTuple):
     number: int
     words: str = ""
     rule: str = ""
+    at: int = 0
+    """Where in its sentence it ends."""
 
     @property
     def cue(self) -> Cue:
         """Where it was read."""
         return Cue(self.number, self.words, self.rule)
+
+    @property
+    def when(self) -> tuple[int, int]:
+        """Its place in the order of the text."""
+        return self.number, self.at
 
 
 class Heard(NamedTuple):
@@ -50,6 +57,8 @@ class Motion:
 
     at: int = 0
     """The sentence that is being read."""
+    ordered: bool = False
+    """Whether the deeds are one account in order, up to the contact."""
     headings: list[Heard] = field(default_factory=list)
     """In the order of the text."""
     exits: list[Compass] = field(default_factory=list)

@@ -25,13 +25,16 @@ _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3,
 _STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
 _STOPPED_THERE = rule("motion_reader.stopped_there")
 _THROWN = rule("motion_reader.thrown")
-_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health")
+_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
-def motions(told: Sequence[Statement], cut: Iterable[Segment], who: Roster) -> dict[str, Motion]:
-    """Motion of every vehicle of the roster."""
-    found = {v: Motion() for v in who.ids}
+def motions(
+    told: Sequence[Statement], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
+) -> dict[str, Motion]:
+    """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
+    found = {v: Motion(ordered=who.counted) for v in who.ids}
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
+    impact = struck_at if who.counted and struck_at is not None else impact
     for segment in cut:
         if segment.role in _UNREAD:
             continue
@@ -40,6 +43,8 @@ def motions(told: Sequence[Statement], cut: Iterable[Segment], who: Roster) -> d
             motion.at = segment.number
             after = segment.number > impact
             late = after and bool(motion.headings or motion.deeds)
+            if late and who.counted:
+                continue
             _read(motion, segment, vehicle, who, 2 if late else 4, after)
     for t in told:
         for motion in found.values():
@@ -57,7 +62,7 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
-    read_deeds(motion, before_hit, weight, segment.number)
+    read_deeds(motion, before_hit, weight, segment.number, segment.at)
     read_kin(motion, before_hit, weight, vehicle, who)
     if segment.role != "rest":
         read_lane(motion, before_hit)

@@ -13,23 +13,35 @@ character offsets in the narrative that was given. Knows no road network and no 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact
+from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
-from sgcad_core.narrative.contact import blows
+from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.course import courses_told, cut_by_deeds
+from sgcad_core.narrative.course_provenance import course_provenance
+from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
+from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
+from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
+from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
+from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
+from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_states
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
+
+_LOST = rule("meeting.lost")
 
 
 @dataclass(frozen=True)
@@ -43,6 +55,10 @@ class Reading:
     crash: CrashFacts
     """Headings that nobody tells are turned to fit the roads."""
     roads: RoadFacts
+    signals: Mapping[str, SignalState] = field(default_factory=dict)
+    """What the traffic signal showed to a vehicle, by its id, where that is told."""
+    lost_control: bool = False
+    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
 
@@ -50,8 +66,9 @@ class Reading:
 def read(narrative: str | Traced) -> Reading:
     """Read a report. Never raises; an empty or foreign text gives no vehicles and no roads."""
     text = Traced.of(narrative) if isinstance(narrative, str) else narrative
-    found = sentences(normalise(text))
-    named = mentions(found)
+    even = normalise(text)
+    found = sentences(even)
+    named = mentions(found, not numbers_somebody(even.text))
     return infer(text.text, found, named, events(found, named, clauses(named)))
 
 
@@ -74,10 +91,11 @@ class Mentions(NamedTuple):
 
 
 class Events(NamedTuple):
-    """What the text tells: every vehicle's motion, every contact; light, weather and surface."""
+    """What the text tells: every vehicle's motion, every contact; light, weather and surface; what signals showed."""
 
     draft: Draft
     sky: Conditions
+    signals: Mapping[str, SignalTold]
 
 
 def normalise(narrative: Traced) -> Traced:
@@ -90,10 +108,21 @@ def sentences(text: Traced) -> tuple[Sentence, ...]:
     return split_sentences(text)
 
 
-def mentions(found: tuple[Sentence, ...]) -> Mentions:
-    """The vehicles, and the sentences with all that refers to them resolved."""
-    who = roster(s.text for s in found)
-    return Mentions(who, tell(found, who))
+def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
+    """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
+    who = roster((s.text for s in found), counted)
+    told = tell(found, who)
+    if counted and (gone := bystanders(blows(told, who), who)):
+        who = who.without(gone)
+        told = tell(found, who)
+    return Mentions(who, told)
+
+
+def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
+    """Those who touch nobody, where somebody touches the subject; nobody where that is not told."""
+    met = {v for blow in told for v in (blow.actor, blow.other)}
+    subject = who.ids[0] if who.ids else None
+    return tuple(v for v in who.ids if v not in met) if subject in met and len(met & set(who.ids)) > 1 else ()
 
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
@@ -103,14 +132,37 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
 
 def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
     """Motions, contacts, conditions."""
-    draft = Draft(named.who, motions(named.statements, cut, named.who), blows(named.statements, named.who))
-    return Events(draft, conditions(found))
+    who, struck = named.who, blows(named.statements, named.who)
+    deeds = cut_by_deeds(named.statements, who)
+    course = courses_told(named.statements, deeds, who)
+    impacts = with_props(later_impacts(named.statements, deeds, who, struck), course)
+    subject = who.ids[0] if who.ids else None
+    met = (b.number for b in struck if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
+    draft = Draft(who, motions(named.statements, cut, who, next(met, None)), struck, course, impacts)
+    return Events(draft, conditions(found), signal_states(cut))
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     settled = settle(seen.draft)
+    called = {old: new for old, new in named.who.called.items() if old != new}
     roads = roads_of(named.statements, named.who, crash_of(seen.draft, settled, seen.sky))
     telling, as_read = Telling(found), Read(seen.draft, settled, roads.crash, dict(seen.sky.sources))
-    facts = (*crash_provenance(telling, as_read), *road_provenance(telling, roads))
-    return Reading(narrative, found, roads.crash, roads, facts)
+    lights = [telling.stated(f"vehicles.{v}.signal", told.state, told.cue) for v, told in seen.signals.items()]
+    course = course_provenance(telling, seen.draft)
+    roles = role_facts(telling, named.statements, roads.crash)
+    facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
+    states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
+    roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
+    crash = replace(roads.crash, gap=_gap(narrative, found, named.who, roads.crash))
+    lost = bool(_LOST.search(narrative))
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts)
+
+
+def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashFacts) -> Gap | None:
+    """What keeps the text from being drawn."""
+    gap = foreign(narrative) or several(narrative)
+    if gap or not crash.vehicles:
+        return gap or without_actors(narrative, found)
+    alone = len(crash.vehicles) == 1 and not crash.contacts
+    return untold(narrative, (c.stated for c in crash.contacts)) if who.counted or alone else None

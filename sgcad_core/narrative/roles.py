@@ -12,7 +12,7 @@ from sgcad_core.language import of_role, rule
 
 Role = Literal[
     "opening", "road", "conditions", "approach", "avoidance", "impact", "rest", "towing", "restraint", "injury",
-    "interview", "health", "codes", "factors", "police", "other",
+    "interview", "health", "codes", "factors", "police", "formal", "other",
 ]  # fmt: skip
 
 CRASH_ROLES: frozenset[Role] = frozenset({"opening", "road", "conditions", "approach", "avoidance", "impact", "rest"})

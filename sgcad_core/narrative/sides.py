@@ -24,6 +24,8 @@ def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
     told = all(zone is not None and "/" not in zone for zone in (blow.actor_area, blow.other_area))
     a, b = blow.actor, blow.other
     area_a, area_b = _corners(draft, out, blow)
+    if draft.who.counted and not (area_a and area_b):
+        area_a, area_b = _brushed(out, blow, area_a, area_b)
     if area_a is None and area_b is None and blow.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap")):
         area_a, area_b = _sideswiped(out, a, b)
     if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
@@ -44,6 +46,18 @@ def _less_of_a_striker(out: Settled, a: str, b: str) -> bool:
     """Whether b rather than a hits with its front: a turns or stands and b goes straight; else the higher number."""
     bent_a, bent_b = (out.maneuvers[v] in _BENT or _standing(out, v) for v in (a, b))
     return (bent_a and not bent_b) or (bent_a == bent_b and int(a[1:]) > int(b[1:]))
+
+
+def _brushed(out: Settled, blow: Blow, area_a: Area | None, area_b: Area | None) -> tuple[Area | None, Area | None]:
+    """Who goes past another touches a told corner or flank of it with the flank that faces it."""
+    facing: dict[str, Area] = {"left": "right", "right": "left"}
+    oncoming = apart(between(out.headings.get(blow.actor, "N"), out.headings.get(blow.other, "N")), 180) <= 45
+    for mine, me, zone in ((area_a, blow.actor, blow.other_area), (area_b, blow.other, blow.actor_area)):
+        flank = next((side for side in (zone or "").split("/") if side in facing), None)
+        if mine is None and flank and out.maneuvers[me] == "overtaking":
+            touching: Area = flank if oncoming else facing[flank]  # type: ignore[assignment]
+            return (touching, area_b) if me == blow.actor else (area_a, touching)
+    return area_a, area_b
 
 
 def _sideswiped(out: Settled, a: str, b: str) -> tuple[Area, Area]:
@@ -70,6 +84,7 @@ def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area 
             and mine.count("/") == 1
             and yours in ("front", None)
             and out.maneuvers[me] not in ("stopped", "parked")
+            and not draft.who.counted
         )
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
     return areas[blow.actor], areas[blow.other]

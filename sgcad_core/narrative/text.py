@@ -10,9 +10,9 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
+from sgcad_core.narrative.references import number_actors
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.traced import Traced, joined
-from sgcad_core.narrative.unnumbered import number_vehicles
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 
@@ -93,6 +93,7 @@ def _spell(text: Traced) -> Traced:
         text = text.sub(spelling, spelling.yields["to"])
     text = text.sub(rule("text.first_vehicle"), "V1")
     text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
     text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
     text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
     return _spaces(text)
@@ -129,9 +130,9 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 
 
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
-    """The sentences of a normalized text."""
+    """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    blocks = [block for block in number_vehicles(text).split_at("\n\n") if block.text]
+    blocks = [block for block in number_actors(text).split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):
             found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))

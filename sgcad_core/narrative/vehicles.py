@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, kind_of
+from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
 
@@ -36,6 +36,9 @@ class Identity:
     kind: ActorKind = "car"
     kind_stated: bool = False
     trailer: bool = False
+    animal: bool = False
+    counted: bool = False
+    """Whether it was numbered here, not by the report."""
     described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
     """Every description of it, in order."""
 
@@ -47,6 +50,8 @@ class Roster:
     vehicles: tuple[Identity, ...]
     aliases: dict[str, str] = field(default_factory=dict)
     """Lower-case word or phrase -> id, only where it names one vehicle."""
+    bystanders: tuple[str, ...] = ()
+    """Numbers of those who are in the text and take no part in the crash."""
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -58,9 +63,34 @@ class Roster:
         rest = [v for v in self.ids if v != vehicle]
         return rest[0] if len(rest) == 1 else None
 
+    @property
+    def counted(self) -> bool:
+        """Whether the numbers were given here: the report numbers nobody and tells one account in order."""
+        return any(v.counted for v in self.vehicles)
+
+    def without(self, bystanders: Iterable[str]) -> Roster:
+        """The roster of those who take part."""
+        gone = tuple(bystanders)
+        stay = tuple(v for v in self.vehicles if v.id not in gone)
+        names = {name: id for name, id in self.aliases.items() if id not in gone}
+        return Roster(stay, names, (*self.bystanders, *gone))
+
+    @property
+    def called(self) -> dict[str, str]:
+        """Number in the text -> the actor's own id, where some are people, cyclists or animals: V1, B1, P1, A1."""
+        counts: dict[str, int] = {}
+        found: dict[str, str] = {}
+        for v in self.vehicles:
+            letter = _LETTERS.get(v.kind, "V") if v.counted else "V"
+            letter = "A" if v.animal else letter
+            counts[letter] = counts.get(letter, 0) + 1
+            found[v.id] = f"{letter}{counts[letter]}" if v.counted else v.id
+        return found
+
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), sentence)
+        text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(r"\1", text)
@@ -79,17 +109,21 @@ class Roster:
 
 _OCCUPIED = rule("vehicles.occupied")
 _BRACKETED = rule("vehicles.bracketed")
+_INTRODUCED = rule("references.introduced")
 
 
 def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
     return match.group(2) if match.group(2) in ids else match.group(0)
 
 
-def roster(sentences: Iterable[str]) -> Roster:
-    """The vehicles that normalized sentences number, with what is said of them."""
+def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
+    """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    found = tuple(_identity(vehicle, told) for vehicle in _numbers(told))
+    found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
     return Roster(found, _aliases(found))
+
+
+_LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
 
 
 _NO_NUMBER = rule("vehicles.no_number")
@@ -109,8 +143,9 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str]) -> Identity:
-    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in descriptions(text, vehicle))
+def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
+    found = introductions if counted else descriptions
+    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
     words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
@@ -120,7 +155,7 @@ def _identity(vehicle: str, told: list[str]) -> Identity:
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
-        color.group().lower() if color else None, kind, stated, trailer, described,
+        color.group().lower() if color else None, kind, stated, trailer, is_animal(words), counted, described,
     )  # fmt: skip
 
 
@@ -159,6 +194,11 @@ def descriptions(text: str, vehicle: str) -> list[str]:
         if end > mention.end():
             found.append(text[mention.end() : end])
     return found
+
+
+def introductions(text: str, vehicle: str) -> list[str]:
+    """The words that first describe an actor of a report that numbers nobody."""
+    return [m.group(1) for m in _INTRODUCED.finditer(text) if m.group(2) == vehicle]
 
 
 _LEAD = rule("vehicles.lead")
@@ -225,7 +265,7 @@ def _names(v: Identity) -> set[str]:
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
-    if v.kind_stated:
+    if v.kind_stated and not v.counted:
         names |= {
             word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
         }

@@ -16,6 +16,7 @@ Zone = str
 _POSSESSIVE = rule("zones.possessive")
 _FLANKPARTS = rule("zones.flankparts")
 _CORNER = rule("zones.corner")
+_CORNERED = rule("zones.cornered")
 
 
 _ITS_AREA = rule("zones.its_area")
@@ -31,7 +32,7 @@ def area_of(words: str) -> Zone | None:
     flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
     front = bool(rule("zones.front").search(text))
     back = bool(rule("zones.back").search(text))
-    if flank and (front or back) and not _FLANKPARTS.search(text):
+    if flank and (front or back) and (not _FLANKPARTS.search(text) or _CORNERED.search(text)):
         return f"front/{flank}" if front else f"back/{flank}"
     if _CORNER.search(text) and (front or back) and not flank:
         return "front/left/right" if front else "back/left/right"
@@ -44,6 +45,7 @@ def plain(told: Statement, who: Roster) -> str:
     text = rule("zones.plural_number").sub(r"V\1's", told.text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
+    text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
     return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)

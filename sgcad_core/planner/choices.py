@@ -30,6 +30,11 @@ SWERVE_MPS2 = 6.0
 _CORNER_RUN_M = 10.0
 """Before and behind a junction in which one who cuts its corner is beside the lane."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
+_TOLD_SPEED = 0.25
+"""More for another speed than told where a told spin could be had by it."""
+_NOT_EVADING = 0.3
+"""Cost of the own line for one of whom it is told that he steered aside."""
+_EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
 _ASKEW, _STEERS = "stands askew", "steers aside before contact"
@@ -51,13 +56,33 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     wanted = _maneuver_shift(role)
     if wanted is not None:
         shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
+        shares += [(0.63, 0.12), (1.37, 0.17)] if role.spins or role.glances else []
         shares = shares if fine else [shares[0], shares[3], shares[4]]
         gentle = [_drift(role, wanted * k, cost, 1.7) for k, cost in shares]
         hard = [_drift(role, wanted * k, cost + 0.12, 1.0) for k, cost in shares[:3]]
         sharp = [_drift(role, wanted * k, cost + 0.4, 0.6) for k, cost in shares[:3]]
         return [*gentle, *hard, *sharp, Drift(0.8)]
     near = _in_lane(role) if fine else []
+    if evading := _evading(role):
+        return [
+            *evading,
+            Drift(_NOT_EVADING),
+            *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
+        ]
     return [Drift(0.0), *near, *_corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _evading(role: Role) -> list[Drift]:
+    """Swerves to the told hand; none where no steering is told, or where the maneuver is a way of its own."""
+    if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
+        return []
+    hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
+    ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
+    return [
+        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")
+        for left, cost, ease in ways
+        for hand in hands
+    ]
 
 
 def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
@@ -180,8 +205,9 @@ def pacings(role: Role) -> list[Pacing]:
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
     if role.course.stalls and role.actor.maneuver == "backing":
         return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
-    found = [Pacing(0.0), *_following(role), Pacing(0.2, 0.75, note=_SLOWER), Pacing(0.3, 1.3, note=_FASTER)]
-    found.append(Pacing(0.4, 0.5, note=_SLOWER))
+    told = _TOLD_SPEED if role.spins and role.actor.speed_mph else 0.0
+    found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
+    found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]
     if role.actor.maneuver in TURNING or role.course.passages:
         found.append(Pacing(0.25, 1.0, True, "starts from a stop"))
     return found

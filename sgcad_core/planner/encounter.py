@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import SIDES, Floats, box_gaps, overlap_centers, sides_at
+from sgcad_core.planner.impact import FRICTION
 from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
 from sgcad_core.specs import Area
 
@@ -22,6 +23,8 @@ Ints = NDArray[np.int_]
 DEPTH_M = 0.016
 """How deep the boxes overlap at the first common sample: enough to be seen, less than `wreck.SEEN_M`, so that what
 follows from the touch begins behind that sample."""
+_SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
+"""A blow with so much lever the told way costs nothing; with as much the other way all of it."""
 _HALVINGS = 10
 """Of a step of the grid, until the time of that overlap is told: 50 microseconds."""
 _MOST_SHIFTS = 64
@@ -50,8 +53,18 @@ class _Touches(NamedTuple):
     second: Floats
 
 
-def meet(first: Motion, second: Motion, wanted: tuple[Area, Area] | None) -> Meeting | None:
-    """The best contact of two motions on the wanted sides (any sides where None), or None."""
+def meet(
+    first: Motion,
+    second: Motion,
+    wanted: tuple[Area, Area] | None,
+    spins: tuple[float, float] = (0.0, 0.0),
+    *,
+    glances: bool = False,
+) -> Meeting | None:
+    """The best contact of two motions on the wanted sides (any sides where None), or None.
+
+    `spins`: how each is to turn behind it: 1 counter-clockwise, -1 clockwise, 0 as it comes. `glances`: off center.
+    """
     touches = _touches(first, second)
     if touches is None:
         return None
@@ -62,6 +75,8 @@ def meet(first: Motion, second: Motion, wanted: tuple[Area, Area] | None) -> Mee
     if not good.any():
         return None
     cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
+    if any(spins) or glances:
+        cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
     best = int(np.argmin(np.where(good, cost, np.inf)))
     named = (_side(sides[0][best]), _side(sides[1][best]))
     first_s, second_s = (float(_own_s(k[best])) for k in (touches.first, touches.second))
@@ -150,6 +165,40 @@ def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) 
     ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
     unclear: Floats = 10.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
     return ill + unclear
+
+
+def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], glances: bool) -> Floats:
+    """The cost of blows that turn a body otherwise than told, by their lever about its center."""
+    found = np.zeros(len(levers[0]))
+    for lever, spin in zip(levers, spins, strict=True):
+        found += abs(spin) * _SPIN_COST * np.clip((_CLEAR_LEVER_M - spin * lever) / (2 * _CLEAR_LEVER_M), 0.0, 1.0)
+        if glances and not spin:
+            found += _GLANCE_COST * np.clip(1 - np.abs(lever) / _CLEAR_LEVER_M, 0.0, 1.0)
+    return found
+
+
+def _levers(first: Motion, second: Motion, touches: _Touches, sides: tuple[Ints, Ints]) -> tuple[Floats, Floats]:
+    """Levers of the blow about both centers, metres, counter-clockwise positive: friction bounds its direction."""
+    i, j = _own_s(touches.first), _own_s(touches.second)
+    p, q = first.poses(i), second.poses(j)
+    center = overlap_centers(p, first.size, q, second.size)
+    push = _velocity(first, i) - _velocity(second, j)
+    flank_of_second = (sides[1] % 2 == 1) & (sides[0] % 2 == 0)
+    out = np.where(flank_of_second, q[:, 2] + sides[1] * math.pi / 2 + math.pi, p[:, 2] + sides[0] * math.pi / 2)
+    way = np.arctan2(push[:, 1], push[:, 0])
+    most = math.atan(FRICTION)
+    way = out + np.clip(np.mod(way - out + math.pi, 2 * math.pi) - math.pi, -most, most)
+    arms = [center - pose[:, :2] for pose in (p, q)]
+    turning = [arm[:, 0] * np.sin(way) - arm[:, 1] * np.cos(way) for arm in arms]
+    return -turning[0], turning[1]
+
+
+def _velocity(motion: Motion, own_s: Floats) -> Floats:
+    """(n, 2) m/s at own times."""
+    if motion.standing:
+        return np.zeros((len(own_s), 2))
+    velocity: Floats = (motion.poses(own_s)[:, :2] - motion.poses(own_s - STEP_S)[:, :2]) / STEP_S
+    return velocity
 
 
 def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:

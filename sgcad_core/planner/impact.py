@@ -99,7 +99,9 @@ def approach(first: Body, second: Body, at: Point, normal: Point) -> float:
     return (ax - bx) * normal[0] + (ay - by) * normal[1]
 
 
-def collide(first: Body, second: Body, at: Point, normal: Point, restitution: float = 0.0) -> bool:
+def collide(
+    first: Body, second: Body, at: Point, normal: Point, restitution: float = 0.0, friction: float = FRICTION
+) -> bool:
     """Exchange momentum at a point; `normal`: unit vector from first to second. False where they do not approach.
 
     Afterwards the points part at `restitution` times the speed of approach and do not slide on each other, unless that
@@ -110,7 +112,7 @@ def collide(first: Body, second: Body, at: Point, normal: Point, restitution: fl
     if closing <= 0.0:
         return False
     give = compliance(first, second, at)
-    impulse = _impulse(first, second, at, normal, give, restitution)
+    impulse = _impulse(first, second, (at, normal), give, restitution, friction)
     if _work(first, second, at, give, impulse) > 0.0:
         along = _through(give, normal, normal)
         impulse = (normal[0] * closing / along, normal[1] * closing / along)
@@ -126,17 +128,20 @@ def hold(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> 
     second.push(-normal[0] * size, -normal[1] * size, *at)
 
 
-def _impulse(first: Body, second: Body, at: Point, normal: Point, give: Matrix, restitution: float) -> Point:
-    """On the second body: what stops all sliding, within the cone of friction."""
+def _impulse(
+    first: Body, second: Body, touch: tuple[Point, Point], give: Matrix, restitution: float, friction: float
+) -> Point:
+    """On the second body: what stops all sliding, within the cone of friction. `touch`: the place and the normal."""
+    at, normal = touch
     (ax, ay), (bx, by) = first.velocity_at(*at), second.velocity_at(*at)
     closing = (ax - bx) * normal[0] + (ay - by) * normal[1]
     wanted = (ax - bx + restitution * closing * normal[0], ay - by + restitution * closing * normal[1])
     jx, jy = solve(give, wanted)
     tangent = (-normal[1], normal[0])
     along, across = jx * normal[0] + jy * normal[1], jx * tangent[0] + jy * tangent[1]
-    if abs(across) <= FRICTION * along:
+    if abs(across) <= friction * along:
         return jx, jy
-    slide = math.copysign(FRICTION, (ax - bx) * tangent[0] + (ay - by) * tangent[1])
+    slide = math.copysign(friction, (ax - bx) * tangent[0] + (ay - by) * tangent[1])
     way = (normal[0] + slide * tangent[0], normal[1] + slide * tangent[1])
     size = (1 + restitution) * closing / max(_through(give, normal, way), 1e-12)
     return way[0] * size, way[1] * size

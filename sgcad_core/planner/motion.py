@@ -30,6 +30,8 @@ ACCELERATION_MPS2 = 2.2
 BRAKING_MPS2 = 3.0
 YAW_RADPS = 1.1
 """Planned yaw rate at most: under the 1.5 rad/s that count."""
+EMERGENCY_SHARE = 0.6
+"""Of the friction that braking before a crash takes: 5 m/s2 on dry roads, under the 7 of locked wheels."""
 _STANDING_MPS = 5.0
 _CRAWL_MPS = 1.0
 _ABOUT = 0.98
@@ -53,11 +55,18 @@ class Pace:
     """What tires transmit on the surface."""
     hard: bool = False
     """Bends are driven as fast as a driver dares, not as one usually does."""
+    brakes: bool = False
+    """It slows down as one does who sees a crash coming."""
 
     @property
     def lateral_mps2(self) -> float:
         """Sideways acceleration that is planned with."""
         return self.within(HARD_MPS2, "hard") if self.hard else self.within(LATERAL_MPS2, "lateral")
+
+    @property
+    def braking_mps2(self) -> float:
+        """Deceleration that is planned with."""
+        return EMERGENCY_SHARE * self.grip_mps2 if self.brakes else self.within(BRAKING_MPS2, "braking")
 
     def within(self, usual_mps2: float, use: str) -> float:
         """A usual acceleration, or as much of it as the surface allows."""
@@ -145,7 +154,7 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
     limit = np.interp(station, path.s_m, _limits(path, more or (path, path), pace)) ** 2
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
-    limit = _rising(along[::-1] * -1, limit[::-1], pace.within(BRAKING_MPS2, "braking"))[::-1]
+    limit = _rising(along[::-1] * -1, limit[::-1], pace.braking_mps2)[::-1]
     if pace.starts_at_m is not None:
         ahead = station >= pace.starts_at_m
         station, along, limit = station[ahead], along[ahead], limit[ahead]

@@ -36,7 +36,18 @@ from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
 from sgcad_core.planner.place import STOP_LINE_M
-from sgcad_core.planner.role import Drift, Pacing, Role, Twist, facing, is_beside, is_standing, line_m, usual_speed
+from sgcad_core.planner.role import (
+    BRAKED_TO,
+    Drift,
+    Pacing,
+    Role,
+    Twist,
+    facing,
+    is_beside,
+    is_standing,
+    line_m,
+    usual_speed,
+)
 from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
 from sgcad_core.specs import Area
 
@@ -49,6 +60,8 @@ _STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
 _PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius of who steers aside, over the tightest that the vehicle can do."""
+_UNBRAKED = 0.3
+"""Cost of a contact before a told braking shows."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
 
@@ -159,6 +172,8 @@ def driving(option: Option) -> Motion:
     penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
+    if pace.brakes and pace.slow_at_m is not None:
+        penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
 
 
@@ -273,6 +288,8 @@ def _pace(role: Role, option: Option) -> Pace:
         starts = line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
     hard = told or bool(option.drift.note or option.twist.note)
     pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
-    if role.actor.maneuver == "slowing":
-        return replace(pace, slow_at_m=role.place.station_m - 3.0, slow_mps=max(0.35 * speed, 1.5))
+    slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
+    if role.actor.maneuver == "slowing" or role.told.brakes:
+        at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0)
+        return replace(pace, slow_at_m=at, slow_mps=max(slowed, 1.5), brakes=role.told.brakes)
     return pace

@@ -63,7 +63,7 @@ def _best(
         one, two = a.motion_with(b), b.motion_with(a)
         if not one.drivable or not two.drivable:
             continue
-        found = meet(one, two, wanted)
+        found = meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
         if found is not None and (best is None or a.cost + b.cost + found.cost < best.cost):
             best = Encounter(a, b, found)
             if found.cost < _CONTENT:

@@ -8,7 +8,7 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.metrics.thresholds import DRIVING
@@ -18,14 +18,18 @@ from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
+from sgcad_core.planner.resting import Rests, leaving
 from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.stalls import out_of_stall
+from sgcad_core.planner.things import Strike, strike_things
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.roads.surface import road_surface
 from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
@@ -36,6 +40,7 @@ _LAST_TRIES = 90
 _ONE_TURNS = 24
 """Combinations tried in which one of both comes as usual and the other one turns its side to it."""
 _LANELESS = ("pedestrian", "object")
+_THINGS = ("object", "pedestrian", "bicycle")
 _SPEED_SHOWS_S = 0.3
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
@@ -59,15 +64,24 @@ class Plan(Record):
     oddity: float = 0.0
 
 
-def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by_force: bool = True) -> Plan:
+def plan(
+    behavior: BehaviorSpec,
+    graph: LaneGraph,
+    *,
+    may_skid: bool = False,
+    by_force: bool = True,
+    courses: Courses = NOTHING_TOLD,
+) -> Plan:
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
+
+    `courses`: what the report tells of evasion and rest, by actor.
 
     `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
     Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    courses = {a.id: _course(graph, a, gentle) for a in behavior.actors}
-    cast = _Cast(behavior, courses, tractors(behavior), may_skid, by_force)
+    lines = {a.id: _course(graph, a, gentle) for a in behavior.actors}
+    cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
     scene = cast.encounter(first) if first else None
@@ -77,6 +91,7 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
         cast.later(scene, contact)
     cast.rest(scene)
     scene.settle()
+    cast.notes += _run_out(scene, cast, contacts[1:], graph)
     observed = scene.first_contact()
     realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     order = tuple(a.id for a in behavior.actors)
@@ -84,6 +99,27 @@ def plan(behavior: BehaviorSpec, graph: LaneGraph, *, may_skid: bool = False, by
         trajectories=scene.trajectories(order), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
     )  # fmt: skip
+
+
+def _run_out(scene: Scene, cast: _Cast, later: Sequence[Contact], graph: LaneGraph) -> list[str]:
+    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be."""
+    strikes = [strike for contact in later if (strike := cast.strike(contact)) is not None]
+    told = {name: course for name, course in cast.told.items() if name in cast.actors}
+    if not told and not strikes:
+        return []
+    for strike in strikes:
+        told[strike.by] = leaving(told.get(strike.by, CourseTold()))
+    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes))
+    rests.fit()
+    missed = strike_things(scene, strikes, rests.surface, rests.cost)
+    return [*missed, *rests.missed()]
+
+
+def _other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
+    """Whom a partner touches in a contact, and the sides of the partner and of the other one."""
+    if partner == contact.striker:
+        return contact.struck, (contact.striker_area, contact.struck_area)
+    return contact.striker, (contact.struck_area, contact.striker_area)
 
 
 def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
@@ -124,6 +160,7 @@ class _Cast:
     tractors: dict[str, str]
     may_skid: bool = False
     by_force: bool = True
+    told: Courses = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     oddity: float = 0.0
 
@@ -182,6 +219,7 @@ class _Cast:
                 side,
                 surface=self.behavior.surface,
                 may_skid=self.may_skid,
+                told=self.told.get(actor.id, CourseTold()),
             )
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]
@@ -266,24 +304,32 @@ class _Cast:
         return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
 
     def later(self, scene: Scene, contact: Contact) -> None:
-        """A further declared contact, where one of the two is not placed yet; best effort."""
+        """A further declared contact of vehicles, where one of the two is not placed yet; best effort."""
         placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
-        if len(placed) != 1:
+        if len(placed) != 1 or self.strike(contact) is not None:
             return
         partner = placed[0]
-        new = contact.struck if partner == contact.striker else contact.striker
-        sides: tuple[Area, Area] = (contact.striker_area, contact.struck_area)
-        own = sides if partner == contact.striker else sides[::-1]
+        new, sides = _other_of(contact, partner)
         role = self._own_role(new)
         target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
-        role = replace(role, place=place_near(role.course, target), side=own[1], other_side=own[0])
-        if not strike_later(scene, role, partner, own):
+        role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
+        if not strike_later(scene, role, partner, sides):
             self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
 
+    def strike(self, contact: Contact) -> Strike | None:
+        """A further contact with a thing, or with somebody who stands beside the road; None of two vehicles."""
+        later = self.behavior.contacts[1:]
+        thing = self.actors[contact.struck]
+        if contact not in later or thing.kind not in _THINGS:
+            return None
+        goes_on = any(c.striker == contact.striker for c in later[later.index(contact) + 1 :])
+        return Strike(thing, contact.striker, contact.striker_area, goes_on)
+
     def rest(self, scene: Scene) -> None:
-        """Everybody who is not placed yet, clear of the others."""
+        """Everybody who is not placed yet and is not struck on the way, clear of the others."""
+        things = {s.thing.id for c in self.behavior.contacts[1:] if (s := self.strike(c))}
         for actor in self.behavior.actors:
-            if actor.id in scene.tracks or self.tractors.get(actor.id):
+            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in things:
                 continue
             note = stand_clear(scene, self._own_role(actor.id))
             self.notes += [note] if note else []

@@ -6,18 +6,22 @@ Knows one actor, its course and its meeting place.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
+from sgcad_core.metrics.rest import compass_rad
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.specs import Actor, Area, Surface
+from sgcad_core.told_course import CourseTold
 
 MPH = 0.44704
 IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
+BRAKED_TO = 0.62
+"""Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -39,6 +43,24 @@ class Role:
     surface: Surface | None = None
     may_skid: bool = False
     """The report tells that somebody lost control."""
+    told: CourseTold = field(default_factory=CourseTold)
+    """What the report tells of its evasion."""
+
+    @property
+    def glances(self) -> bool:
+        """Whether it goes off the road behind the blow, which a full one would not let it do."""
+        return self.told.rest.where in ("off_road", "shoulder", "median")
+
+    @property
+    def spins(self) -> float:
+        """How the blow is to turn it: 1 counter-clockwise, -1 clockwise; less where only the told facing asks."""
+        if self.told.spin:
+            return 1.0 if self.told.spin == "counterclockwise" else -1.0
+        if self.told.rest.facing_deg is None or self.actor.kind == "object":
+            return 0.0
+        came = float(self.course.path.poses([self.place.station_m])[0, 2])
+        turn = math.remainder(compass_rad(self.told.rest.facing_deg) - came, 2 * math.pi)
+        return math.copysign(0.6, turn) if math.radians(50) < abs(turn) < math.radians(170) else 0.0
 
     @property
     def grip_mps2(self) -> float:
@@ -104,7 +126,8 @@ def speed_there(role: Role) -> float:
     """Usual speed at the meeting place: turning traffic has slowed down."""
     if is_standing(role):
         return 0.0
-    return min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+    speed = min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+    return BRAKED_TO * speed if role.told.brakes else speed
 
 
 def mismatch(role: Role) -> float:

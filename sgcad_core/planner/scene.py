@@ -11,9 +11,9 @@ import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, box_gaps, contact_area
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.ground import Drag
+from sgcad_core.planner.ground import Drag, RunOut
 from sgcad_core.planner.hitch import Hitch, hitched
-from sgcad_core.planner.impact import body, mass_kg
+from sgcad_core.planner.impact import FRICTION, RESTITUTION, body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.path import Path
 from sgcad_core.planner.wreck import Mover, Touch, Wreck
@@ -48,6 +48,8 @@ class Track:
     """The motion's own time at world time 0 (its place where it is standing)."""
     hit: int | None = None
     """Index of its first impact."""
+    mass: float | None = None
+    """Its mass, where it is not that of its kind, kg."""
     driven: Floats = field(init=False)
     """Its poses where nobody touches it."""
 
@@ -69,6 +71,10 @@ class Scene:
     """Tractor, trailer, and how far behind the tractor's center they are coupled."""
     touches: list[Touch] = field(default_factory=list)
     """What touched, in order, when the scene was last settled."""
+    runs: dict[str, RunOut] = field(default_factory=dict)
+    """How actors run out from their blow, where that was chosen."""
+    friction: float = FRICTION
+    restitution: float = RESTITUTION
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
         """Place an actor so that its own clock shows the given time at the first contact."""
@@ -97,21 +103,29 @@ class Scene:
 
     def settle(self) -> None:
         """Let everybody drive, and whatever touches push, until all stand."""
-        movers = {name: self._mover(track) for name, track in self.tracks.items()}
-        hitches = [self._hitch(*coupled) for coupled in self.hitches]
-        poses, self.touches = Wreck(tuple(movers.values()), self.count, hitches).settle()
+        wreck = self.wreck()
+        poses, self.touches = wreck.settle()
+        movers = wreck.named
         for name, track in self.tracks.items():
             track.poses, track.hit = poses[name], movers[name].hit
+
+    def wreck(self) -> Wreck:
+        """The simulation of what follows from the first touch."""
+        movers = tuple(self._mover(track) for track in self.tracks.values())
+        hitches = [self._hitch(*coupled) for coupled in self.hitches]
+        return Wreck(movers, self.count, hitches, self.friction, self.restitution)
 
     def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
         first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))
         return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
-        mass = None if track.motion.fixed else mass_kg(track.kind, track.size)
-        return Mover(track.actor, body((0.0, 0.0, 0.0), track.size, mass), track.driven, self._drag(track))
+        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)
+        start = body((0.0, 0.0, 0.0), track.size, mass)
+        return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
-    def _drag(self, track: Track) -> Drag:
+    def drag(self, track: Track) -> Drag:
+        """What slows an actor of whom nothing is chosen."""
         grip = DRIVING.sliding_mps2(self.surface)
         if track.kind in _TUMBLE:
             return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))

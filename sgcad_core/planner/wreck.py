@@ -18,9 +18,9 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
-from sgcad_core.planner.ground import Drag, slow
+from sgcad_core.planner.ground import Drag, RunOut, slow
 from sgcad_core.planner.hitch import Hitch, draw_together, pull
-from sgcad_core.planner.impact import RESTITUTION, Body, Point, approach, collide, hold
+from sgcad_core.planner.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
 
 SEEN_M = 0.022
@@ -49,6 +49,8 @@ class Mover:
     body: Body
     script: Floats
     drag: Drag
+    run: RunOut | None = None
+    """How it runs out; None: it slides with its drag."""
     free: bool = False
     hit: int | None = None
     """The last sample before its first touch takes effect."""
@@ -74,6 +76,8 @@ class Wreck:
     movers: Sequence[Mover]
     count: int
     hitches: Sequence[Hitch] = ()
+    friction: float = FRICTION
+    restitution: float = RESTITUTION
     touches: dict[tuple[str, str], float] = field(default_factory=dict)
     """Pairs that touched, with the time of it."""
     now: float = 0.0
@@ -81,12 +85,15 @@ class Wreck:
     def __post_init__(self) -> None:
         self.named: Mapping[str, Mover] = {m.name: m for m in self.movers}
 
-    def settle(self) -> tuple[dict[str, Floats], list[Touch]]:
-        """(count, 3) poses by name, and the touches in the order in which they happen."""
+    def settle(self, until: int | None = None) -> tuple[dict[str, Floats], list[Touch]]:
+        """(count, 3) poses by name, and the touches in the order in which they happen.
+
+        `until`: stop there; the bodies are then as they are at that sample, the poses behind it are the scripts'.
+        """
         pairs = self._pairs()
         start = self._start(pairs)
         poses = {m.name: m.script.copy() for m in self.movers}
-        for k in range(start, self.count - 1):
+        for k in range(start, min(self.count - 1, until or self.count)):
             self._sample(k, pairs)
             for m in self.movers:
                 if m.free:
@@ -153,7 +160,8 @@ class Wreck:
         one.heading += one.spin * step
         if m.free:
             left = max((self.count - 4) * STEP_S - self.now, _LEAST_LEFT_S)
-            slow(one, m.drag, step, left)
+            run = m.run if m.run and self.now >= m.run.from_s else None
+            slow(one, m.drag, step, left, run)
 
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
@@ -161,10 +169,10 @@ class Wreck:
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = mean(points)
-            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample))
+            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
         for _ in range(_ROUNDS if touching or self.hitches else 0):
             moved = [
-                collide(a.body, b.body, at, seen.normal)
+                collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
                 for (a, b, seen), points in zip(touching, corners, strict=True)
                 for at in points
             ]
@@ -212,7 +220,7 @@ class Wreck:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
-        return min(RESTITUTION, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
+        return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
     def _keep_seen(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> None:
         """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""

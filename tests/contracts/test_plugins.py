@@ -1,9 +1,12 @@
 """Promises that every installed plugin keeps, whoever wrote it."""
 
+import importlib
+import sys
+
 import pytest
 from pydantic import ValidationError
 
-from sgcad_core import registry
+from sgcad_core import registry, strangers
 from sgcad_core.errors import ConfigError
 
 INSTALLED = [(kind, name) for kind in registry.KINDS for name in registry.catalogue(kind)]
@@ -35,6 +38,108 @@ def test_a_plugin_is_final_or_abstract(plugin):
 def test_an_unknown_plugin_names_the_nearest_and_all():
     with pytest.raises(ConfigError, match=r"unknown decoder 'greedi'. Did you mean 'greedy'\? Installed: .*cad"):
         registry.plugin_class("decoder", "greedi")
+
+
+STRANGE = """
+from sgcad_core.interfaces import Decoder, Validator
+
+class NoStage(Validator):
+    def findings(self, artifact, evidence):
+        return []
+
+class WrongStage(NoStage):
+    stage = "roads"
+
+class NoMethod(Validator):
+    stage = "road"
+
+class NoPrior(Decoder):
+    def scores(self, with_context, without_context):
+        return with_context
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "attribute", "message"),
+    [
+        (
+            "validator",
+            "NoStage",
+            r"'stage' is missing or wrong \(found None\): write `stage = \"road\" or \"scenario\"",
+        ),
+        ("validator", "WrongStage", r"'stage' is missing or wrong \(found 'roads'\)"),
+        ("validator", "NoMethod", r"the method 'findings' is missing: write `def findings\(self, ...\)` as Validator"),
+        (
+            "decoder",
+            "NoPrior",
+            r"'needs_prior' is missing or wrong \(found None\): write `needs_prior = True or False`",
+        ),
+        ("decoder", "NoStage", r"is no Decoder: derive it from that class"),
+    ],
+)
+def test_a_strangers_class_without_its_kinds_form_is_told_with_the_line_that_mends_it(
+    monkeypatch, tmp_path, kind, attribute, message
+):
+    (tmp_path / "strange_kit.py").write_text(STRANGE)
+    load(monkeypatch, tmp_path, kind, f"strange_kit:{attribute}", message)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("alpha = 0.7", r"is no valid plugin class: the field 'alpha' has no type: write `alpha: float = 0.7`"),
+        ("alpha: int = 1 / 0", r"fails while it is imported: ZeroDivisionError: division by zero"),
+        ("alpha: = 2", r"fails while it is imported: SyntaxError"),
+    ],
+)
+def test_a_strangers_module_that_fails_is_told_without_a_traceback(monkeypatch, tmp_path, text, message):
+    head = "from sgcad_core.interfaces import Decoder\n\nclass Bad(Decoder):\n    needs_prior = True\n    "
+    (tmp_path / "strange_bad.py").write_text(head + text + "\n")
+    load(monkeypatch, tmp_path, "decoder", "strange_bad:Bad", message)
+
+
+def load(monkeypatch, folder, kind, value, message):
+    """Load what an entry point names and expect this fault."""
+    from importlib.metadata import EntryPoint
+
+    monkeypatch.syspath_prepend(str(folder))
+    monkeypatch.setattr(registry, "catalogue", lambda _: {"odd": EntryPoint("odd", value, f"sgcad.{kind}")})
+    registry.plugin_class.cache_clear()
+    with pytest.raises(ConfigError, match=message):
+        registry.plugin_class(kind, "odd")
+    registry.plugin_class.cache_clear()
+    sys.modules.pop(value.partition(":")[0], None)
+
+
+def test_only_entry_points_that_lead_somewhere_are_installed(monkeypatch, tmp_path):
+    from importlib.metadata import EntryPoint
+
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "half_kit.py").write_text("class There: ...\n")
+    points = {name: EntryPoint(name, f"{place}", "sgcad.decoder") for name, place in (
+        ("there", "half_kit:There"), ("gone", "half_kit:Gone"), ("nowhere", "no_such_kit:X"),
+        ("deep", "no_such_kit.inner:X"),
+    )}  # fmt: skip
+    monkeypatch.setattr(registry, "catalogue", lambda _: points)
+    assert set(registry.installed("decoder")) == {"there"}
+
+
+def test_a_strangers_code_is_part_of_its_identity_and_ours_is_not(monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    seen = []
+    for number in (1, 2):
+        for name in ("strange_pack", "strange_pack.inner"):
+            sys.modules.pop(name, None)
+        folder = tmp_path / "strange_pack"
+        folder.mkdir(exist_ok=True)
+        (folder / "helper.py").write_text(f"VALUE = {number}\n")
+        (folder / "__init__.py").write_text("class Plug: ...\n")
+        importlib.invalidate_caches()
+        strangers._about.cache_clear()
+        seen.append(strangers.code_of(importlib.import_module("strange_pack").Plug))
+    assert seen[0].split()[0] == "strange_pack"
+    assert seen[0] != seen[1]  # a helper beside the plugin counts
+    assert strangers.code_of(registry.plugin_class("decoder", "cad")) == ""
 
 
 def test_a_module_that_cannot_be_imported_is_named(monkeypatch):

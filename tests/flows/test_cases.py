@@ -61,7 +61,13 @@ def test_a_folder_of_case_folders_is_read_in_order_and_loose_files_are_no_cases(
 def test_a_folder_of_loose_reports_is_a_folder_of_cases(tmp_path):
     for name in ("one.txt", "two.xml", "three.pdf", "notes.docx"):
         (tmp_path / name).write_text("x")
-    assert [c.id for c in cases_in([tmp_path])] == ["one.txt", "three.pdf", "two.xml"]
+    assert [c.id for c in cases_in([tmp_path])] == ["one", "three", "two"]
+
+
+def test_files_of_one_name_keep_their_suffixes(tmp_path):
+    for name in ("one.txt", "one.xml", "two.pdf"):
+        (tmp_path / name).write_text("x")
+    assert [c.id for c in cases_in([tmp_path])] == ["one.txt", "one.xml", "two"]
 
 
 def test_a_case_folder_itself_is_one_case(reports):

@@ -45,11 +45,11 @@ def test_help_takes_less_than_half_a_second_of_work():
     ("changes", "message"),
     [
         ({"decoder": "cad", "backbone": {"name": "openai_chat", "model": "m"}}, "gives none; use decoder 'greedy'"),
-        ({"simulator": {"name": "testkit", "no_such": 1}}, "simulator.no_such: Extra inputs are not permitted"),
-        ({"max_attempts": "many"}, "max_attempts: Input should be a valid integer"),
+        ({"simulator": {"name": "testkit", "no_such": 1}}, "simulator.no_such: unknown field. Known: fails"),
+        ({"max_attempts": "many"}, "max_attempts: should be a valid integer"),
         ({"max_attempts": 99}, "less than or equal to 10 (found 99)"),
         ({"road_writer": "testkitt"}, "unknown road_writer 'testkitt'. Did you mean 'testkit'?"),
-        ({"colour": "red"}, "colour: unknown key; known: backbone, decoder"),
+        ({"colour": "red"}, "colour: unknown key. Known: backbone, decoder"),
         ({"road_writer": "testkit_asking"}, "backbone: missing, but road_writer ask a model"),
     ],
     ids=["pairing", "unknown field", "wrong type", "out of range", "missing plugin", "unknown key", "no backbone"],
@@ -70,6 +70,48 @@ def test_a_judge_whose_program_is_missing_starts_nothing(reports, config_file, t
     assert ended.returncode == 2
     assert "'/no/such/esmini' is no program that can be run: name the esmini binary by `path`" in ended.stderr
     assert not out.exists()
+
+
+def test_the_version_is_told():
+    from importlib.metadata import version
+
+    ended = sgcad("--version")
+    assert (ended.returncode, ended.stdout) == (0, f"sgcad {version('sg-cadvlm')}\n")
+
+
+def test_a_model_that_this_machine_cannot_hold_is_told_before_anything_starts():
+    ended = sgcad("check", "qwen2_5_vl_72b", "--set", "backbone.model=nobody/Huge-9000B")
+    assert ended.returncode == 0
+    assert "qwen2_5_vl_72b: will not fit this machine: the weights take about 18000 GB" in ended.stdout
+    assert "will not fit" not in sgcad("check", "mini").stdout
+
+
+def test_a_tracker_that_can_never_log_starts_nothing(reports, config_file, tmp_path):
+    (tmp_path / "out" / "mlflow.db").mkdir(parents=True)
+    started = time.monotonic()
+    ended = sgcad("evaluate", reports(a=""), "--config", config_file(tracker="mlflow"), "--out", tmp_path / "out")
+    assert ended.returncode == 2
+    assert "mlflow.db: is a folder, where MLflow's database would be" in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert not (tmp_path / "out" / "kit" / "a").exists()
+    assert time.monotonic() - started < 30
+
+
+def test_an_interpreter_that_cannot_be_started_is_named(monkeypatch):
+    from sgcad_core.errors import MissingTool
+    from sgcad_core.workers import Worker
+
+    monkeypatch.setattr(sys, "executable", "/no/such/python")
+    with pytest.raises(MissingTool, match=r"python cannot be started \(No such file"):
+        Worker("flows.worker:run_in_worker").call("x", timeout_s=1)
+
+
+def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
+    ended = sgcad("doctor", "--out", "/proc/runs", PREFECT_HOME="/proc/prefect")
+    assert ended.returncode == 1
+    assert "wrong output: --out /proc/runs: cannot be written" in ended.stdout
+    assert "not looked at flow: mend home, output first" in ended.stdout
+    assert "not looked at tracking: mend output first" in ended.stdout
 
 
 def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
@@ -100,7 +142,8 @@ def test_a_report_that_is_not_there_starts_nothing(config_file, tmp_path):
 def test_check_shows_what_a_config_would_do(config_file):
     ended = sgcad("check", config_file())
     assert ended.returncode == 0
-    assert "KitRoad" in ended.stdout
+    rows = [line.split()[:4] for line in ended.stdout.splitlines()]
+    assert ["\u2502", "road_writer", "\u2502", "testkit"] in rows
 
 
 def test_plugins_of_strangers_are_listed_and_shown():
@@ -233,7 +276,7 @@ def test_an_interrupt_that_a_library_turns_into_its_own_error_is_still_an_interr
     """Pydantic does so while it serializes, as Prefect makes it do when it is imported."""
     code = (
         "import os, signal, time; from flows import cli, start\n"
-        "def evaluate(made, on_ending):\n"
+        "def evaluate(made, on_ending, on_turn=None):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT); time.sleep(9)\n"
         "    except KeyboardInterrupt as fault:\n"

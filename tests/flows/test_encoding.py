@@ -19,6 +19,6 @@ def test_a_plan_can_be_written_as_events(reports, tmp_path):
     words = ["--config", "template.yaml", "--set", "tracker=none", "--encoding", "events", "--out", tmp_path / "out"]
     ended = sgcad("run", reports(a="") / "a", *words)
     assert ended.returncode == 0
-    text = (tmp_path / "out" / "template" / "a" / "scenario.xosc").read_text()
+    text = (tmp_path / "out" / "template-events" / "a" / "scenario.xosc").read_text()
     assert "<SpeedAction>" in text
     assert "<Timing" not in text

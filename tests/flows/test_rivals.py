@@ -35,11 +35,13 @@ def run(tmp_path):
 
     def go(fields, answers=None):
         raw = {
-            "report_reader": "auto", "retriever": "none", "decoder": "greedy", "simulator": "libsumo",
+            "report_reader": "auto", "retriever": "none", "simulator": "libsumo",
             "tracker": "none", "max_attempts": 7, **fields,
         }  # fmt: skip
         if answers is not None:
             raw["backbone"] = {"name": "scripted", "answers": answers}
+        if "backbone" in raw:
+            raw["decoder"] = "greedy"
         config = build(raw, "kit", "kit")
         ending = run_case(config, Case(report, "c1"), tmp_path / "runs", "digest")
         return ending.result, tmp_path / "runs" / "kit" / "c1"

@@ -32,10 +32,18 @@ def test_validators_are_told_apart_by_stage():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"simulatr": "kinematic"}, r"simulatr: unknown key; known: .*simulator"),
+        ({"simulatr": "kinematic"}, r"simulatr: unknown key. Did you mean 'simulator'\? Known: .*seed"),
         ({"simulator": ...}, r"simulator: missing; give it a `name`"),
         ({"simulator": "kinematik"}, r"simulator: unknown simulator 'kinematik'. Did you mean 'kinematic'\?"),
-        ({"simulator": {"name": "kinematic", "speed": 3}}, r"simulator.speed: Extra inputs .* \(found 3\)"),
+        ({"simulator": {"name": "kinematic", "speed": 3}}, r"simulator.speed: unknown field. Known: none \(found 3\)"),
+        (
+            {"report_reader": {"name": "auto", "use_diagram": False}},
+            r"report_reader.use_diagram: unknown field. Did you mean 'use_diagrams'\? Known: .*use_coded_fields",
+        ),
+        (
+            {"decoder": "cad"},
+            r"decoder: 'cad' would decode nothing: road_writer 'template' and scenario_writer 'rules' ask no model",
+        ),
         ({"decoder": {"name": "cad", "alpha": "much"}}, r"decoder.alpha: .*valid number.* \(found 'much'\)"),
         ({"validators": "topology"}, r"validators: expected a list, found 'topology'"),
         ({"validators": [{"nam": "x"}]}, r"validators\[0\]: expected a mapping with a `name`"),
@@ -95,8 +103,21 @@ def test_a_file_that_is_no_mapping_is_named(tmp_path, content, message):
 
 
 def test_an_unknown_file_lists_the_known_ones():
-    with pytest.raises(ConfigError, match=r"nowhere.yaml: no such config; in configs/: .*template.yaml"):
+    with pytest.raises(ConfigError, match=r"nowhere.yaml: no such config. In configs/: .*template.yaml"):
         config.load("nowhere.yaml")
+
+
+@pytest.mark.parametrize("slip", ["templat.yaml", "Template", "tempalte"])
+def test_a_slip_of_the_pen_in_a_files_name_is_answered_with_the_nearest_one(slip):
+    with pytest.raises(ConfigError, match=rf"{slip}: no such config. Did you mean 'template'\?"):
+        config.load(slip)
+
+
+def test_a_fault_speaks_of_yaml_and_not_of_python():
+    with pytest.raises(ConfigError) as told:
+        build(road_writer={"name": "template", "junction": 3}, report_reader={"name": "auto", "use_diagrams": {}})
+    for word in ("Template", "Auto", "instance of", "pydantic", "Extra inputs"):
+        assert word not in str(told.value)
 
 
 def test_a_config_is_named_by_its_path_under_configs(tmp_path):

@@ -64,11 +64,34 @@ of our own the same are faults.
 """
 
 
-_ROAD = """<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1"><planView>
-<geometry s="0" x="-20" y="2" hdg="0" length="100"><line/></geometry></planView><lanes><laneSection s="0">
-<center><lane id="0" type="none"/></center><right><lane id="-1" type="driving">
-<width sOffset="0" a="4" b="0" c="0" d="0"/></lane></right></laneSection></lanes></road></OpenDRIVE>"""
-"""A road under the first of the actors that are written to see what is written."""
+_LANES = (
+    """<lanes><laneSection s="0"><center><lane id="0" type="none"/></center><right>{}</right></laneSection></lanes>"""
+)
+_LANE = """<lane id="{0}" type="driving"><link><predecessor id="{0}"/><successor id="{0}"/></link>
+<width sOffset="0" a="4" b="0" c="0" d="0"/></lane>"""
+
+
+def _road(name: int, x_m: float, length_m: float, junction: int, link: str) -> str:
+    """A straight road eastward with two lanes, whose lines lie at y = 0 and y = -4."""
+    line = f'<geometry s="0" x="{x_m}" y="2" hdg="0" length="{length_m}"><line/></geometry>'
+    lanes = _LANES.format(_LANE.format(-1) + _LANE.format(-2))
+    attributes = f'id="{name}" length="{length_m}" junction="{junction}"'
+    return f"<road {attributes}><link>{link}</link><planView>{line}</planView>{lanes}</road>"
+
+
+_END, _START = (
+    'elementType="road" elementId="1" contactPoint="end"',
+    'elementType="road" elementId="3" contactPoint="start"',
+)
+_MAP = (
+    '<OpenDRIVE><header revMajor="1" revMinor="6"/>'
+    + _road(1, -20, 100, -1, '<successor elementType="junction" elementId="9"/>')
+    + _road(2, 80, 10, 9, f"<predecessor {_END}/><successor {_START}/>")
+    + _road(3, 90, 300, -1, '<predecessor elementType="junction" elementId="9"/>')
+    + '<junction id="9"><connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="start">'
+    '<laneLink from="-1" to="-1"/><laneLink from="-2" to="-2"/></connection></junction></OpenDRIVE>'
+)
+"""A road with a junction under the actors that are written to see what is written."""
 
 
 def page() -> str:
@@ -104,13 +127,25 @@ def written_elements() -> set[str]:
         ActorInfo(id=f"V{i}", type=kind, length_m=4.0, width_m=1.8, maneuver="straight")
         for i, kind in enumerate(_KINDS, 1)
     ]
-    t_s = np.arange(40) * 0.05
-    motions = [
-        Trajectory(actor=a.id, t_s=t_s, x_m=t_s * 9, y_m=t_s * 0 + 5 * i, heading_rad=t_s * 0, speed_mps=t_s * 0 + 9)
-        for i, a in enumerate(actors)
-    ]
+    motions = [_motion(a.id, i) for i, a in enumerate(actors)]
     spoken = {"id": "V1", "kind": "car", "road": "S", "direction": "forward", "maneuver": "straight"}
     behavior = BehaviorSpec.model_validate({"actors": [spoken], "light": "dark", "weather": "rain", "surface": "wet"})
-    touch = ObservedContact(actor="V1", other="V2", actor_area="front", other_area="back", t_s=1.0)
-    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, Handover(touch, _ROAD))]
+    touch = ObservedContact(actor="V1", other="V2", actor_area="front", other_area="back", t_s=5.0)
+    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, Handover(touch, _MAP))]
     return {str(e.tag) for text in texts for e in etree.fromstring(text.encode()).iter() if isinstance(e.tag, str)}
+
+
+def _motion(name: str, number: int) -> Trajectory:
+    """The first drives on over the junction, the second brakes ahead of it; then one changes its lane, one drifts in
+    it, one brakes alone, the others keep to themselves off the roads."""
+    t_s = np.arange(121) * 0.05
+    share = np.clip((t_s - 1.0) / 3.0, 0.0, 1.0)
+    smooth = share * share * (3 - 2 * share)
+    speed = (18.0 if number == 0 else 15.0) - (2.0 * share if number in (1, 4) else 0.0)
+    x_m = (80.0 if number == 2 else 15.0 * number) + np.concatenate(
+        ([0.0], np.cumsum((speed * np.ones(121))[1:] * 0.05))
+    )
+    aside = (0.0 * t_s, 0.0 * t_s, -4.0 * smooth, 0.5 * smooth - 4.0, 0.0 * t_s - 4.0)
+    y_m = aside[number] if number < len(aside) else 0.0 * t_s + 9.0 * number
+    heading = np.arctan2(np.gradient(y_m), np.gradient(x_m))
+    return Trajectory(actor=name, t_s=t_s, x_m=x_m, y_m=y_m, heading_rad=heading, speed_mps=speed * np.ones(121))

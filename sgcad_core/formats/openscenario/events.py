@@ -1,36 +1,31 @@
 """A plan as maneuver events, for people who edit by hand and for players that hand over: the second encoding.
 
-Who keeps a lane of a straight road needs no path; others follow an untimed trajectory at their own speed. Speeds are
-few even changes, each started by the clock. Who meets in the first contact brakes once they touch; the others do what
-was planned to the end. Places follow from that: they are near the plan's until the contact, and not told behind it.
+Who drives along lanes is told by them: a route over junctions, a change of lane or of the offset in it; others follow
+an untimed trajectory at their own speed. Speeds are few even changes. Each event starts where the others are or where
+its actor is, not by the clock, as far as that is certain; the last piece of one of the two who meet is a meeting with
+the other (SynchronizeAction). Both brake once they touch; the others do what was planned to the end. Places follow from
+that: they are near the plan's until the contact, and not told behind it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scenariogeneration import xosc
 from scenariogeneration.xosc.enumerations import VersionBase
 
-from sgcad_core.formats.openscenario.motion import Pose
+from sgcad_core.formats.openscenario.lane_motion import LaneMotion, Shift, lane_motion, start_place
+from sgcad_core.formats.openscenario.occasions import Occasions
 from sgcad_core.formats.openscenario.pacing import pieces
-from sgcad_core.formats.openscenario.parts import (
-    Happening,
-    at_once,
-    from_time,
-    group,
-    number,
-    positions,
-    world_position,
-)
+from sgcad_core.formats.openscenario.parts import Happening, at_once, group, number, positions, world_position
 from sgcad_core.formats.openscenario.roads import XodrRoads
-from sgcad_core.formats.openscenario.vertices import vertex_rows
+from sgcad_core.formats.openscenario.synchrony import Synchrony, synchrony
+from sgcad_core.formats.openscenario.vertices import path_rows
 from sgcad_core.formats.openscenario.way import LanePlace
 from sgcad_core.geometry.plane import arc_lengths, wrap_angle
 from sgcad_core.records import Floats, ObservedContact, Trajectory
@@ -41,13 +36,21 @@ ONWARD_M = 100.0
 """How far the path leads straight on behind the contact, should it come late: more than anybody needs to brake."""
 STANDS_M = 0.2
 """Who goes less far than this before the contact stands."""
-KEEPS_M, KEEPS_RAD = 0.1, 0.02
-"""Beside its lane's line, and turned against it, at most: such a motion keeps the lane."""
-LEFT_OUT_M, LEFT_OUT_RAD = 0.01, 0.005
-"""A vertex of a path is left out where the way without it is this near."""
-SAME_M = 1e-3
-"""A lane place is written where it is this near to the pose."""
+STRAIGHT_RAD = 0.02
+"""A meeting is told of ways that turn by less: players count distances in bends each in their own way."""
 _STEADY_MPS = 0.02
+
+
+@dataclass(frozen=True)
+class Plainly:
+    """What is told in plainer words than it could be, because a trial went astray: see `execution.editable`."""
+
+    paths: frozenset[str] = frozenset()
+    """Whose way is a trajectory though lanes might tell it."""
+    alone: bool = False
+    """Without SynchronizeAction."""
+    clock: bool = False
+    """Everything starts by the clock."""
 
 
 @dataclass(frozen=True)
@@ -56,11 +59,12 @@ class Handover:
 
     contact: ObservedContact | None = None
     xodr: str | None = None
+    plainly: Plainly = Plainly()
 
 
 @dataclass(frozen=True)
 class EventActor:
-    """One actor as events: its origin's motion up to where it is told, and how it is placed."""
+    """One actor as events: its origin's motion up to where it is told, and how it is placed and led."""
 
     move: Trajectory
     ahead_m: float
@@ -70,8 +74,11 @@ class EventActor:
     """Its start in lane coordinates, where it lies in a lane."""
     turn_rad: float
     """Its heading against the lane's driving direction."""
-    keeps: bool
-    """Whether it keeps its lane all the way."""
+    lanes: LaneMotion | None
+    """Its way by lanes, where lanes tell it."""
+    occasions: Occasions
+    meeting: Synchrony | None = None
+    """Its last piece of speed, where that is a meeting."""
 
     @property
     def along_m(self) -> Floats:
@@ -81,7 +88,13 @@ class EventActor:
     @property
     def stands(self) -> bool:
         """Whether it stays where it is."""
-        return bool(self.along_m[-1] < STANDS_M)
+        return _stands(self.move)
+
+    def straight_from(self, begin_s: float) -> bool:
+        """Whether it goes straight on from a time."""
+        row = int(np.searchsorted(self.move.t_s, begin_s - 1e-6))
+        headings = np.unwrap(self.move.heading_rad[row:])
+        return bool(np.abs(headings - headings[0]).max() < STRAIGHT_RAD)
 
     @cached_property
     def knots(self) -> tuple[Floats, Floats]:
@@ -101,10 +114,16 @@ class EventActor:
         """Where it begins, as a place in a lane if there is one."""
         if self.place is None:
             return world_position(self.move.x_m[0], self.move.y_m[0], wrap_angle(self.move.heading_rad[0]))
-        road, lane, s_m, offset_m = self.place
-        turned = 0.0 if self.keeps else number(self.turn_rad, 8)
-        facing = xosc.Orientation(h=turned, reference=xosc.ReferenceContext.relative)
-        return xosc.LanePosition(number(s_m), number(offset_m), str(lane), road, facing)
+        turned = 0.0 if self.lanes else number(self.turn_rad, 8)
+        return _in_lane(self.place, xosc.Orientation(h=turned, reference=xosc.ReferenceContext.relative))
+
+    def init_actions(self) -> Iterator[object]:
+        """What else it is told at the start: the route, where its lanes lead over a junction."""
+        if self.lanes and self.lanes.route:
+            route = xosc.Route(f"{self.move.actor}_route")
+            for place in self.lanes.route:
+                route.add_waypoint(_in_lane(place), xosc.RouteStrategy.shortest)
+            yield xosc.AssignRouteAction(route)
 
     @property
     def first_mps(self) -> float:
@@ -113,21 +132,47 @@ class EventActor:
 
     def group(self) -> xosc.ManeuverGroup:
         """Its events; who has nothing to do keeps its speed."""
-        maneuvers = {"path": list(self._path()), "speed": [*self._speeds(), *self._brake()]}
+        maneuvers = {"path": list(self._way()), "speed": [*self._speeds(), *self._meets(), *self._brake()]}
         if not any(maneuvers.values()):
             maneuvers["speed"] = [self._stays()]
         return group(self.move.actor, {f"{self.move.actor}_{name}": told for name, told in maneuvers.items() if told})
 
-    def _path(self) -> Iterator[Happening]:
-        if self.stands or self.keeps:
-            return
+    def _way(self) -> Iterator[Happening]:
+        if self.lanes and self.lanes.shift:
+            yield self._shifts(self.lanes.shift)
+        elif not self.stands and self.lanes is None:
+            yield self._path()
+
+    def _shifts(self, shift: Shift) -> Happening:
+        """Into another lane, or to another offset in its own."""
+        name, place = self.move.actor, shift.place
+        if shift.lane != place.lane:
+            over = xosc.TransitionDynamics(
+                getattr(xosc.DynamicsShapes, shift.shape), xosc.DynamicsDimension.time, number(shift.span_s, 3)
+            )
+            does: object = xosc.AbsoluteLaneChangeAction(shift.lane, over, number(shift.offset_m, 3))
+        else:
+            shape = getattr(xosc.DynamicsShapes, shift.shape)
+            does = xosc.AbsoluteLaneOffsetAction(
+                number(shift.offset_m, 3), shape, number(shift.lateral_mps2, 4), continuous=False
+            )
+        when = self._from_place(f"{name}_there", shift)
+        return Happening(f"{name}_shifts", f"{name}_aside", when, does)
+
+    def _from_place(self, name: str, shift: Shift) -> xosc.ValueTrigger | xosc.EntityTrigger:
+        if shift.ahead is None:
+            return self.occasions.at(name, self.move.actor, float(self.move.t_s[shift.row]))
+        place, x, y = shift.ahead
+        return self.occasions.place(name, self.move.actor, shift.row, (x, y), _in_lane(place))
+
+    def _path(self) -> Happening:
         path, name = xosc.Trajectory(f"{self.move.actor}_path", False), self.move.actor
         line = self._onward() if self.partner else self.move
-        rows = _places(line, self.ahead_m)
+        rows = path_rows(line, self.ahead_m)
         times = [number(line.t_s[k]) for k in rows] if VersionBase().isVersion(minor=0) else []  # its schema wants them
         path.add_shape(xosc.Polyline(times, positions(line, rows)))
         follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position)
-        yield Happening(f"{name}_drives", f"{name}_follow", at_once(f"{name}_start"), follow)
+        return Happening(f"{name}_drives", f"{name}_follow", at_once(f"{name}_start"), follow)
 
     def _onward(self) -> Trajectory:
         """The motion with a straight way ahead, in the direction in which it last went."""
@@ -144,13 +189,24 @@ class EventActor:
 
     def _speeds(self) -> Iterator[Happening]:
         name = self.move.actor
+        until_s = self.meeting.begin_s - 1e-6 if self.meeting else math.inf
         changes = [
-            piece for piece in pairwise(zip(*self.knots, strict=True)) if abs(piece[1][1] - piece[0][1]) > _STEADY_MPS
+            (begin, end)
+            for begin, end in pairwise(zip(*self.knots, strict=True))
+            if abs(end[1] - begin[1]) > _STEADY_MPS and begin[0] < until_s
         ]
         for k, ((begin_s, _), (end_s, speed)) in enumerate(changes, 1):
             action = xosc.AbsoluteSpeedAction(number(speed), _evenly(xosc.DynamicsDimension.time, end_s - begin_s))
-            begin = from_time(f"{name}_at_{k}", begin_s)
+            begin = self.occasions.at(f"{name}_at_{k}", name, begin_s)
             yield Happening(f"{name}_speed_{k}", f"{name}_to_{k}", begin, action)
+
+    def _meets(self) -> Iterator[Happening]:
+        if (meeting := self.meeting) is None:
+            return
+        name = self.move.actor
+        does = xosc.SynchronizeAction(meeting.master, _in_lane(meeting.there), _in_lane(meeting.here))
+        when = self.occasions.at(f"{name}_in_time", name, meeting.begin_s)
+        yield Happening(f"{name}_meets", f"{name}_with_{meeting.master}", when, does)
 
     def _stays(self) -> Happening:
         name = self.move.actor
@@ -169,16 +225,39 @@ class EventActor:
 def event_actors(moves: Sequence[Trajectory], ahead_m: Sequence[float], handover: Handover) -> list[EventActor]:
     """The motions of origins as events, in their order."""
     roads = XodrRoads(handover.xodr) if handover.xodr else None
-    contact = handover.contact
+    contact, plainly = handover.contact, handover.plainly
     pair = {contact.actor: contact.other, contact.other: contact.actor} if contact else {}
+    occasions = Occasions({move.actor: move for move in moves}, pair, plainly.clock)
     made = []
     for move, ahead in zip(moves, ahead_m, strict=True):
         partner = pair.get(move.actor, "")
         told = _until(move, contact.t_s) if contact and partner else move
-        place, turn = _start(told, roads)
-        keeps = place is not None and roads is not None and _keeps(told, roads, place, turn)
-        made.append(EventActor(told, ahead, partner, place, turn, keeps))
-    return made
+        place, turn = start_place(told, roads) if roads else (None, 0.0)
+        plain = roads is None or move.actor in plainly.paths or _stands(told)
+        lanes = None if plain or roads is None else lane_motion(told, roads, _to_stop_m(told))
+        made.append(EventActor(told, ahead, partner, place, turn, lanes, occasions))
+    return made if plainly.alone or not pair else _met({actor.move.actor: actor for actor in made})
+
+
+def _met(actors: Mapping[str, EventActor]) -> list[EventActor]:
+    """The actors, the first of the pair that can do so meeting the other; who comes first in the report leads."""
+    for name in sorted((name for name, actor in actors.items() if actor.partner), reverse=True):
+        mine, master = actors[name], actors[actors[name].partner]
+        if not (mine.lanes and master.lanes):
+            continue
+        found = synchrony((mine.knots, mine.lanes.end), (master.move.actor, master.knots, master.lanes.end))
+        if found and mine.straight_from(found.begin_s) and master.straight_from(found.begin_s):
+            return list({**actors, name: replace(mine, meeting=found)}.values())
+    return list(actors.values())
+
+
+def _stands(move: Trajectory) -> bool:
+    return bool(arc_lengths(np.column_stack((move.x_m, move.y_m)))[-1] < STANDS_M)
+
+
+def _in_lane(place: LanePlace, facing: xosc.Orientation | None = None) -> xosc.LanePosition:
+    turned = facing or xosc.Orientation()
+    return xosc.LanePosition(number(place.s_m), number(place.offset_m), str(place.lane), place.road, turned)
 
 
 def _evenly(dimension: xosc.DynamicsDimension, value: float) -> xosc.TransitionDynamics:
@@ -192,73 +271,6 @@ def _until(move: Trajectory, end_s: float) -> Trajectory:
     return move.model_copy(update={name: getattr(move, name)[:n] for name in names})
 
 
-def _places(line: Trajectory, ahead_m: float) -> list[int]:
-    """Rows to write of an untimed path: of a timed one those that move on and do not lie between others."""
-    poses = np.column_stack((line.x_m, line.y_m, np.unwrap(line.heading_rad)))
-    rows = vertex_rows(line, ahead_m)
-    moved = np.concatenate(([True], np.hypot(*np.diff(poses[rows, :2], axis=0).T) > 1e-4))
-    return _bends(poses, np.array(rows)[moved])
-
-
-def _bends(poses: Floats, rows: NDArray[np.intp]) -> list[int]:
-    """The rows (of poses (n, 3), none in place) between which the way runs straight and turns evenly."""
-    kept, at = [int(rows[0])], 0
-    while at < len(rows) - 1:
-        after = at + 1
-        while after + 1 < len(rows) and _even(poses[rows[at : after + 2]]):
-            after += 1
-        kept, at = [*kept, int(rows[after])], after
-    return kept
-
-
-def _even(poses: Floats) -> bool:
-    """Whether what lies between two poses can be left out of a path."""
-    along = arc_lengths(poses[:, :2])
-    share = (along / along[-1])[:, None]
-    away = np.abs(poses[0] + share * (poses[-1] - poses[0]) - poses)
-    return bool(np.hypot(away[:, 0], away[:, 1]).max() < LEFT_OUT_M and away[:, 2].max() < LEFT_OUT_RAD)
-
-
-def _start(move: Trajectory, roads: XodrRoads | None) -> tuple[LanePlace | None, float]:
-    """The first pose in lane coordinates, if it lies in a lane, and its turn against the lane."""
-    pose = Pose(float(move.x_m[0]), float(move.y_m[0]), float(move.heading_rad[0]))
-    place = roads.nearest(pose) if roads else None
-    if roads is None or place is None or not roads.covers(pose):
-        return None, 0.0
-    there = roads.lane_pose(*place)
-    if math.dist(there[:2], pose[:2]) > SAME_M:
-        return None, 0.0
-    return place, float(wrap_angle(pose.heading_rad - there.heading_rad))
-
-
-def _keeps(move: Trajectory, roads: XodrRoads, place: LanePlace, turn_rad: float) -> bool:
-    """Whether a motion goes along a straight lane of one road at one offset."""
-    if abs(turn_rad) > KEEPS_RAD:
-        return False
-    line, headings = roads.road(place.road), np.unwrap(move.heading_rad)
-    reach = np.column_stack((move.x_m, move.y_m)) - (move.x_m[0], move.y_m[0])
-    ahead = roads.lane_pose(*place)
-    c, s = math.cos(ahead.heading_rad), math.sin(ahead.heading_rad)
-    gone, aside = reach @ (c, s), reach @ (-s, c)
-    end_s = place.s_m + (gone.max() + _to_stop_m(move)) * line.sense(place.lane)
-    straight = np.abs(aside).max() < KEEPS_M and np.abs(headings - headings[0]).max() < KEEPS_RAD
-    return bool(straight and gone.min() > -KEEPS_M and _within(line.length_m, end_s) and _straight(roads, place, end_s))
-
-
 def _to_stop_m(move: Trajectory) -> float:
     """Way in which it comes to rest from its last speed, and some more."""
     return float(move.speed_mps[-1] ** 2 / (2 * BRAKE_MPS2) + 5.0)
-
-
-def _within(length_m: float, s_m: float) -> bool:
-    return 0.0 <= s_m <= length_m
-
-
-def _straight(roads: XodrRoads, place: LanePlace, end_s: float) -> bool:
-    """Whether a lane's line runs straight from a place to another s of its road."""
-    stations = np.linspace(place.s_m, end_s, 20)
-    try:
-        poses = np.array([roads.lane_pose(place.road, place.lane, float(s), place.offset_m) for s in stations])
-    except ValueError:  # the lane ends on the way
-        return False
-    return bool(np.abs(wrap_angle(poses[:, 2] - poses[0, 2])).max() < KEEPS_RAD)

@@ -8,11 +8,14 @@ APART_M / 0.05 s = 2.2 m/s that is nothing. Knows no XML.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sgcad_core.geometry.plane import arc_lengths
 from sgcad_core.records import Floats, Trajectory
 
 APART_M = 0.11
@@ -27,6 +30,8 @@ STAND_S = 1.0 + 1e-3
 BLOW_M = 0.075
 """Change from one step to the next, 30 m/s2 at 20 steps a second: three times what tires transmit."""
 _STILL = 1e-6
+LEFT_OUT_M, LEFT_OUT_RAD = 0.01, 0.005
+"""A vertex of an untimed path is left out where the way without it is this near."""
 
 
 def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
@@ -59,27 +64,49 @@ class _Stretch:
         The final vertex of a polyline is never merged, so its neighbor may be near.
         """
         end = len(self.poses) - 1
+        neighbors = self._neighbors(final)
+        errors = self._errors([(k, row) for row in range(1, end + 1) for k in neighbors[row]])
         least, before = np.full(end + 1, np.inf), np.zeros(end + 1, int)
         least[0] = 0.0
         for row in range(1, end + 1):
-            closes = final and row == end
-            reach = np.flatnonzero(np.isfinite(least[:row]) & (closes | _apart(self.poses[:row], self.poses[row])))
-            for k in reach if closes else reach[-NEAREST:]:
-                if (error := least[k] + self._error(int(k), row)) <= least[row]:  # of equals the nearest
+            for k in neighbors[row]:
+                if (error := least[k] + errors[k, row]) <= least[row]:  # of equals the nearest
                     least[row], before[row] = error, k
         rows = [end]
         while (row := int(before[rows[-1]])) > 0:
             rows.append(row)
         return rows[::-1]
 
-    def _error(self, first: int, last: int) -> float:
-        """Sum of squared distances of the box centers between two rows from even motion, m2."""
-        if last - first < 2:
-            return 0.0
-        t_s, poses = self.t_s[first : last + 1], self.poses[first : last + 1]
-        share = ((t_s - t_s[0]) / (t_s[-1] - t_s[0]))[:, None]
-        away = self._centers(poses[0] + share * (poses[-1] - poses[0])) - self._centers(poses)
-        return float((away * away).sum())
+    def _neighbors(self, final: bool) -> list[list[int]]:
+        """For each row the rows that may be written before it, rising."""
+        end = len(self.poses) - 1
+        reached, found = np.arange(end + 1) == 0, [list[int]()]
+        for row in range(1, end + 1):
+            closes = final and row == end
+            reach = np.flatnonzero(reached[:row] & (closes | _apart(self.poses[:row], self.poses[row])))
+            found.append((reach if closes else reach[-NEAREST:]).tolist())
+            reached[row] = bool(found[row])
+        return found
+
+    def _errors(self, pairs: Sequence[tuple[int, int]]) -> dict[tuple[int, int], float]:
+        """(first, last) -> sum of squared distances of the box centers between two rows from even motion, m2.
+
+        All pairs in one computation: (N, 3) poses of even motion, those of a pair behind those of the one before.
+        """
+        far = np.array([pair for pair in pairs if pair[1] - pair[0] > 1], dtype=int).reshape(-1, 2)
+        first, last = far.T
+        counts = last - first + 1
+        ends = np.cumsum(counts)
+        rows = np.arange(counts.sum()) - np.repeat(ends - counts - first, counts)
+        first, last = np.repeat(first, counts), np.repeat(last, counts)
+        share = ((self.t_s[rows] - self.t_s[first]) / (self.t_s[last] - self.t_s[first]))[:, None]
+        even = self.poses[first] + share * (self.poses[last] - self.poses[first])
+        away = self._centers(even) - self._centers(self.poses)[rows]
+        squares = away * away
+        found = dict.fromkeys(pairs, 0.0)
+        for pair, end, count in zip(far.tolist(), ends.tolist(), counts.tolist(), strict=True):
+            found[pair[0], pair[1]] = float(squares[end - count : end].sum())
+        return found
 
     def _centers(self, poses: Floats) -> Floats:
         reach = np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
@@ -127,3 +154,31 @@ def _apart(poses: Floats, other: Floats) -> np.ndarray[tuple[int], np.dtype[np.b
     """Whether no player merges poses (n, 3) with a later one."""
     dx, dy, turn = (other - poses).T
     return np.asarray((dx * dx + dy * dy >= APART_M**2) | (turn <= TURN_RAD[0]) | (turn >= TURN_RAD[1]), dtype=np.bool_)
+
+
+# ------------------------------------------------------------------ untimed paths
+def path_rows(line: Trajectory, ahead_m: float) -> list[int]:
+    """Rows to write of an untimed path: of a timed one those that move on and do not lie between others."""
+    poses = np.column_stack((line.x_m, line.y_m, np.unwrap(line.heading_rad)))
+    rows = vertex_rows(line, ahead_m)
+    moved = np.concatenate(([True], np.hypot(*np.diff(poses[rows, :2], axis=0).T) > 1e-4))
+    return _bends(poses, np.array(rows)[moved])
+
+
+def _bends(poses: Floats, rows: NDArray[np.intp]) -> list[int]:
+    """The rows (of poses (n, 3), none in place) between which the way runs straight and turns evenly."""
+    kept, at = [int(rows[0])], 0
+    while at < len(rows) - 1:
+        after = at + 1
+        while after + 1 < len(rows) and _even(poses[rows[at : after + 2]]):
+            after += 1
+        kept, at = [*kept, int(rows[after])], after
+    return kept
+
+
+def _even(poses: Floats) -> bool:
+    """Whether what lies between two poses can be left out of a path."""
+    along = arc_lengths(poses[:, :2])
+    share = (along / along[-1])[:, None]
+    away = np.abs(poses[0] + share * (poses[-1] - poses[0]) - poses)
+    return bool(np.hypot(away[:, 0], away[:, 1]).max() < LEFT_OUT_M and away[:, 2].max() < LEFT_OUT_RAD)

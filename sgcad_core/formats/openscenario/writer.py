@@ -19,6 +19,7 @@ from scenariogeneration import xosc
 from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
 from sgcad_core.formats.openscenario.events import EventActor, Handover, event_actors
 from sgcad_core.formats.openscenario.parts import Happening, at_once, at_time, group, number, positions
@@ -47,15 +48,17 @@ def write_xosc(
     name: str = "crash",
     version: Version = DEFAULT_VERSION,
     handover: Handover | None = None,
+    signals: Sequence[Controller] = (),
 ) -> str:
     """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
 
     What the file holds are the entities' origins, for vehicles the rear axle; trajectories are those of box centers.
     One trajectory an actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise. The versions
     differ in names and in what surroundings they can tell; the motion is the same. With a `handover` the plan is told
-    as maneuver events instead (`events`): near the trajectories until the contact, free behind it.
+    as maneuver events instead (`events`): near the trajectories until the contact, free behind it. `signals`: what the
+    map's controllers show in turn from the start on.
     """
-    moves = [_origin(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
+    moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
     told = [_Timed(*pair) for pair in zip(moves, reaches, strict=True)] if handover is None else None
     parts = told or event_actors(moves, reaches, handover or Handover())
@@ -67,7 +70,7 @@ def write_xosc(
             _parameters(moves),
             _entities(actors, minor),
             _storyboard(parts, environment(behavior, minor)),
-            xosc.RoadNetwork(road_file),
+            _road_network(road_file, signals),
             xosc.Catalog(),
             osc_minor_version=minor,
             creation_date=DATE,
@@ -75,6 +78,20 @@ def write_xosc(
         root = scenario.get_element()
     ET.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _road_network(road_file: str, signals: Sequence[Controller]) -> xosc.RoadNetwork:
+    """The map, and the phases of its signals by the ids of its controllers."""
+    network = xosc.RoadNetwork(road_file)
+    for controller in signals:
+        told = xosc.TrafficSignalController(controller.id)
+        for k, shown in enumerate(controller.phases, 1):
+            phase = xosc.Phase(f"{k} {next(iter(shown.states.values()), 'off')}", number(shown.duration_s))
+            for head, state in shown.states.items():
+                phase.add_signal_state(head, state)
+            told.add_phase(phase)
+        network.add_traffic_signal_controller(told)
+    return network
 
 
 def _parameters(moves: Sequence[Trajectory]) -> xosc.ParameterDeclarations:
@@ -96,7 +113,7 @@ def _paired(actors: Sequence[ActorInfo], trajectories: Sequence[Trajectory]) -> 
     return [by_actor[i] for i in ids]
 
 
-def _origin(actor: ActorInfo, center: Trajectory) -> Trajectory:
+def origin_motion(actor: ActorInfo, center: Trajectory) -> Trajectory:
     """The motion of the entity's origin, which lies behind the box center."""
     ahead, heading = center_ahead_m(actor), center.heading_rad
     x, y = center.x_m - ahead * np.cos(heading), center.y_m - ahead * np.sin(heading)
@@ -123,6 +140,9 @@ class _Timed:
 
     def start(self) -> xosc.WorldPosition:
         return positions(self.move, [0])[0]
+
+    def init_actions(self) -> tuple[object, ...]:
+        return ()
 
     def group(self) -> xosc.ManeuverGroup:
         name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
@@ -155,5 +175,7 @@ def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.En
     step = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0.0)
     for actor in actors:
         init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
+        for action in actor.init_actions():
+            init.add_init_action(actor.move.actor, action)
         init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(number(actor.first_mps), step))
     return init

@@ -6,6 +6,7 @@ Reading only; netconvert writes. Knows no OpenDRIVE.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -40,8 +41,12 @@ DEFAULT_WIDTH_M = 3.2  # SUMO's own, where a lane names none
 _DIRECTIONS: dict[str, Direction] = {"l": "left", "L": "left", "r": "right", "R": "right", "t": "u_turn"}
 
 
+@lru_cache(maxsize=8)
 def parse_net(net_xml: str) -> LaneGraph:
-    """Read a .net.xml. Raises InvalidOutput where it is no network or misses what it refers to."""
+    """Read a .net.xml; the last ones are kept, since every stage of a case asks for its own network's graph.
+
+    Raises InvalidOutput where it is no network or misses what it refers to.
+    """
     root = parse_xml(net_xml, "net_xml")
     if root.tag != "net":
         raise _invalid("no SUMO network", "/", f"<{root.tag}>", "the root element is <net>")
@@ -136,6 +141,7 @@ def _shape(element: Element) -> Floats:
         points = np.empty((0,))
     if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 2 or not np.isfinite(points).all():
         raise _invalid("a lane needs a shape of two or more points", _path(element), text[:60], 'write "x,y x,y"')
+    points.setflags(write=False)  # graphs are shared, see `parse_net`
     return points
 
 

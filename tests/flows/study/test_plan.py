@@ -63,7 +63,7 @@ def test_every_fault_is_told_at_once_and_nothing_is_made(study, config_file, tmp
         plan(study(arms, reference="none", truth="nowhere"), tmp_path / "out", jobs=0)
     text = str(told.value)
     for fault in (
-        "road_writer.lanes: Extra inputs", "arm 'one' stands twice", "nothing.yaml: no such config",
+        "road_writer.lanes: unknown field", "arm 'one' stands twice", "nothing.yaml: no such config.",
         "unknown simulator 'nothing'", "published 'nobody' is no row", "arms.5.oops: unknown key",
         "decoder 'cad' needs logits", "no arm is called 'none'", "no cases: give --cases DIR",
         "truth nowhere: no such folder", "--jobs 0",
@@ -80,9 +80,11 @@ def test_the_document_says_what_a_reader_needs(study, config_file, reports, tmp_
     assert made.write() == tmp_path / "out" / "studies" / "kits" / "study.json"
     assert set(document) == {
         "study", "title", "reference", "truth", "cases", "dataset_digest", "arms", "package", "git_commit", "hardware",
+        "again",
     }  # fmt: skip
     assert document["cases"] == ["a", "b"]
     assert document["truth"] == str(tmp_path)
+    assert document["again"]["cases"] == [str(tmp_path / "cases")]
     one, two = document["arms"]
     assert (one["label"], one["published"], one["factors"]) == ("One", "tbg", {})
     assert (two["label"], two["set"], two["factors"]) == ("two", ["seed=7"], {"seed": 7})

@@ -136,6 +136,6 @@ def test_a_fresh_study_forgets_what_was_shared(tmp_path, config_file, reports, m
         old = made.batch.shelf / "ab" / "abc"
         old.parent.mkdir(parents=True, exist_ok=True)
         old.write_bytes(b"old")
-        monkeypatch.setattr("flows.start.evaluate", lambda batch, on_ending, jobs: None)  # no server for this
+        monkeypatch.setattr("flows.start.evaluate", lambda batch, on_ending, jobs, on_turn: None)  # no server for this
         running.run(made, print)
         assert old.exists() is left

@@ -46,9 +46,9 @@ def test_the_config_itself_can_be_crossed(study):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("title: T\ntytle: U\narms: [{name: a, config: a.yaml}]", "tytle: unknown key; known: arms, cases, cross"),
-        ("title: T\narms: [{name: a, config: a.yaml, sets: []}]", "arms.0.sets: unknown key; known: config, factors"),
-        ("title: T\ncross: {config: a.yaml, over: {seed: [1]}, all: 1}", "cross.all: unknown key; known: config, over"),
+        ("title: T\ntytle: U\narms: [{name: a, config: a.yaml}]", "tytle: unknown key. Did you mean 'title'? K"),
+        ("title: T\narms: [{name: a, config: a.yaml, sets: []}]", "arms.0.sets: unknown key. Did you mean 'set'? K"),
+        ("title: T\ncross: {config: a.yaml, over: {seed: [1]}, all: 1}", "cross.all: unknown key. Known: config, over"),
         ("title: T\narms: [{name: a, config: a.yaml}, {name: A, config: b.yaml}]", "arm 'a' stands twice"),
         ("title: T\ncross: {config: a.yaml, over: {seed: [1, 1]}}", "arm 'seed_1' stands twice"),
         ("title: T\narms: [{name: a/b, config: a.yaml}]", "arm 'a/b' cannot be a folder's name; such as 'a_b' can"),
@@ -88,7 +88,7 @@ def test_what_cannot_be_read_at_all_is_refused(study, text, told):
 
 def test_a_study_is_found_by_its_name():
     assert load_study("alpha").file == settings.CONFIGS / "studies" / "alpha.yaml"
-    with pytest.raises(ConfigError, match=r"no such study; in configs/studies/: alpha, .*robustness"):
+    with pytest.raises(ConfigError, match=r"no such study. In configs/studies/: alpha, .*robustness"):
         load_study("no-such-study")
 
 

@@ -59,7 +59,7 @@ def test_what_is_inferred_stands_in_the_notes(cross: RoadNetwork) -> None:
 
 
 def test_a_narrative_without_vehicles_is_refused(cross: RoadNetwork) -> None:
-    with pytest.raises(Refused, match="names no vehicle"):
+    with pytest.raises(Refused, match="tells no crash"):
         _write("Nothing happened on the road.", cross)
 
 

@@ -250,5 +250,5 @@ def test_a_log_begun_anew_is_another_run(tracker):
 
 def test_a_database_that_is_none_is_refused_with_a_remedy(out, tmp_path):
     (tmp_path / "no.db").write_text("this is no database, and it is long enough not to look empty " * 20)
-    with pytest.raises(ConfigError, match=r"no.db: cannot be used as MLflow's database .*tracker=jsonl"):
+    with pytest.raises(ConfigError, match=r"no.db: this is no database of MLflow's.*tracker=jsonl"):
         MlflowTracker(database=tmp_path / "no.db").log_case("kit", PARAMS, out / "kit" / "c1", RESULT)

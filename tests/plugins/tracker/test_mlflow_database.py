@@ -67,7 +67,7 @@ def test_what_is_there_is_left_alone(tmp_path):
 def test_a_folder_in_its_place_is_told_at_once(tmp_path):
     (tmp_path / "mlflow.db").mkdir()
     started = time.monotonic()
-    with pytest.raises(ConfigError, match=r"mlflow\.db: cannot be used .*no file.*move it away"):
+    with pytest.raises(ConfigError, match=r"mlflow\.db: is a folder.*move it away"):
         _ = Store(f"sqlite:///{tmp_path / 'mlflow.db'}", "x").client
     assert time.monotonic() - started < 30
 

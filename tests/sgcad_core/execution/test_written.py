@@ -36,6 +36,16 @@ def test_a_models_answer_has_its_grounding_and_what_goes_against_the_report_is_n
     assert (exit_.basis, exit_.nats, exit_.rule) == ("model", None, "answer")
 
 
+def test_what_the_evidence_carries_and_no_sentence_tells_is_from_the_drawing():
+    answer = Generation(text="{}", grounding={"lane": 1.0, "speed": 1.0, "road": -1.0})
+    seen, blind = Grounds(TOLD, answer, drawn=True), Grounds(TOLD, answer)
+    lane, speed = ("vehicles.V1.lane",), ("vehicles.V1.speed_mph",)
+    assert seen.fact("vehicles.V1.start_lane", 2, "lane", lane, "planner").basis == "diagram"
+    assert blind.fact("vehicles.V1.start_lane", 2, "lane", lane, "planner").basis == "model"
+    assert seen.fact("vehicles.V1.start_speed_mph", 30, "speed", speed, "planner").basis == "model"
+    assert seen.fact("vehicles.V1.start_road", "N", "road", (), "planner").basis == "model"
+
+
 def test_what_a_model_left_open_is_the_planners_choice():
     grounds = Grounds(TOLD, Generation(text="{}"))
     assert grounds.fact("vehicles.V1.start_lane", 1, "", ("vehicles.V1.lane",), "planner").basis == "default"

@@ -22,12 +22,12 @@ from tests.sgcad_core.language.readings import (
     sentences,
 )
 
-READERS = (ROOT / "sgcad_core/narrative", ROOT / "plugins/validator")
+READERS = (ROOT / "sgcad_core/narrative", ROOT / "plugins/validator", ROOT / "plugins/report_reader")
 """Where narratives are read."""
-OF_FILES = {"netconvert.py", "evidence_gate.py", "sumo_xsd.py"}
-"""Validators that match fields of answers and lines of programs, not what a report says."""
+OF_FILES = {"netconvert.py", "evidence_gate.py", "sumo_xsd.py", "nhtsa_xml.py", "evidence.py"}
+"""Those that match fields of answers, lines of programs, bytes of files and names of cases, not what a report says."""
 
-HOMOGRAPHS = {"ram": ["make", "model_pickup"]}
+HOMOGRAPHS = {"ram": ["make", "model_pickup"], "parked": ["object", "state"]}
 """Words of two meanings."""
 
 

@@ -106,7 +106,7 @@ def test_a_trailer_lengthens_its_vehicle() -> None:
 
 
 def test_a_text_without_vehicles_is_refused() -> None:
-    with pytest.raises(Refused, match="names no vehicle"):
+    with pytest.raises(Refused, match="tells no crash"):
         _behavior("The road was wet.")
 
 

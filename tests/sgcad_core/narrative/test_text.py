@@ -93,6 +93,6 @@ def test_sentences_end_at_full_stops_without_a_space_but_not_at_abbreviations() 
 
 
 def test_a_sentence_without_an_end_is_cut_and_nothing_is_lost() -> None:
-    found = sentences("the vehicle was " * 500)
+    found = sentences("the weather was " * 500)
     assert max(len(s.text) for s in found) <= 1000
-    assert " ".join(s.text for s in found).split() == ["the", "vehicle", "was"] * 500
+    assert " ".join(s.text for s in found).split() == ["the", "weather", "was"] * 500

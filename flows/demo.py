@@ -1,0 +1,77 @@
+"""`make demo`: the bundled reports become scenarios under the default config; says what happens and what to do next.
+
+python -m flows.demo [OUT]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from flows import single, start, summary, watching
+from flows.batch import Batch, batch_of
+from flows.cases import cases_in
+from flows.cli import DEFAULT_CONFIG, DEFAULT_OUT, guarded
+from flows.store import CaseFolder
+from flows.terminal import escape_plain
+from sgcad_core import settings
+
+REPORTS = settings.ROOT / "docs" / "demo"
+
+
+def main(arguments: Sequence[str] = ()) -> int:
+    """Run the demo; its exit code."""
+    out = Path(arguments[0]) if arguments else DEFAULT_OUT / "demo"
+    batch = batch_of(cases_in([REPORTS]), [DEFAULT_CONFIG], out)
+    _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
+    _say(
+        f"for each, with configs/{DEFAULT_CONFIG}: rules, no model. The first start makes two databases: half a minute."
+    )
+    tally = summary.Tally(batch)
+    with watching.watching(tally) as watch:
+        start.evaluate(batch, watch.ended, on_turn=watch.turn)
+    for line in [*met(tally), *ending(batch)]:
+        _say(line)
+    return tally.exit_code()
+
+
+def met(tally: summary.Tally) -> list[str]:
+    """One line a case: who hits whom, or why nothing does."""
+    results = sorted((ending.result for _, ending in tally.endings), key=lambda result: str(result["case"]))
+    return [
+        f"{result['case']}: {single.contact(result) if result['status'] == 'generated' else result['reason']}"
+        for result in results
+    ]
+
+
+def ending(batch: Batch) -> list[str]:
+    """Three pictures, what to open, and two commands to go on with."""
+    places = [CaseFolder(batch.out, config.name, case.id).path for config in batch.configs for case in batch.cases]
+    pictures = [place / "picture.png" for place in places if (place / "picture.png").is_file()]
+    page = next((place / "player.html" for place in places if (place / "player.html").is_file()), None)
+    return [
+        "",
+        "Pictures of the three crashes:",
+        *(f"  {_shown(picture)}" for picture in pictures),
+        *([f"Moving, in a browser: {_shown(page)}"] if page else []),
+        "",
+        "Next:",
+        "  . .venv/bin/activate && sgcad run my-report.txt        # a report of your own",
+        f"  .venv/bin/sgcad explain {_shown(places[0])}   # what was read, sentence by sentence",
+    ]
+
+
+def _shown(path: Path) -> str:
+    """As a person in this folder would type it."""
+    here = Path.cwd()
+    return escape_plain(str(path.relative_to(here) if path.is_relative_to(here) else path))
+
+
+def _say(line: str) -> None:
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    guarded(lambda: sys.exit(main(sys.argv[1:])))

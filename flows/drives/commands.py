@@ -1,0 +1,83 @@
+"""`sgcad drive`: hand finished cases over to drivers, and a table of what came of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sgcad_core.errors import ConfigError
+
+Cases = Annotated[list[Path], typer.Argument(help="Folders of finished cases, or a folder of runs.")]
+Drivers = Annotated[
+    list[str] | None, typer.Option("--driver", "-d", help="A name, or YAML such as '{name: reference, model: fuzzy}'.")
+]
+RoleOf = Annotated[
+    list[str] | None, typer.Option("--role-of", help="V1=responder: your word over what was read of the report.")
+]
+Release = Annotated[
+    float, typer.Option("--release", min=0.0, max=30.0, help="Seconds before the contact; then nobody heeds the ego.")
+]
+Factor = Annotated[
+    float, typer.Option("--factor", min=0.2, max=3.0, help="The ego's speed at the hand-over over the scripted one.")
+]
+
+
+def drive(
+    cases: Cases,
+    driver: Drivers = None,
+    ego: Annotated[str, typer.Option("--ego", help="The actor to be driven, such as V1.")] = "",
+    role: Annotated[str, typer.Option("--role", help="initiator, responder, bystander; both: the first two.")] = "both",
+    role_of: RoleOf = None,
+    release: Release = 4.0,
+    factor: Factor = 1.0,
+    jobs: Annotated[int, typer.Option("--jobs", "-j", min=1, help="Cases at a time.")] = 1,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Drive again what was driven.")] = False,
+    csv: Annotated[Path | None, typer.Option("--csv", help="Write one line a drive here.")] = None,
+    pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write drive.html beside drive.json.")] = True,
+) -> None:
+    """Put a driver into crashes: avoided, mitigated, unchanged, worse or lost; files go to drive/ in each case."""
+    from rich.console import Console
+
+    from flows.drives import table
+    from flows.drives.reading import case_folders
+    from flows.drives.running import Order, drive_folders
+    from sgcad_core.config import driver_entry
+
+    order = Order(
+        drivers=tuple(driver_entry(_yaml(text)) for text in driver or ["reference"]),
+        ego=ego, roles=_roles(role), release_s=release, factor=factor, role_of=_given(role_of or []),
+        fresh=fresh, pages=pages,
+    )  # fmt: skip
+    told = drive_folders(case_folders(cases), order, jobs)
+    table.show(Console(emoji=False, highlight=False), told)
+    if csv:
+        table.write_csv(csv, told)
+        typer.echo(f"written: {csv}")
+    raise typer.Exit(int(any(t["outcome"] == "failed" for t in told)))
+
+
+def _yaml(text: str) -> Any:
+    import yaml
+
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as fault:
+        raise ConfigError(f"--driver {text!r}: no YAML ({fault}); give a name or {{name: ..., field: ...}}") from fault
+
+
+def _roles(role: str) -> tuple[str, ...]:
+    from sgcad_core.kinds import CRASH_ROLES
+
+    if role == "both":
+        return ("initiator", "responder")
+    if role not in CRASH_ROLES:
+        raise ConfigError(f"--role {role}: no such role; roles: {', '.join(CRASH_ROLES)}, both")
+    return (role,)
+
+
+def _given(entries: list[str]) -> dict[str, str]:
+    if wrong := next((e for e in entries if "=" not in e), None):
+        raise ConfigError(f"--role-of {wrong}: write ACTOR=ROLE, such as V1=responder")
+    return dict(e.split("=", 1) for e in entries)

@@ -1,0 +1,74 @@
+"""drive.html: the script and the drive in one player, one over the other. Knows the player's data, no driver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from flows import player
+from flows.drawing import drawing_of
+from flows.view import COLORS, Mover, View
+from sgcad_core.handover.drive import Drive
+from sgcad_core.records import CrashReport, Execution, Trajectory
+from sgcad_core.result import CaseRecord
+
+SCRIPTED = "#9aa0a6"
+"""Of the script's road users, behind those of the drive."""
+
+
+def page(driven: Drive, told: Mapping[str, Any]) -> str:
+    """The page as text: the script in grey (its road users are called V1_script), the drive in colors."""
+    script = driven.staging.script
+    count = len(driven.ego.t_s)
+    movers = [Mover(a.model_copy(update={"id": f"{a.id}_script"}), _cut(t, count, f"{t.actor}_script"), SCRIPTED)
+              for a, t in zip(script.actors, script.trajectories, strict=True)]  # fmt: skip
+    infos = {a.id: a for a in script.actors}
+    movers += [
+        Mover(infos[t.actor], t, COLORS[k % len(COLORS)]) for k, t in enumerate(driven.trajectories) if t.actor in infos
+    ]
+    return player.page(_view(driven, told, tuple(movers)))
+
+
+def _cut(track: Trajectory, count: int, name: str) -> Trajectory:
+    """A script on the drive's clock: cut, or standing on at its end."""
+    at = np.minimum(np.arange(count), len(track.t_s) - 1)
+    names = ("x_m", "y_m", "heading_rad", "speed_mps")
+    t_s = np.round(np.arange(count) * 0.05, 3)
+    return Trajectory(actor=name, t_s=t_s, **{n: getattr(track, n)[at] for n in names})
+
+
+def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> View:
+    script = driven.staging.script
+    seen = driven.contact.model_dump() if driven.contact else None
+    result = {
+        "status": told["outcome"],
+        "collision": {"declared": script.declared.model_dump() if script.declared else None,
+                      "realised": bool(told["as_declared"]), "observed": seen},
+        "network": None, "grounding": {}, "attempts": {"road": 0, "scenario": 0}, "seconds": {},
+    }  # fmt: skip
+    execution = Execution(simulator="drive", trajectories=driven.trajectories, contact=driven.contact)
+    record = CaseRecord(case=script.case, config=f"{told['driver']} drives {told['ego']}", execution=execution)
+    report = CrashReport(case=script.case, narrative=_words(told))
+    figures = {k: v for k, v in told.items() if isinstance(v, int | float) and not isinstance(v, bool)}
+    return View(record, report, {"drive": figures}, result, drawing_of(script.net_xml), movers)
+
+
+def _words(told: Mapping[str, Any]) -> str:
+    """The result in sentences."""
+    lines = [f"{told['driver']} drives {told['ego']}, the {told['role']}: {told['outcome']} ({told['reason']})."]
+    if told["braked_s"] is not None:
+        ttc = told["braked_at_ttc_s"]
+        at = f" at a time to collision of {ttc:.2f} s" if ttc is not None else ""
+        lines.append(f"It began to brake {told['braked_s']:.2f} s before that{at}.")
+    could = told.get("avoidance") or {}
+    if could.get("brake_by_s") is not None:
+        lines.append(
+            f"Against the script, full braking had to begin {could['brake_by_s']:.2f} s "
+            f"({could['brake_by_m']:.1f} m) before the contact."
+        )
+    if could.get("steer_by_s") is not None:
+        lines.append(f"Moving aside to the {could['steer_to']} had to begin {could['steer_by_s']:.2f} s before it.")
+    lines.append(f"Least clearance {told['closest_m']:.2f} m. Grey: the script.")
+    return " ".join(lines)

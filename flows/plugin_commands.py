@@ -1,0 +1,42 @@
+"""`sgcad plugins list | show | new`: what is installed, and the beginning of one of your own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`, `new KIND NAME`.")
+
+
+@plugins_app.command("list")
+def plugins_list() -> None:
+    """Every installed plugin, kind by kind."""
+    from flows.catalogue import list_plugins
+
+    list_plugins()
+
+
+@plugins_app.command("show")
+def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or kind/name.")]) -> None:
+    """A plugin's job and its fields with types and defaults."""
+    from flows.catalogue import show_plugin
+
+    show_plugin(name)
+
+
+@plugins_app.command("new")
+def plugins_new(
+    kind: Annotated[str, typer.Argument(help="One of the kinds of `sgcad plugins list`.")],
+    name: Annotated[str, typer.Argument(help="What a YAML will call it: small letters, digits, _.")],
+    into: Annotated[Path, typer.Option("--into", help="The folder that the package is written into.")] = Path(),
+) -> None:
+    """Write a package with a plugin that works, its test and a config that uses it."""
+    from flows.scaffolding import new
+
+    files = new(kind, name, into)
+    for file in files:
+        typer.echo(str(file))
+    folder = files[0].parent
+    typer.echo(f"next: pip install -e {folder} && python -m pytest {folder}/tests && sgcad check {folder}/{name}.yaml")

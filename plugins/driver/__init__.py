@@ -1,0 +1,1 @@
+"""Who drives the ego once a crash is handed over: one file a driver."""

@@ -1,0 +1,159 @@
+"""Somebody else's driver: a Python callable, or a program behind a local socket, asked 20 times a second.
+
+A callable `package.module:function` is called with what a socket would be sent and answers the same; a class is built
+once a drive. Over the socket goes one JSON object a line. First {"task": ...} (ego, way, friction), answered by any
+object, then {"view": ...} with the ego and all others; the answer is {"acceleration_mps2": a, "steering_rad": d} (the
+steering may lack: the ego keeps to its way) or {"trajectory": [[t_s, x_m, y_m, heading_rad, speed_mps], ...]} with t_s
+from now on. At the end {"leave": true}. docs/examples/driver_socket.py is such a program.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import socket
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.interfaces import Driver
+from sgcad_core.seat import STEP_S, Command, RoadUser, Seat, Task, View
+
+_LONGEST_LINE = 1 << 20
+Answer = Callable[[dict[str, Any]], Any]
+
+
+class External(Driver):
+    """A callable or a local socket; give one of both."""
+
+    target: str = Field("", pattern=r"^$|^[A-Za-z_][\w.]*:[A-Za-z_]\w*$")
+    """package.module:function."""
+    port: int | None = Field(None, ge=1, le=65535)
+    """Of a server on this machine."""
+    host: str = "127.0.0.1"
+    timeout_s: float = Field(5.0, gt=0, le=600)
+    """Longest wait for an answer."""
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> External:
+        if bool(self.target) == (self.port is not None):
+            raise ValueError("give target (package.module:function) or port, not both and not neither")
+        return self
+
+    def take_over(self, task: Task) -> Seat:
+        """Tell it the task. Raises ConfigError (no such callable), SimulationFailed (nobody answers)."""
+        answer, close = (_callable(self.target), _nothing) if self.target else _connected(self)
+        seat = _Seat(answer, close)
+        answer({"task": _task(task)})
+        return seat
+
+
+class _Seat(Seat):
+    def __init__(self, answer: Answer, close: Callable[[], None]) -> None:
+        self._answer, self._close = answer, close
+
+    def act(self, view: View) -> Command:
+        """What it answers. Raises SimulationFailed for an answer that is none."""
+        said = self._answer({"view": _view(view)})
+        try:
+            return _command(said)
+        except (TypeError, ValueError, KeyError, IndexError) as fault:
+            raise SimulationFailed(
+                f"the external driver answered {str(said)[:200]!r} ({fault}); "
+                "expected acceleration_mps2 and steering_rad, or trajectory"
+            ) from fault
+
+    def leave(self) -> None:
+        """Tell it that the drive is over."""
+        self._close()
+
+
+# ------------------------------------------------------------------ the two doors
+def _nothing() -> None:
+    return None
+
+
+def _callable(target: str) -> Answer:
+    module, _, name = target.partition(":")
+    try:
+        found = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError) as fault:
+        raise ConfigError(f"driver external: target {target!r} cannot be imported ({fault})") from fault
+    answer: Answer = found() if isinstance(found, type) else found
+    if not callable(answer):
+        raise ConfigError(f"driver external: target {target!r} is no callable")
+    return answer
+
+
+def _connected(say: External) -> tuple[Answer, Callable[[], None]]:
+    where = f"{say.host}:{say.port}"
+    try:
+        line = socket.create_connection((say.host, say.port or 0), timeout=say.timeout_s)
+    except OSError as fault:
+        raise SimulationFailed(
+            f"driver external: nobody listens at {where} ({fault}); start the driver first"
+        ) from fault
+    file = line.makefile("rwb")
+
+    def answer(message: dict[str, Any]) -> Any:
+        try:
+            file.write(json.dumps(message).encode() + b"\n")
+            file.flush()
+            said = file.readline(_LONGEST_LINE)
+            return json.loads(said)
+        except (OSError, ValueError) as fault:
+            raise SimulationFailed(f"the external driver at {where} is gone ({fault})") from fault
+
+    def close() -> None:
+        try:
+            file.write(b'{"leave": true}\n')
+            file.flush()
+            line.close()
+        except OSError:
+            line.close()
+
+    return answer, close
+
+
+# ------------------------------------------------------------------ messages
+def _user(user: RoadUser) -> dict[str, Any]:
+    return {k: round(v, 6) if isinstance(v, float) else v for k, v in user._asdict().items()}
+
+
+def _task(task: Task) -> dict[str, Any]:
+    return {
+        "case": task.case,
+        "step_s": STEP_S,
+        "ego": _user(task.ego),
+        "way": np.round(np.column_stack((task.way.s_m, task.way.pose, task.way.speed_mps)), 4).tolist(),
+        "friction_mps2": task.friction_mps2,
+        "speed_limit_mps": task.speed_limit_mps,
+        "gives_way_m": task.gives_way_m,
+    }
+
+
+def _view(view: View) -> dict[str, Any]:
+    return {
+        "t_s": round(view.t_s, 3),
+        "ego": _user(view.ego),
+        "station_m": round(view.station_m, 4),
+        "script_s": round(view.script_s, 4),
+        "others": [_user(u) for u in view.others],
+    }
+
+
+def _command(said: Any) -> Command:
+    if "trajectory" in said:
+        rows = np.array(said["trajectory"], dtype=float)
+        if rows.ndim != 2 or rows.shape[1] != 5 or not np.isfinite(rows).all() or (np.diff(rows[:, 0]) <= 0).any():
+            raise ValueError("trajectory: rows of t_s, x_m, y_m, heading_rad, speed_mps with rising t_s")
+        x, y, heading, speed = (float(np.interp(STEP_S, rows[:, 0], rows[:, i])) for i in range(1, 5))
+        return Command(pose=(x, y, heading, speed))
+    steering = said.get("steering_rad")
+    numbers = float(said["acceleration_mps2"]), None if steering is None else float(steering)
+    if not all(n is None or np.isfinite(n) for n in numbers):
+        raise ValueError("not a finite number")
+    return Command(*numbers)

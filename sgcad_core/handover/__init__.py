@@ -1,0 +1,1 @@
+"""A reconstructed crash handed over: one road user gets a driver, and the others keep the conflict."""

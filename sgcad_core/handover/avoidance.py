@@ -1,0 +1,160 @@
+"""What the ego could still have done: when it had to brake, how hard, until when it could steer.
+
+Against the script: the others go on as they did, the ego leaves it at an onset and brakes, or moves aside. Every onset
+is tried, 0.05 s apart, and every answer is played against the others' boxes, so nothing is assumed of the kind of
+conflict. Braking is constant from the onset on; who brakes too late may also get through before, or behind, the other.
+Steering is a constant lateral acceleration until a lane's width aside (left or right) at unchanged speed. SI units.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, box_gaps
+from sgcad_core.handover.script import Staging
+from sgcad_core.records import Record
+from sgcad_core.seat import STEP_S, Way
+
+LOOK_BACK_S = 6.0
+GRAIN_S = 0.01
+"""Between two looks whether boxes touch: at 0.05 s crossing corners can miss each other by 0.5 m."""
+AFTER_S = 6.0
+"""Behind the scripted contact: whoever has not met by then has avoided."""
+ASIDE_M = 3.5
+_BISECTIONS = 12
+_STEER_SHARE = 0.7
+"""Of the friction that a driver uses for moving aside; the rest is left for the recovery."""
+
+
+class Avoidance(Record):
+    """How near the script was to no crash; times are before the scripted contact, None: at no time that was tried."""
+
+    brake_by_s: float | None
+    """The last onset of full braking that avoids the contact."""
+    brake_by_m: float | None
+    """The way that the ego still had at that onset to where it was at the contact."""
+    steer_by_s: float | None
+    """The last onset of moving aside that avoids it."""
+    steer_to: str | None
+    """left or right: to which side that was."""
+    required_mps2: dict[str, float | None]
+    """Least constant deceleration that avoids it, by onset (s before the contact); None: not even full braking does."""
+    full_braking_mps2: float
+
+
+def avoidance(staging: Staging) -> Avoidance | None:
+    """What could have been done against the ego's scripted contact; None where it has none."""
+    if staging.contact is None:
+        return None
+    others = _others(staging)
+    full = staging.script.friction_mps2
+    onsets = np.arange(staging.contact_s, max(staging.contact_s - LOOK_BACK_S, -1e-9), -STEP_S)
+    brake = next((t for t in onsets if _clear(staging, others, _braked(staging.way, t, full))), None)
+    steer = _steered_by(staging, others, onsets)
+    asked = [f"{b:g}" for b in (0.5, 1.0, 1.5, 2.0, 3.0, 4.0) if b <= staging.contact_s]
+    return Avoidance(
+        brake_by_s=None if brake is None else round(staging.contact_s - float(brake), 3),
+        brake_by_m=None if brake is None else round(_left_m(staging, float(brake)), 3),
+        steer_by_s=steer and round(staging.contact_s - steer[0], 3),
+        steer_to=steer and steer[1],
+        required_mps2={b: _required(staging, others, staging.contact_s - float(b)) for b in asked},
+        full_braking_mps2=full,
+    )
+
+
+def _left_m(staging: Staging, onset_s: float) -> float:
+    return staging.way.station_at(staging.contact_s) - staging.way.station_at(onset_s)
+
+
+# ------------------------------------------------------------------ the others, and whether they are met
+def _others(staging: Staging) -> dict[str, Floats]:
+    """(n, 3) poses of everybody else on the script's clock, from 0 to the end of the look ahead."""
+    times = _clock(staging)
+    return {
+        name: np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
+        for name, line in staging.lines.items()
+        if name not in staging.coupled
+    }
+
+
+def _clock(staging: Staging) -> Floats:
+    return np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
+
+
+def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats]) -> bool:
+    """Whether an ego with these poses, from a sample on, touches nobody."""
+    start, mine = poses
+    size = staging.script.sizes
+    for name, theirs in others.items():
+        rows = theirs[start : start + len(mine)]
+        own = mine[: len(rows)]
+        reach = (np.hypot(*size[staging.ego]) + np.hypot(*size[name])) / 2
+        near = np.hypot(own[:, 0] - rows[:, 0], own[:, 1] - rows[:, 1]) <= reach
+        if near.any() and (box_gaps(own[near], size[staging.ego], rows[near], size[name]) <= 0).any():
+            return False
+    return True
+
+
+# ------------------------------------------------------------------ braking
+def _braked(way: Way, onset_s: float, deceleration: float) -> tuple[int, Floats]:
+    """First sample, and poses from there on, of an ego that brakes at an onset."""
+    k = round(onset_s / GRAIN_S)
+    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, GRAIN_S)
+    speed = way.speed_at(onset_s)
+    stops = speed / max(deceleration, 1e-9)
+    braking = np.minimum(ran, stops)
+    return k, way.poses_at(way.station_at(onset_s) + speed * braking - deceleration * braking**2 / 2)
+
+
+def _required(staging: Staging, others: dict[str, Floats], onset_s: float) -> float | None:
+    """Least deceleration that avoids the contact from an onset on; None: full braking does not."""
+    full = staging.script.friction_mps2
+    if not _clear(staging, others, _braked(staging.way, onset_s, full)):
+        return None
+    low, high = 0.0, full
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        clear = _clear(staging, others, _braked(staging.way, onset_s, middle))
+        low, high = (low, middle) if clear else (middle, high)
+    return round(high, 3)
+
+
+# ------------------------------------------------------------------ steering
+def _steered_by(staging: Staging, others: dict[str, Floats], onsets: Floats) -> tuple[float, str] | None:
+    """The last onset, and the side, of moving aside that avoids the contact."""
+    for t in onsets:
+        for side, name in ((1.0, "left"), (-1.0, "right")):
+            if _clear(staging, others, _aside(staging, float(t), side)):
+                return float(t), name
+    return None
+
+
+def _aside(staging: Staging, onset_s: float, side: float) -> tuple[int, Floats]:
+    """An ego that moves aside at an onset: half the way with the lateral acceleration, half against it."""
+    way, k = staging.way, round(onset_s / GRAIN_S)
+    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, GRAIN_S)
+    poses = way.poses_at(np.interp(onset_s + ran, way.t_s, way.s_m))
+    lateral = _STEER_SHARE * staging.script.friction_mps2
+    half_s = float(np.sqrt(ASIDE_M / lateral))
+    first = np.minimum(ran, half_s)
+    second = np.clip(ran - half_s, 0.0, half_s)
+    moved = lateral * first**2 / 2 + lateral * half_s * second - lateral * second**2 / 2
+    rate = lateral * (first - second)
+    speed = max(way.speed_at(onset_s), 1.0)
+    course = _course(poses)
+    moved_poses = poses.copy()
+    moved_poses[:, 0] -= side * moved * np.sin(course)
+    moved_poses[:, 1] += side * moved * np.cos(course)
+    moved_poses[:, 2] += side * np.arctan2(rate, speed)
+    return k, moved_poses
+
+
+def _course(poses: Floats) -> Floats:
+    step = np.diff(poses[:, :2], axis=0)
+    moving = np.hypot(*step.T) > 1e-6
+    if not moving.any():
+        course: Floats = poses[:, 2]
+        return course
+    angle = np.arctan2(step[:, 1], step[:, 0])
+    known = np.maximum.accumulate(np.where(moving, np.arange(len(step)), 0))
+    return np.append(angle[known], angle[known][-1])

@@ -1,0 +1,163 @@
+"""How a road user would have gone on from where the contact ends its script: along the lanes of the network.
+
+A trajectory tells no way beyond the contact; who avoids it needs one. The lane (or way across a junction) that runs
+where the vehicle is and as it points is followed, the maneuver chooses at a junction, the vehicle's own offset fades.
+Knows the lane graph; no time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, arc_lengths, headings, resample
+from sgcad_core.roads.lane_graph import Connection, Direction, Lane, LaneGraph
+
+_NEAR_M = 3.5
+_TURNED_RAD = math.radians(40)
+_PER_RAD_M = 4.0
+"""A lane that points elsewhere by a radian counts as so much farther away."""
+_FADES_M = 30.0
+"""Over which the offset from the lane's center fades."""
+_TAKES_OVER_M = 16.0
+"""Over which the lane takes over from the vehicle's own bend."""
+_STEP_M = 0.5
+_TURNS: dict[str, Direction] = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
+
+
+class Strip(NamedTuple):
+    """A lane, or a connection across a node, as a directed line; `of`: what it is."""
+
+    line: Floats
+    of: Lane | Connection
+    edge: str
+
+
+class Start(NamedTuple):
+    """Where the script ends: place, direction of travel, and how that was turning (1/m, left positive)."""
+
+    x_m: float
+    y_m: float
+    course_rad: float
+    bend_per_m: float = 0.0
+
+
+def gone_on(graph: LaneGraph, start: Start, length_m: float, maneuver: str) -> Floats:
+    """(n, 2) points from a place on, half a metre apart, at least `length_m` long.
+
+    The first metres go on as the vehicle was turning, then over to the lane; straight on where no lane runs so.
+    """
+    here = np.array([start.x_m, start.y_m])
+    at = np.arange(0.0, length_m + 2 * _STEP_M, _STEP_M)
+    held = _held(start, at)
+    strip = _strip_at(graph, here, start.course_rad)
+    if strip is None:
+        return held
+    first, line = _from(strip.line, here), _followed(graph, strip, length_m, maneuver)
+    line = _extended(line, length_m + first)
+    points = resample(line, first + at)
+    fade = np.clip(1 - at / _FADES_M, 0.0, 1.0) ** 2
+    lane = points + fade[:, None] * (here - points[0])
+    share = np.clip(at / _TAKES_OVER_M, 0.0, 1.0)
+    over = (share**2 * (3 - 2 * share))[:, None]
+    joined: Floats = (1 - over) * held + over * lane
+    return joined
+
+
+def _held(start: Start, at: Floats) -> Floats:
+    """The way on at the present bend, which straightens out."""
+    step = np.diff(at, prepend=0.0)
+    bend = start.bend_per_m * np.clip(1 - at / _TAKES_OVER_M, 0.0, 1.0)
+    course = start.course_rad + np.cumsum(bend * step)
+    middle = course - bend * step / 2
+    way = np.cumsum(np.column_stack((np.cos(middle), np.sin(middle))) * step[:, None], axis=0)
+    held: Floats = np.array([start.x_m, start.y_m]) + way
+    return held
+
+
+def strips(graph: LaneGraph) -> Iterator[Strip]:
+    """Every lane for cars and every connection."""
+    for edge in graph.edges.values():
+        for lane in edge.car_lanes:
+            yield Strip(lane.shape, lane, edge.id)
+    for connection in graph.connections:
+        if len(connection.via_shape) > 1 and float(arc_lengths(connection.via_shape)[-1]) > 0.5:
+            yield Strip(connection.via_shape, connection, connection.from_edge)
+
+
+def _strip_at(graph: LaneGraph, here: Floats, course_rad: float) -> Strip | None:
+    """The strip that runs here and points as the vehicle moves."""
+    found = [(cost, i, s) for i, s in enumerate(strips(graph)) if (cost := _cost(s.line, here, course_rad)) is not None]
+    return min(found)[2] if found else None
+
+
+def _cost(line: Floats, here: Floats, course_rad: float) -> float | None:
+    at = _from(line, here)
+    away = float(np.hypot(*(resample(line, [at])[0] - here)))
+    step = min(int(np.searchsorted(arc_lengths(line), at, side="right")) - 1, len(line) - 2)
+    turned = abs(math.remainder(float(headings(line)[max(step, 0)]) - course_rad, 2 * math.pi))
+    return None if away > _NEAR_M or turned > _TURNED_RAD else away + _PER_RAD_M * turned
+
+
+def _from(line: Floats, here: Floats) -> float:
+    """Station of the nearest point of a line."""
+    start, step = line[:-1], np.diff(line, axis=0)
+    length = np.maximum((step**2).sum(axis=1), 1e-12)
+    share = np.clip(((here - start) * step).sum(axis=1) / length, 0.0, 1.0)
+    away = np.hypot(*(start + share[:, None] * step - here).T)
+    k = int(away.argmin())
+    return float(arc_lengths(line)[k] + share[k] * math.sqrt(length[k]))
+
+
+def _followed(graph: LaneGraph, strip: Strip, length_m: float, maneuver: str) -> Floats:
+    """The strip and what it leads to, joined."""
+    pieces, turns = [strip.line], maneuver
+    place: Lane | Connection = strip.of
+    edge = strip.edge
+    total = float(arc_lengths(strip.line)[-1])
+    start = _from(strip.line, strip.line[0])
+    for _ in range(12):
+        if total - start > length_m + float(arc_lengths(strip.line)[-1]):
+            break
+        if isinstance(place, Connection):
+            lane = next((la for la in graph.edges[place.to_edge].lanes if la.index == place.to_lane), None)
+            nothing = lane is None
+            edge, place, turns = place.to_edge, lane or place, "straight"
+        else:
+            onward = _onward(graph, edge, place, turns)
+            nothing, place = onward is None, onward or place
+        if nothing:
+            break
+        line = place.via_shape if isinstance(place, Connection) else place.shape
+        pieces.append(line)
+        total += float(arc_lengths(line)[-1])
+    return _joined(pieces)
+
+
+def _onward(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connection | None:
+    """The connection that the maneuver takes, else straight on, else any."""
+    leaving = graph.leaving(edge, lane.index)
+    wanted = _TURNS.get(maneuver, "through")
+    order = {wanted: 0, "through": 1, "right": 2, "left": 3, "u_turn": 4}
+    return min(leaving, key=lambda c: order.get(c.direction, 5), default=None)
+
+
+def _joined(pieces: list[Floats]) -> Floats:
+    points = np.vstack(pieces)
+    apart = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-2)
+    kept: Floats = points[apart]
+    return kept
+
+
+def _extended(points: Floats, length_m: float) -> Floats:
+    """A line made long enough, straight on at its end."""
+    lack = length_m + _STEP_M - float(arc_lengths(points)[-1])
+    if lack <= 0:
+        return points
+    way = points[-1] - points[-2]
+    way = way / max(float(np.hypot(*way)), 1e-9)
+    more: Floats = points[-1] + np.arange(_STEP_M, lack + _STEP_M, _STEP_M)[:, None] * way
+    return np.vstack((points, more))

@@ -1,0 +1,185 @@
+"""The drive: a driver in the ego's seat, everybody else on the relative clock, 20 steps a second.
+
+Ends when the ego has touched somebody, or a while after the conflict would have been over. Knows the seat; no plugin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sgcad_core.execution.contact import first_contact
+from sgcad_core.geometry.plane import Floats, box_gaps
+from sgcad_core.handover.bicycle import Ego
+from sgcad_core.handover.clock import RELEASE_S, Clock
+from sgcad_core.handover.script import Staging, first_with
+from sgcad_core.interfaces import Driver
+from sgcad_core.records import ObservedContact, Trajectory
+from sgcad_core.seat import STEP_S, Command, RoadUser, Seat, Task, View, Way
+
+AFTER_S = 5.0
+"""Of the others' clock, behind the scripted contact: who has not met by then does not meet."""
+LONGEST_S = 40.0
+_CHECKED = 20
+"""Steps between two looks whether the ego has touched anybody: one look over many steps is cheap."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What came of a drive. All trajectories have the same clock, 0 at the hand-over."""
+
+    staging: Staging
+    trajectories: tuple[Trajectory, ...]
+    contact: ObservedContact | None
+    """The ego's first contact."""
+    elsewhere: ObservedContact | None
+    """The first contact among the others before that; they do not heed each other."""
+    accelerations: Floats
+    """(n,) that the ego took, m/s2."""
+    others_s: Floats
+    """(n,) script time of the others."""
+    clock: Clock
+    steered: bool
+
+    @property
+    def ego(self) -> Trajectory:
+        """The ego's motion."""
+        return next(t for t in self.trajectories if t.actor == self.staging.ego)
+
+
+def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, factor: float = 1.0) -> Drive:
+    """Hand the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
+
+    Raises SimulationFailed where the driver is gone.
+    """
+    seat = driver.take_over(task_of(staging))
+    try:
+        run = _Run(staging, seat, release_s, factor)
+        run.go()
+        return run.drive()
+    finally:
+        seat.leave()
+
+
+def task_of(staging: Staging) -> Task:
+    """What the driver is told."""
+    from sgcad_core.handover.priority import gives_way, limit_mps  # reads the network
+
+    script, way = staging.script, staging.way
+    ego = Ego.at_start(way)
+    return Task(
+        ego=_user(staging, staging.ego, way, 0.0, 1.0, ego),
+        way=way,
+        friction_mps2=script.friction_mps2,
+        speed_limit_mps=limit_mps(script.graph, way),
+        gives_way_m=gives_way(script.graph, way, script.info(staging.ego).length_m),
+        net_xml=script.net_xml,
+        case=script.case,
+    )
+
+
+class _Run:
+    """A drive on its way."""
+
+    def __init__(self, staging: Staging, seat: Seat, release_s: float, factor: float) -> None:
+        self.staging, self.seat = staging, seat
+        self.ego = Ego.at_start(staging.way, factor)
+        self.info = staging.script.info(staging.ego)
+        moving = [float(w.speed_mps.max()) for w in staging.lines.values()]
+        self.clock = Clock(staging.way, staging.contact_s, max(moving, default=0.0), release_s)
+        self.script_s = 0.0
+        self.rows: dict[str, list[tuple[float, float, float, float]]] = {n: [] for n in (staging.ego, *staging.lines)}
+        self.taken: list[float] = []
+        self.seen_s: list[float] = []
+
+    def go(self) -> None:
+        until = self.staging.contact_s + AFTER_S
+        while self.clock.now_s < until and len(self.taken) * STEP_S < LONGEST_S:
+            users = [self._other(name) for name in self.staging.lines]
+            self._note(users)
+            command = self.seat.act(self._view(users))
+            self._step(command)
+            if len(self.taken) % _CHECKED == 0 and self._touched():
+                return
+
+    def _view(self, users: Sequence[RoadUser]) -> View:
+        me = _user(self.staging, self.staging.ego, self.staging.way, self.script_s, 1.0, self.ego)
+        seen = tuple(u for u in users if u.actor not in self.staging.coupled)
+        return View(len(self.taken) * STEP_S, me, self.ego.station_m, self.script_s, seen)
+
+    def _note(self, users: Sequence[RoadUser]) -> None:
+        e = self.ego
+        self.rows[self.staging.ego].append((e.x_m, e.y_m, e.heading_rad, e.speed_mps))
+        for u in users:
+            self.rows[u.actor].append((u.x_m, u.y_m, u.heading_rad, u.speed_mps))
+        self.seen_s.append(self.clock.now_s)
+
+    def _step(self, command: Command) -> None:
+        self.clock.advance(self.script_s, self.ego.speed_mps)
+        friction = self.staging.script.friction_mps2
+        self.taken.append(self.ego.move(command, self.staging.way, self.info.length_m, friction))
+        first, last = self.staging.way.times_at(self.ego.station_m)
+        self.script_s = min(max(self.script_s + STEP_S, first), last)
+
+    def _other(self, name: str) -> RoadUser:
+        line = self.staging.lines[name]
+        if name in self.staging.coupled:
+            return _user(self.staging, name, line, self.script_s, 1.0)
+        return _user(self.staging, name, line, self.clock.now_s, self.clock.rate or 1.0)
+
+    def _touched(self) -> bool:
+        """Whether the ego has touched anybody in the steps since the last look."""
+        sizes, ego = self.staging.script.sizes, self.staging.ego
+        mine = np.array(self.rows[ego][-_CHECKED - 1 :])
+        return any(
+            (box_gaps(mine, sizes[ego], np.array(rows[-_CHECKED - 1 :]), sizes[name]) <= 0).any()
+            for name, rows in self.rows.items()
+            if name != ego and name not in self.staging.coupled
+        )
+
+    def drive(self) -> Drive:
+        tracks = {name: _trajectory(name, rows) for name, rows in self.rows.items()}
+        sizes, ego = self.staging.script.sizes, self.staging.ego
+        others = [t for name, t in tracks.items() if name != ego]
+        contact = first_with(tracks[ego], [t for t in others if t.actor not in self.staging.coupled], sizes)
+        last = round(contact.t_s / STEP_S) + 1 if contact else len(self.taken)
+        cut = {name: _until(t, last) for name, t in tracks.items()}
+        elsewhere = first_contact([t for name, t in cut.items() if name != ego], sizes)
+        order = [a.id for a in self.staging.script.actors if a.id in cut]
+        taken, seen = np.array(self.taken[:last]), np.array(self.seen_s[:last])
+        found = tuple(cut[name] for name in order)
+        return Drive(self.staging, found, contact, elsewhere, taken, seen, self.clock, self.ego.free)
+
+
+def _user(staging: Staging, name: str, line: Way, script_s: float, rate: float, ego: Ego | None = None) -> RoadUser:
+    """A road user on its line at a script time, its clock running at a rate; the ego where it is."""
+    info = staging.script.info(name)
+    if ego is not None:
+        course = ego.heading_rad + (math.pi if ego.backing else 0.0)
+        at = ego.x_m, ego.y_m, ego.heading_rad, ego.speed_mps, course
+        return RoadUser(name, info.type, info.length_m, info.width_m, *at)
+    k = min(script_s / STEP_S, len(line.t_s) - 1.0)
+    low = min(int(k), len(line.t_s) - 2) if len(line.t_s) > 1 else 0
+    high, part = min(low + 1, len(line.t_s) - 1), k - low
+    p, q = line.pose[low], line.pose[high]
+    x, y, heading = (float(a + part * (b - a)) for a, b in zip(p, q, strict=True))
+    way = q - p
+    moved = math.hypot(way[0], way[1])
+    speed = moved / STEP_S * rate if script_s <= line.t_s[-1] else 0.0
+    course = math.atan2(way[1], way[0]) if moved > 1e-4 else heading
+    return RoadUser(name, info.type, info.length_m, info.width_m, x, y, heading, speed, course)
+
+
+def _trajectory(name: str, rows: Sequence[tuple[float, float, float, float]]) -> Trajectory:
+    table = np.array(rows)
+    t_s = np.round(np.arange(len(rows)) * STEP_S, 3)
+    x, y, heading, speed = (table[:, i].copy() for i in range(4))
+    return Trajectory(actor=name, t_s=t_s, x_m=x, y_m=y, heading_rad=np.unwrap(heading), speed_mps=speed)
+
+
+def _until(t: Trajectory, count: int) -> Trajectory:
+    names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
+    return Trajectory(actor=t.actor, **{name: getattr(t, name)[:count] for name in names})

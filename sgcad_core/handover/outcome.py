@@ -1,0 +1,195 @@
+"""What a drive came to, against the script: avoided, mitigated, unchanged, worse, or lost.
+
+    avoided     the conflict came about and the ego touched nobody
+    mitigated   it touched somebody, and clearly softer than in the script
+    unchanged   as hard as in the script, within the margins of `Margins`
+    worse       clearly harder
+    lost        the ego never came into the conflict, so that nothing can be credited to its driver
+
+Whether the conflict came about is asked of the clock: had the ego gone on from the release at the proportion of the
+script's speeds that it had then, it would have touched. Knows drives; no plugin.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+import numpy as np
+
+from sgcad_core.execution.contact import poses, realised
+from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.handover.drive import Drive
+from sgcad_core.handover.severity import Severity, severity
+from sgcad_core.metrics import conflict, displacement
+from sgcad_core.metrics.conflict import Track
+from sgcad_core.records import Floats, ObservedContact, Record, Trajectory
+from sgcad_core.seat import STEP_S, Way
+
+Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
+OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")
+_BRAKES_MPS2 = 1.0
+"""Deceleration beyond the script's that counts as braking."""
+_ASIDE_M = 0.3
+_GRAIN_S = 0.05
+
+
+class Margins(Record):
+    """What counts as clearly softer or harder: both by the larger delta-v of the pair."""
+
+    share: float = 0.1
+    least_mps: float = 0.5
+
+
+class Came(Record):
+    """A drive's result: the figures that tables and drive.json have."""
+
+    outcome: Outcome
+    reason: str
+    as_declared: bool | None
+    """Whether the contact is the declared pair with the declared sides; None where none is declared."""
+    contact: ObservedContact | None
+    severity: Severity | None
+    scripted: Severity | None
+    """Of the ego's contact in the script."""
+    braked_s: float | None
+    """When it began to brake: before its contact or, if it had none, before its closest approach."""
+    braked_at_ttc_s: float | None
+    hardest_mps2: float
+    closest_m: float
+    """Least clearance of the boxes to anybody it is not coupled to."""
+    least_ttc_s: float | None
+    pet_s: float | None
+    pet_reason: str
+    lag_s: float
+    elsewhere: ObservedContact | None
+
+
+def came(drive: Drive, margins: Margins | None = None) -> Came:
+    """Judge a drive."""
+    staging, script = drive.staging, drive.staging.script
+    infos = {a.id: a for a in script.actors}
+    scripted = severity(staging.contact, script.trajectories, infos) if staging.contact else None
+    now = severity(drive.contact, drive.trajectories, infos) if drive.contact else None
+    outcome, reason = _outcome(drive, now, scripted, margins or Margins())
+    closest, ttc, pet = _nearness(drive)
+    onset = _braking(drive)
+    until = drive.contact.t_s if drive.contact else float(closest[1])
+    seen = ttc[onset] if onset is not None else math.inf
+    return Came(
+        outcome=outcome, reason=reason,
+        as_declared=realised(script.declared, drive.contact) if script.declared else None,
+        contact=drive.contact, severity=now, scripted=scripted,
+        braked_s=None if onset is None else round(until - onset * STEP_S, 3),
+        braked_at_ttc_s=_finite(seen), hardest_mps2=round(float(max(-drive.accelerations.min(initial=0.0), 0.0)), 3),
+        closest_m=round(closest[0], 3), least_ttc_s=_finite(float(ttc.min())),
+        pet_s=pet.seconds, pet_reason=pet.reason, lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
+    )  # fmt: skip
+
+
+def _finite(value: float) -> float | None:
+    return round(float(value), 3) if math.isfinite(value) else None
+
+
+# ------------------------------------------------------------------ the verdict
+def _outcome(drive: Drive, now: Severity | None, scripted: Severity | None, margins: Margins) -> tuple[Outcome, str]:
+    if now is None:
+        why = _lost(drive)
+        return ("lost", why) if why else ("avoided", "the conflict came about and nobody was touched")
+    if scripted is None:
+        return "worse", "the script has no contact of the ego"
+    before, after = scripted.worst_delta_v_mps, now.worst_delta_v_mps
+    slack = max(margins.share * before, margins.least_mps)
+    told = f"delta-v {after:.1f} m/s, in the script {before:.1f}"
+    if after < before - slack:
+        return "mitigated", told
+    return ("worse" if after > before + slack else "unchanged"), told
+
+
+def _lost(drive: Drive) -> str:
+    """Why the conflict never came about; empty: it did."""
+    clock = drive.clock
+    if drive.staging.contact is None:
+        return "the ego has no contact in the script"
+    if not clock.released:
+        return "the ego never came near enough for the others to be released"
+    if drive.staging.way.speed_mps.max() < 0.1:  # it stands in the script: the others come to it
+        return ""
+    return "" if _would_touch(drive) else f"at the release the ego was {clock.lag_s:+.2f} s off the others' clock"
+
+
+def _would_touch(drive: Drive) -> bool:
+    """Whether the ego, going on at its pace of the release, would have touched its partner of the script."""
+    staging, clock = drive.staging, drive.clock
+    contact = staging.contact
+    other = contact.other if contact and contact.actor == staging.ego else contact.actor if contact else ""
+    t = np.arange(0.0, 3 * clock.release_s + 4.0, _GRAIN_S)
+    begun = staging.contact_s - clock.release_s
+    pace = clock.pace if clock.pace > 0.05 else clock.rate
+    mine = _at(staging.way, begun + clock.lag_s + pace * t)
+    theirs = _at(staging.lines[other], begun + clock.rate * t)
+    sizes = staging.script.sizes
+    return bool((box_gaps(mine, sizes[staging.ego], theirs, sizes[other]) <= 0).any())
+
+
+def _at(line: Way, times: Floats) -> Floats:
+    return np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
+
+
+# ------------------------------------------------------------------ figures on the way
+def _track(t: Trajectory, size: tuple[float, float]) -> Track:
+    return Track(t.t_s, poses(t), displacement.velocities(t), size)
+
+
+def _nearness(drive: Drive) -> tuple[tuple[float, float], Floats, conflict.Encroachment]:
+    """Least clearance and when; TTC over time to the nearest in time; PET with the partner that comes nearest."""
+    sizes, staging = drive.staging.script.sizes, drive.staging
+    ego = _track(drive.ego, sizes[staging.ego])
+    best, ttc = (math.inf, 0.0), np.full(len(ego.t_s), math.inf)
+    pet = conflict.Encroachment(None, "no common area")
+    for t in drive.trajectories:
+        if t.actor == staging.ego or t.actor in staging.coupled:
+            continue
+        other = _track(t, sizes[t.actor])
+        gap = conflict.box_distance(ego, other)
+        ttc = np.minimum(ttc, conflict.time_to_collision(ego, other))
+        k = int(gap.argmin())
+        if gap[k] < best[0]:
+            best, pet = (float(gap[k]), float(ego.t_s[k])), conflict.post_encroachment_time(ego, other)
+    return best, ttc, pet
+
+
+def _braking(drive: Drive) -> int | None:
+    """The step at which the ego began to brake harder than the report's driver did there, for good."""
+    way = drive.staging.way
+    own = _own_times(drive)
+    scripted = np.interp(own, way.t_s, np.gradient(way.speed_mps, STEP_S) if len(way.speed_mps) > 1 else way.speed_mps)
+    harder = np.flatnonzero(drive.accelerations < scripted - _BRAKES_MPS2)
+    return int(harder[0]) if len(harder) else None
+
+
+def _own_times(drive: Drive) -> Floats:
+    """(n,) script time at which the report's driver was where the ego is."""
+    x, y = drive.ego.x_m, drive.ego.y_m
+    ran = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))))
+    return np.interp(ran, drive.staging.way.s_m, drive.staging.way.t_s)
+
+
+def series(drive: Drive) -> dict[str, Any]:
+    """Over time: TTC, clearance, the ego's acceleration, and the script time of the others; rounded, None: infinite."""
+    _, ttc, _ = _nearness(drive)
+    sizes, staging = drive.staging.script.sizes, drive.staging
+    ego = _track(drive.ego, sizes[staging.ego])
+    apart = [
+        conflict.box_distance(ego, _track(t, sizes[t.actor]))
+        for t in drive.trajectories
+        if t.actor != staging.ego and t.actor not in staging.coupled
+    ]
+    clear = np.min(apart, axis=0) if apart else np.full(len(ego.t_s), math.inf)
+    return {
+        "t_s": [round(float(t), 2) for t in ego.t_s],
+        "time_to_collision_s": [_finite(float(v)) for v in ttc],
+        "clearance_m": [_finite(float(v)) for v in clear],
+        "acceleration_mps2": [round(float(v), 3) for v in drive.accelerations],
+        "others_script_s": [round(float(v), 3) for v in drive.others_s],
+    }

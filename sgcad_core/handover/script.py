@@ -1,0 +1,180 @@
+"""A written crash as a hand-over needs it: who drove which line when, until the contact and as if there were none.
+
+A line holds a pose every 0.05 s. Until its actor touches the ego it is the script; from there on the actor goes on
+undisturbed, at the speed that it had. Contacts of others with one another stay as scripted. Knows trajectories,
+sizes and the lane graph; no driver.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sgcad_core.errors import ConfigError
+from sgcad_core.execution.contact import first_contact, poses
+from sgcad_core.geometry.plane import Floats, Size, arc_lengths
+from sgcad_core.handover.beyond import Start, gone_on
+from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.records import ActorInfo, ObservedContact, Trajectory
+from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.seat import STEP_S, Way
+from sgcad_core.specs import Contact, Surface
+
+BEYOND_S = 15.0
+"""How long lines go on behind the contact."""
+_SLOW_MPS = 0.3
+DRIVEN = frozenset({"car", "suv", "pickup", "van", "truck", "bus", "motorcycle"})
+"""Kinds that a driver can be put into."""
+_TREND = 4
+"""Steps over which the trend of an actor's course is taken."""
+_TIGHTEST_PER_M = 0.2
+_COUPLED_M = 1.5
+"""A trailer keeps this close to its distance from what tows it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Script:
+    """A crash as it was written; sizes and kinds by actor."""
+
+    case: str
+    actors: tuple[ActorInfo, ...]
+    trajectories: tuple[Trajectory, ...]
+    graph: LaneGraph
+    declared: Contact | None = None
+    roles: Mapping[str, str] = field(default_factory=dict)
+    surface: Surface | None = None
+    net_xml: str = ""
+
+    @property
+    def sizes(self) -> dict[str, Size]:
+        """Length and width by actor."""
+        return {a.id: (a.length_m, a.width_m) for a in self.actors}
+
+    @property
+    def friction_mps2(self) -> float:
+        """The most that tires transmit on the surface that is told."""
+        return DRIVING.friction_mps2(self.surface)
+
+    def info(self, actor: str) -> ActorInfo:
+        """An actor by id. Raises ConfigError naming those there are."""
+        found = next((a for a in self.actors if a.id == actor), None)
+        if found is None:
+            raise ConfigError(f"{self.case}: no actor {actor!r}; it has {', '.join(a.id for a in self.actors)}")
+        return found
+
+    def ego_of(self, role: str) -> str | None:
+        """The first actor of a role that somebody can drive."""
+        return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.type in DRIVEN), None)
+
+    def contact_of(self, ego: str) -> ObservedContact | None:
+        """The script's first contact of an actor with anybody that is not coupled to it."""
+        track = {t.actor: t for t in self.trajectories}
+        coupled = self.coupled_to(ego)
+        others = [t for a, t in track.items() if a != ego and a not in coupled]
+        return first_with(track[ego], others, self.sizes)
+
+    def coupled_to(self, ego: str) -> frozenset[str]:
+        """Trailers that keep their distance from the ego (or what tows it) from the start, and do so moving."""
+        track = {t.actor: t for t in self.trajectories}
+        kinds = {a.id: a.type for a in self.actors}
+        pairs = [a for a in track if a != ego and "trailer" in (kinds[a], kinds[ego])]
+        return frozenset(a for a in pairs if _coupled(track[ego], track[a], self.sizes))
+
+
+def first_with(ego: Trajectory, others: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
+    """The ego's first contact with any of the others."""
+    seen = [c for other in others if (c := first_contact((ego, other), sizes)) is not None]
+    return min(seen, key=lambda c: c.t_s, default=None)
+
+
+def _coupled(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> bool:
+    n = min(len(a.t_s), round(2.0 / STEP_S))
+    apart = np.hypot(a.x_m[:n] - b.x_m[:n], a.y_m[:n] - b.y_m[:n])
+    reach = (sizes[a.actor][0] + sizes[b.actor][0]) / 2 + 3.0
+    moving = math.hypot(a.x_m[n - 1] - a.x_m[0], a.y_m[n - 1] - a.y_m[0]) > 2.0
+    return moving and bool(apart[0] < reach and np.ptp(apart) < _COUPLED_M)
+
+
+@dataclass(frozen=True, eq=False)
+class Staging:
+    """A script with the ego taken out: its way, the others' lines, and the contact that ends the script for it."""
+
+    script: Script
+    ego: str
+    way: Way
+    lines: Mapping[str, Way]
+    coupled: frozenset[str]
+    contact: ObservedContact | None
+
+    @property
+    def contact_s(self) -> float:
+        """Script time of the ego's contact; of a script without one its end."""
+        return self.contact.t_s if self.contact else float(self.script.trajectories[0].t_s[-1])
+
+
+def staged(script: Script, ego: str) -> Staging:
+    """Put an actor's seat at a driver's disposal. Raises ConfigError for one that nobody can drive."""
+    info = script.info(ego)
+    if info.type not in DRIVEN:
+        known = ", ".join(a.id for a in script.actors if a.type in DRIVEN) or "none"
+        raise ConfigError(f"{script.case}: {ego} is a {info.type}, which no driver drives; drivable: {known}")
+    contact = script.contact_of(ego)
+    lines = {t.actor: _line(script, t, _cut(script, ego, t)) for t in script.trajectories}
+    others = {name: line for name, line in lines.items() if name != ego}
+    return Staging(script, ego, lines[ego], others, script.coupled_to(ego), contact)
+
+
+def _cut(script: Script, ego: str, track: Trajectory) -> int | None:
+    """The last sample before the actor is disturbed by the ego (the ego: by anybody); None: it never is."""
+    if track.actor == ego or track.actor in script.coupled_to(ego):
+        contact = script.contact_of(ego)
+    else:
+        own = next(t for t in script.trajectories if t.actor == ego)
+        contact = first_with(own, [track], script.sizes)
+    return None if contact is None else max(round(contact.t_s / STEP_S) - 1, 0)
+
+
+def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
+    """An actor's line: its script up to the cut, then on as before."""
+    table: Floats = poses(track)
+    last = len(table) - 1 if cut is None else min(cut, len(table) - 1)
+    table = table[: last + 1].copy()
+    table[:, 2] = np.unwrap(table[:, 2])
+    start, speed = _start(table)
+    if cut is not None and speed > _SLOW_MPS:
+        table = np.vstack((table, _beyond(script, track.actor, table[-1], start, speed)))
+    s = arc_lengths(table[:, :2])
+    rate: Floats = np.gradient(s, STEP_S) if len(s) > 1 else np.zeros(1)
+    t_s = np.arange(len(table), dtype=np.float64) * STEP_S
+    return Way(t_s, table, s, rate)
+
+
+def _start(table: Floats) -> tuple[Start, float]:
+    """Where the last samples lead: place, course and bend, and the speed."""
+    steps = np.diff(table[-_TREND - 1 :, :2], axis=0)
+    moved = np.hypot(*steps.T) if len(steps) else np.zeros(1)
+    x, y, heading = (float(v) for v in table[-1])
+    if not len(steps) or moved[-1] < 1e-4:
+        return Start(x, y, heading), 0.0
+    course = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    moving = moved > 1e-3
+    bend = (course[-1] - course[0]) / moved[1:].sum() if len(course) > 1 and moving.all() else 0.0
+    bend = min(max(float(bend), -_TIGHTEST_PER_M), _TIGHTEST_PER_M)
+    return Start(x, y, float(course[-1]) + bend * float(moved[-1]) / 2, bend), float(moved[-1]) / STEP_S
+
+
+def _beyond(script: Script, actor: str, pose: Floats, start: Start, speed_mps: float) -> Floats:
+    """(m, 3) poses from the next sample on, along the lanes; the box keeps its angle to its way."""
+    info = script.info(actor)
+    graph = script.graph if info.type in DRIVEN or info.type in ("trailer", "bicycle") else LaneGraph({}, (), {})
+    points = gone_on(graph, start, speed_mps * BEYOND_S, info.maneuver)
+    along = arc_lengths(points)
+    way = np.diff(points, axis=0)
+    course = np.unwrap(np.concatenate(([start.course_rad], np.arctan2(way[:, 1], way[:, 0]))))
+    middle = np.concatenate(([0.0], (along[1:] + along[:-1]) / 2))
+    at = np.arange(1, round(BEYOND_S / STEP_S) + 1) * STEP_S * speed_mps
+    x, y = (np.interp(at, along, points[:, i]) for i in (0, 1))
+    return np.column_stack((x, y, np.interp(at, middle, course) + float(pose[2]) - start.course_rad))

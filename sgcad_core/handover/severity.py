@@ -1,0 +1,106 @@
+"""How hard a contact is: closing speed, change of velocity of both, energy, and the risk of injury that goes with it.
+
+One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.impact`); masses are typical
+of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from sgcad_core.geometry.plane import Size
+from sgcad_core.planner.boxes import apart, mean, touch_points
+from sgcad_core.planner.impact import RESTITUTION, Body, body, collide, mass_kg
+from sgcad_core.records import ActorInfo, ObservedContact, Record, Trajectory
+from sgcad_core.seat import STEP_S
+from sgcad_core.specs import ActorKind
+
+MPH_PER_MPS = 1 / 0.44704
+_PEOPLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle"})
+
+
+class Struck(Record):
+    """What one of both takes from a contact."""
+
+    actor: str
+    speed_mps: float
+    """On the ground, before."""
+    delta_v_mps: float
+    """Change of the center's velocity."""
+    delta_v_ahead_mps: float
+    """Its part along the heading, negative: slowed."""
+    risk: float | None
+    """Of a fatal injury (see `fatality_risk`); None: an object."""
+
+
+class Severity(Record):
+    """A contact in figures."""
+
+    closing_mps: float
+    """Relative speed of the centers."""
+    energy_j: float
+    """Kinetic energy that the contact took."""
+    first: Struck
+    second: Struck
+
+    @property
+    def worst_delta_v_mps(self) -> float:
+        """The larger change of velocity of both."""
+        return max(self.first.delta_v_mps, self.second.delta_v_mps)
+
+    def of(self, actor: str) -> Struck:
+        """What one of both takes."""
+        return self.first if self.first.actor == actor else self.second
+
+
+def severity(contact: ObservedContact, trajectories: Sequence[Trajectory], infos: Mapping[str, ActorInfo]) -> Severity:
+    """The figures of a first contact, from the motion of both up to the sample before it."""
+    track = {t.actor: t for t in trajectories}
+    pair = [_body(track[name], infos[name], contact.t_s) for name in (contact.actor, contact.other)]
+    before = [(b.vx, b.vy) for b in pair]
+    energy = sum(b.energy for b in pair)
+    seen = apart(pair[0], pair[1])
+    collide(pair[0], pair[1], mean(touch_points(pair[0], pair[1])), seen.normal, RESTITUTION)
+    closing = math.hypot(before[0][0] - before[1][0], before[0][1] - before[1][1])
+    changes = [(b.vx - v[0], b.vy - v[1]) for b, v in zip(pair, before, strict=True)]
+    names = contact.actor, contact.other
+    struck = [_struck(infos[n], b, v, c, closing) for n, b, v, c in zip(names, pair, before, changes, strict=True)]
+    return Severity(
+        closing_mps=closing, energy_j=max(energy - sum(b.energy for b in pair), 0.0), first=struck[0], second=struck[1]
+    )
+
+
+def _body(track: Trajectory, info: ActorInfo, t_s: float) -> Body:
+    """A box at the contact with the velocity that it had until the sample before."""
+    k = min(max(round(t_s / STEP_S), 0), len(track.t_s) - 1)
+    a, b = max(k - 2, 0), max(k - 1, min(1, len(track.t_s) - 1))
+    size: Size = (info.length_m, info.width_m)
+    mass = None if info.type == "object" else mass_kg(info.type, size)
+    made = body((float(track.x_m[k]), float(track.y_m[k]), float(track.heading_rad[k])), size, mass)
+    if b > a and mass is not None:
+        step = (b - a) * STEP_S
+        made.vx, made.vy = float(track.x_m[b] - track.x_m[a]) / step, float(track.y_m[b] - track.y_m[a]) / step
+        made.spin = float(track.heading_rad[b] - track.heading_rad[a]) / step
+    return made
+
+
+def _struck(
+    info: ActorInfo, body: Body, before: tuple[float, float], change: tuple[float, float], closing: float
+) -> Struck:
+    delta = math.hypot(*change)
+    along = change[0] * math.cos(body.heading) + change[1] * math.sin(body.heading)
+    risk = None if info.type in ("object", "trailer") else fatality_risk(info.type, delta, closing)
+    return Struck(actor=info.id, speed_mps=math.hypot(*before), delta_v_mps=delta, delta_v_ahead_mps=along, risk=risk)
+
+
+def fatality_risk(kind: ActorKind, delta_v_mps: float, closing_mps: float) -> float:
+    """Probability that the contact kills: of a vehicle's driver, of a pedestrian or cyclist that is struck.
+
+    Occupants: (delta-v / 71 mph)^4, H. C. Joksch, Velocity change and fatality risk in a crash: a rule of thumb,
+    Accident Analysis and Prevention 25 (1993) 103. People: 1 / (1 + exp(6.9 - 0.090 v)) with v the impact speed in
+    km/h, E. Rosen, U. Sander, Pedestrian fatality risk as a function of car impact speed, ibid. 41 (2009) 536.
+    """
+    if kind in _PEOPLE:
+        return 1 / (1 + math.exp(6.9 - 0.090 * closing_mps * 3.6))
+    return min((delta_v_mps * MPH_PER_MPS / 71.0) ** 4, 1.0)

@@ -1,0 +1,74 @@
+"""What a text lacks that no crash can be drawn from it: one reason each, in words, and what it would have to tell.
+
+A text in another language, several reports in one file, an account that was blacked out, a form without an account, a
+text without a crash, and a crash of which nobody can say who touched whom. Knows no network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from sgcad_core.language import rule
+from sgcad_core.narrative.text import Sentence
+
+_FEWEST_WORDS = 12
+"""Below, the share of small words says nothing."""
+_ENGLISH = 0.10
+"""Share of small words in a text below which it is hardly English; reports of crashes have 0.2 and more."""
+
+
+class Gap(NamedTuple):
+    """Why a text cannot be drawn, and what is missing."""
+
+    reason: str
+    missing: tuple[str, ...]
+
+
+_NO_CRASH = Gap("the narrative tells no crash", ("a crash: who touched whom or what",))
+
+
+def foreign(text: str) -> Gap | None:
+    """Whether a text is in another language."""
+    words = rule("gaps.word").findall(text)
+    if len(words) < _FEWEST_WORDS or len(rule("gaps.english").findall(text)) >= _ENGLISH * len(words):
+        return None
+    return Gap("the narrative is not in English", ("an English narrative",))
+
+
+def several(text: str) -> Gap | None:
+    """Whether a text holds several reports, each under its number."""
+    numbers = dict.fromkeys(m["number"] for m in rule("gaps.report_number").finditer(text))
+    if len(numbers) < 2:
+        return None
+    listed = ", ".join(list(numbers)[:4])
+    return Gap(f"the file holds {len(numbers)} reports ({listed})", ("one report a file: split it",))
+
+
+def _blacked_out(sentences: Sequence[Sentence]) -> bool:
+    told = " ".join(s.text for s in sentences if s.role != "formal")
+    hidden = rule("gaps.blacked_out").sub(" ", told)
+    return hidden != told and len(rule("gaps.word").findall(hidden)) < _FEWEST_WORDS
+
+
+def without_actors(text: str, sentences: Sequence[Sentence]) -> Gap:
+    """Why a text names no vehicle."""
+    if _blacked_out(sentences):
+        return Gap("the account of the crash is blacked out", ("an account that is not redacted",))
+    if sentences and all(s.role == "formal" for s in sentences):
+        what = "the text gives no account of the crash, only what the report says of itself"
+        return Gap(what, ("what happened, in the narrative",))
+    if sentences and not rule("gaps.crash_word").search(text):
+        return _NO_CRASH
+    return Gap("the narrative names no vehicle", ("which vehicles were involved", "how they traveled"))
+
+
+def untold(text: str, met: Iterable[bool]) -> Gap | None:
+    """Whether no contact is told, where the vehicles have no numbers; `met`: of each contact, whether it is told."""
+    known = tuple(met)
+    if any(known):
+        return None
+    if not rule("gaps.crash_word").search(text):
+        return _NO_CRASH
+    return Gap("the narrative's crash cannot be read: nobody is told to touch anybody or anything",
+               ("who struck whom or what", "with which sides"))  # fmt: skip

@@ -1,0 +1,98 @@
+"""The paved surface of a road network: how far a point lies off it, and in which direction from it.
+
+The surface is the union of all lanes that cars may use and of the ways across the junctions. Metres and radians in the
+network's frame. Knows no actor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import arc_lengths, resample
+from sgcad_core.roads.lane_graph import Floats, LaneGraph, road_of
+
+_LONGEST_M = 8.0
+"""Center lines are told by pieces no longer than this."""
+_LEAST_WIDTH_M = 3.2
+"""Of a way across a junction, where the lanes that it joins are narrower."""
+
+
+class Junction(NamedTuple):
+    """A place where three or more roads meet: its center, and how far its area reaches from there."""
+
+    x_m: float
+    y_m: float
+    radius_m: float
+
+
+class RoadSurface(NamedTuple):
+    """Pieces of lanes: (n, 2) their ends, (n,) half their widths; and the junctions."""
+
+    starts: Floats
+    ends: Floats
+    halves: Floats
+    junctions: tuple[Junction, ...]
+
+    def off(self, points: Floats) -> tuple[Floats, Floats]:
+        """How far (m, 2) points lie beyond the edge of the nearest lane (negative: on it), and the (m,) bearing thence.
+
+        Bearings are counter-clockwise from east, from the lane's center line to the point.
+        """
+        along = self.ends - self.starts
+        square = np.maximum((along**2).sum(axis=1), 1e-9)
+        from_start = points[:, None, :] - self.starts[None]
+        share = np.clip((from_start * along[None]).sum(axis=2) / square, 0.0, 1.0)
+        away = from_start - share[:, :, None] * along[None]
+        beyond = np.hypot(away[:, :, 0], away[:, :, 1]) - self.halves
+        nearest = np.argmin(beyond, axis=1)
+        rows = np.arange(len(points))
+        best = away[rows, nearest]
+        return beyond[rows, nearest], np.arctan2(best[:, 1], best[:, 0])
+
+    def junction_near(self, point: Floats) -> Junction | None:
+        """The junction whose area is nearest to a point."""
+        reach = lambda j: float(np.hypot(point[0] - j.x_m, point[1] - j.y_m)) - j.radius_m  # noqa: E731
+        return min(self.junctions, key=reach, default=None)
+
+
+def road_surface(graph: LaneGraph) -> RoadSurface:
+    """The surface of a network."""
+    pieces = list(_pieces(graph))
+    starts, ends = (np.vstack([p[i] for p in pieces]) for i in (0, 1))
+    halves = np.concatenate([np.full(len(p[0]), p[2]) for p in pieces])
+    return RoadSurface(starts, ends, halves, tuple(_junctions(graph)))
+
+
+def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float]]:
+    for edge in graph.edges.values():
+        for lane in edge.car_lanes:
+            yield (*_cut(lane.shape), lane.width_m / 2)
+    for c in graph.connections:
+        widths = [lane.width_m for lane in graph.edges[c.from_edge].lanes if lane.index == c.from_lane]
+        yield (*_cut(c.via_shape), max(*widths, _LEAST_WIDTH_M) / 2 if widths else _LEAST_WIDTH_M / 2)
+
+
+def _cut(line: Floats) -> tuple[Floats, Floats]:
+    """Straight pieces of a line, as their starts and ends."""
+    length = float(arc_lengths(line)[-1])
+    if len(line) == 2 or length < 1e-6:
+        return line[:-1], line[1:]
+    dense = resample(line, np.linspace(0.0, length, max(2, round(length / _LONGEST_M) + 1)))
+    return dense[:-1], dense[1:]
+
+
+def _junctions(graph: LaneGraph) -> Iterator[Junction]:
+    ends: dict[str, list[Floats]] = {}
+    roads: dict[str, set[str]] = {}
+    for edge in graph.edges.values():
+        for node, at in ((edge.from_node, 0), (edge.to_node, -1)):
+            ends.setdefault(node, []).extend(lane.shape[at] for lane in edge.lanes)
+            roads.setdefault(node, set()).add(road_of(edge.id)[0])
+    for node, met in roads.items():
+        if len(met) >= 3:
+            points = np.array(ends[node])
+            x, y = points.mean(axis=0)
+            yield Junction(float(x), float(y), float(np.hypot(points[:, 0] - x, points[:, 1] - y).max()))

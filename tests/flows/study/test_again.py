@@ -1,0 +1,43 @@
+"""A study is found again by its name."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from flows.study import again
+from flows.study.plan import plan
+from flows.study.spec import load_study
+from sgcad_core.errors import ConfigError
+
+
+@pytest.fixture
+def begun(tmp_path, config_file, reports):
+    config_file()
+    file = tmp_path / "kits.yaml"
+    file.write_text(yaml.safe_dump({"title": "Kits", "arms": [{"name": "one", "config": "kit.yaml"}]}))
+    plan(load_study(file), tmp_path / "out", cases=[reports(a="")], truth=tmp_path, overrides=("seed=3",)).write()
+    return file
+
+
+def test_a_study_goes_on_by_its_name_with_what_it_was_given(begun, tmp_path):
+    known = again.before(Path("kits"), tmp_path / "out")
+    assert (known.file, known.truth, known.overrides) == (begun, tmp_path, ("seed=3",))
+    assert again.cases_of(known, ()) == (tmp_path / "cases",)
+    assert again.cases_of(known, (tmp_path,)) == (tmp_path,)
+
+
+def test_another_study_of_that_name_begins_anew(begun, tmp_path):
+    other = tmp_path / "elsewhere" / "kits.yaml"
+    other.parent.mkdir()
+    shutil.copy(begun, other)
+    assert again.before(other, tmp_path / "out") == again.Before(other)
+    assert again.before(Path("nothing"), tmp_path / "out") == again.Before(Path("nothing"))
+
+
+def test_cases_that_are_gone_are_told(begun, tmp_path):
+    shutil.rmtree(tmp_path / "cases")
+    known = again.before(Path("kits"), tmp_path / "out")
+    with pytest.raises(ConfigError, match=r"the study was begun with .*cases, which is gone: name the folder"):
+        again.cases_of(known, ())

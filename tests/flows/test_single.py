@@ -1,0 +1,52 @@
+"""What the command tells of one case."""
+
+import pytest
+
+from flows import single
+
+SEEN = {"actor": "V1", "other": "V2", "actor_area": "right", "other_area": "front", "t_s": 4.2}
+TOLD = {"striker": "V2", "struck": "V1", "striker_area": "front", "struck_area": "right"}
+RESULT = {
+    "status": "generated",
+    "notes": [],
+    "facts": [],
+    "collision": {"declared": TOLD, "observed": SEEN, "realised": True},
+}
+
+
+def test_the_striker_of_the_report_is_told_first():
+    assert single.lines([RESULT]) == ["at 4.2 s the front of V2 hits the right of V1, as the report tells"]
+
+
+@pytest.mark.parametrize(
+    ("collision", "line"),
+    [
+        (
+            {"observed": {**SEEN, "actor_area": "left"}, "realised": False},
+            "at 4.2 s the front of V2 hits the left of V1; the report tells that the front of V2 hits the right of V1",
+        ),
+        (
+            {"observed": None, "realised": False},
+            "no contact happens; the report tells that the front of V2 hits the right of V1",
+        ),
+        ({"declared": None, "realised": False}, "at 4.2 s the right of V1 hits the front of V2"),
+    ],
+    ids=["elsewhere", "none", "undeclared"],
+)
+def test_a_contact_that_is_not_the_declared_one_is_told_beside_it(collision, line):
+    assert single.lines([RESULT | {"collision": RESULT["collision"] | collision}]) == [line]
+
+
+def test_only_values_that_nobody_told_count_as_assumed():
+    facts = [
+        {"field": "vehicles.V1.start_speed_mph", "value": 50.0, "basis": "default"},
+        {"field": "vehicles.V2.maneuver", "value": "turn_left", "basis": "default"},
+        {"field": "light", "value": "day", "basis": "text"},
+    ]
+    line = single.lines([RESULT | {"facts": facts}])[-1]
+    assert line == "assumed, since the report does not tell: V1 speed 50.0 mph; V2 maneuver turn left"
+
+
+def test_several_cases_and_refused_ones_are_left_to_the_table():
+    assert single.lines([RESULT, RESULT]) == []
+    assert single.lines([RESULT | {"status": "refused"}]) == []

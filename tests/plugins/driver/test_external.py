@@ -1,0 +1,107 @@
+"""Somebody else's driver: a callable, and a program behind a socket."""
+
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from pydantic import ValidationError
+
+from plugins.driver.external import External
+from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.handover.drive import drive
+from sgcad_core.handover.outcome import came
+from sgcad_core.handover.script import staged
+from tests.sgcad_core.handover.scenes import rear_end
+
+EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "driver_socket.py"
+HERE = "tests.plugins.driver.test_external"
+SAID = []
+
+
+def brake_at_once(message):
+    SAID.append(message)
+    return {"acceleration_mps2": -5.0} if "view" in message else None
+
+
+class Swerve:
+    """A new one a drive: it counts its own steps."""
+
+    def __init__(self):
+        self.steps = 0
+
+    def __call__(self, message):
+        self.steps += "view" in message
+        return {"acceleration_mps2": 0.0, "steering_rad": 0.05 if self.steps < 30 else 0.0}
+
+
+def along(message):
+    if "task" in message:
+        return {}
+    ego = message["view"]["ego"]
+    return {"trajectory": [[0.0, ego["x_m"], ego["y_m"], 0.0, 10.0], [1.0, ego["x_m"] + 10.0, ego["y_m"], 0.0, 10.0]]}
+
+
+def nonsense(message):
+    return {"brake": "yes"}
+
+
+def staged_rear_end():
+    return staged(rear_end(own=15.0), "V1")
+
+
+def test_a_callable_sees_itself_and_the_others_20_times_a_second():
+    SAID.clear()
+    driven = drive(staged_rear_end(), External(target=f"{HERE}:brake_at_once"))
+    assert driven.contact is None
+    assert set(SAID[0]["task"]) >= {"ego", "way", "friction_mps2", "step_s"}
+    times = [m["view"]["t_s"] for m in SAID[1:4]]
+    assert times == [0.0, 0.05, 0.1]
+    assert [o["actor"] for o in SAID[1]["view"]["others"]] == ["V2"]
+
+
+def test_a_callable_may_steer_or_give_a_trajectory():
+    assert drive(staged_rear_end(), External(target=f"{HERE}:Swerve")).contact is None
+    driven = drive(staged_rear_end(), External(target=f"{HERE}:along"))
+    assert driven.ego.speed_mps[10] == pytest.approx(10.0)
+
+
+def test_the_example_avoids_a_standing_car_over_its_socket():
+    program = subprocess.Popen([sys.executable, str(EXAMPLE), "0"], stdout=subprocess.PIPE, text=True)
+    try:
+        port = int(program.stdout.readline())
+        assert came(drive(staged_rear_end(), External(port=port))).outcome == "avoided"
+    finally:
+        program.kill()
+        program.wait()
+
+
+def test_an_answer_that_is_none_is_named():
+    with pytest.raises(SimulationFailed, match=r"answered .*brake.*expected acceleration_mps2"):
+        drive(staged_rear_end(), External(target=f"{HERE}:nonsense"))
+
+
+def test_a_callable_that_is_not_there_is_named():
+    with pytest.raises(ConfigError, match=r"target 'no\.such:thing' cannot be imported"):
+        drive(staged_rear_end(), External(target="no.such:thing"))
+    with pytest.raises(ConfigError, match="is no callable"):
+        drive(staged_rear_end(), External(target=f"{HERE}:HERE"))
+
+
+def test_nobody_at_the_port_is_told_and_so_is_one_who_hangs_up():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    with pytest.raises(SimulationFailed, match=f"nobody listens at 127.0.0.1:{port}"):
+        drive(staged_rear_end(), External(port=port))
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        threading.Thread(target=lambda: server.accept()[0].close(), daemon=True).start()
+        with pytest.raises(SimulationFailed, match="is gone"):
+            drive(staged_rear_end(), External(port=server.getsockname()[1]))
+
+
+def test_one_door_is_needed_and_not_two():
+    for fields in ({}, {"target": "a:b", "port": 80}):
+        with pytest.raises(ValidationError, match="not both and not neither"):
+            External(**fields)
