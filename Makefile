@@ -9,6 +9,7 @@ SIDE_BY_SIDE = -n $(or $(WORKERS),logical) --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean pages
+.PHONY: docs docs-serve lock licenses sbom
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -59,11 +60,32 @@ train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); 
 qc: .venv-qc/.ready ## ASAM's checkers over RUNS=runs
 	.venv-qc/bin/python deploy/qc.py $(or $(RUNS),runs)
 
+docs: setup ## the documentation as a site in site/, links checked
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint deploy/constraints.txt -e '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
+docs-serve: docs ## the same at http://127.0.0.1:8000, rebuilt while you write
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs serve --livereload
+
+.venv-tools/.ready:
+	$(PYTHON) -m venv .venv-tools
+	.venv-tools/bin/python -m pip install --quiet --disable-pip-version-check pip-licenses==5.5.5 cyclonedx-bom==7.5.0
+	@touch $@
+
+lock: setup ## deploy/requirements.lock: every package of the image with version and digest
+	$(BIN)/python -m deploy.lock
+
+licenses: setup .venv-tools/.ready ## licenses.csv: every installed package with version and licence
+	.venv-tools/bin/pip-licenses --python $(BIN)/python --format csv --with-urls --output-file licenses.csv
+
+sbom: setup .venv-tools/.ready ## sbom.json: every installed package, in CycloneDX's form
+	.venv-tools/bin/cyclonedx-py environment $(BIN)/python --output-file sbom.json
+
 pages: setup ## headless Chromium looks at MLflow's pages (DATABASE=runs/mlflow.db EXPERIMENT=study/alpha SHOTS=folder)
 	$(BIN)/python deploy/pages.py $(or $(DATABASE),runs/mlflow.db) $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(SHOTS),--shots $(SHOTS))
 
 clean: ## remove environments and caches, never results
-	rm -rf $(VENV) .venv-qc .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) .venv-qc .venv-tools site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
 test-hosts: setup ## a study on two hosts that lose network and power (Linux, root, PostgreSQL and iproute2; else skipped)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,hosts]' 'moto[s3]>=5.1'

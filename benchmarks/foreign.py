@@ -90,7 +90,7 @@ def _try(file: Path, maps: Sequence[Path], esmini: Path | None) -> Tried:
             played, _ = play_file(sets[i], maps, STEP_S if esmini else 0.05, UNTIL_S)
             tried.notes.update(note.what for note in played.notes)
             if esmini and "<Stochastic" not in text:
-                _compare(tried, played, sets[i], (file, i) if sets[i].name else None, esmini)
+                _compare(tried, played, sets[i], (file, i) if sets[i].name else None, (esmini, maps))
     except SgcadError as fault:
         tried.refused = str(fault)
         tried.element = _element(fault)
@@ -104,8 +104,15 @@ def _element(fault: SgcadError) -> str:
     return where.split(" ")[0].strip("<>") if where else type(fault).__name__
 
 
-def _compare(tried: Tried, played: Played, variation: Variation, of: tuple[Path, int] | None, esmini: Path) -> None:
-    theirs = judged(esmini, variation, of, STEP_S, UNTIL_S)
+def _compare(
+    tried: Tried,
+    played: Played,
+    variation: Variation,
+    of: tuple[Path, int] | None,
+    judge: tuple[Path, Sequence[Path]],
+) -> None:
+    """`judge`: its binary, and folders of maps."""
+    theirs = judged(judge[0], variation, of, STEP_S, UNTIL_S, judge[1])
     found = apart(played, theirs.motion, STEP_S) if theirs.motion else None
     if found is None:
         tried.judge = theirs.why_not or "no entity in common"

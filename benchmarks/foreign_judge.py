@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -40,15 +40,21 @@ class Judged(NamedTuple):
 
 
 def judged(
-    esmini: Path, variation: Variation, distribution: tuple[Path, int] | None, dt_s: float, until_s: float
+    esmini: Path,
+    variation: Variation,
+    distribution: tuple[Path, int] | None,
+    dt_s: float,
+    until_s: float,
+    maps: Sequence[Path] = (),
 ) -> Judged:
-    """Run the judge. `distribution`: the file of parameter sets and the number of the set."""
+    """Run the judge. `distribution`: the file of parameter sets and the number of the set; `maps`: folders of maps that
+    the scenario may name, also without the ending (as CARLA's do)."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "out.csv"
         command = [
             str(esmini), "--osc", str(variation.file.resolve()), "--headless", "--fixed_timestep", f"{dt_s:g}",
             "--csv_logger", str(log), "--disable_stdout", "--logfile_path", str(Path(folder) / "log.txt"),
-            "--traj_filter", "0", "--disable_controllers",
+            "--traj_filter", "0", "--disable_controllers", "--path", str(_linked(maps, Path(folder) / "maps")),
         ]  # fmt: skip
         if distribution:
             command += ["--param_dist", str(distribution[0].resolve()), "--param_permutation", str(distribution[1])]
@@ -57,6 +63,15 @@ def judged(
         motion = _motion(logs[0], until_s) if logs else {}
         words = _last_error(Path(folder) / "log.txt")
     return Judged(motion, "" if motion else words or ending)
+
+
+def _linked(maps: Sequence[Path], folder: Path) -> Path:
+    """A folder with the maps by name and by stem."""
+    folder.mkdir()
+    for file in (file for place in maps for file in sorted(place.glob("*.xodr"))):
+        for name in {file.name, file.stem}:
+            (folder / name).symlink_to(file.resolve())
+    return folder
 
 
 def _run(command: list[str], folder: Path, until_s: float) -> str:

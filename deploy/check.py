@@ -62,6 +62,10 @@ class Stage:
     def variables(self, name: str, service: Mapping[str, Any]) -> dict[str, str]:
         """A service's environment, beside what programs need of ours."""
         asked = {key: self.local(str(value)) for key, value in (service.get("environment") or {}).items()}
+        if file := asked.get("MLFLOW_AUTH_CONFIG_PATH"):  # its folder is the volume's
+            text = self.local((settings.ROOT / file).read_text(encoding="utf-8"))
+            asked["MLFLOW_AUTH_CONFIG_PATH"] = str(self.folder / "mlflow_auth.ini")
+            Path(asked["MLFLOW_AUTH_CONFIG_PATH"]).write_text(text, encoding="utf-8")
         if name == "worker":
             asked["PREFECT_WORKER_WEBSERVER_PORT"] = str(self.ports["worker:8080"])
         kept = ("PATH", "HOME", "LANG", "LD_LIBRARY_PATH", "VIRTUAL_ENV")
@@ -82,7 +86,9 @@ def check(folder: Path) -> Iterator[str]:
     """Start everything, telling of each service as it is well. Raises MissingTool at the first that is not."""
     needs()
     password, key = secrets.token_hex(12), f"sgcad:{secrets.token_hex(12)}"
-    stage = Stage(folder, {"POSTGRES_PASSWORD": password, "PREFECT_AUTH": key, "SERVER_PORT": "4200"})
+    stage = Stage(
+        folder, {"POSTGRES_PASSWORD": password, "MLFLOW_PASSWORD": password, "PREFECT_AUTH": key, "SERVER_PORT": "4200"}
+    )
     found = compose.services(stage.environment)
     (folder / "data").mkdir()
     with ExitStack() as stack:
@@ -184,7 +190,10 @@ def _report(stage: Stage, key: str) -> Iterator[str]:
             f"the report in the inbox was not done; the worker says:\n{_last(stage.folder / 'worker.log')}"
         )
     found = f"http://127.0.0.1:{stage.ports['mlflow:5000']}/api/2.0/mlflow/experiments/get-by-name"
-    answer = httpx.get(found, params={"experiment_name": "sgcad"}, timeout=ASK_S)
+    asked = {"experiment_name": "sgcad"}
+    if httpx.get(found, params=asked, timeout=ASK_S).status_code != httpx.codes.UNAUTHORIZED:
+        raise MissingTool("MLflow answers without a login")
+    answer = httpx.get(found, params=asked, timeout=ASK_S, auth=("sgcad", stage.environment["MLFLOW_PASSWORD"]))
     if answer.status_code != httpx.codes.OK:
         raise MissingTool(f"MLflow has no experiment of the report: {answer.text[:500]}")
     yield "a report in the inbox became a scenario, and MLflow has it"

@@ -21,7 +21,7 @@ from pathlib import Path
 import httpx
 import psutil
 
-from deploy import services
+from deploy import inbox, services
 from deploy.serve import serve
 from deploy.services import Ports, Service
 from flows.deployments import health
@@ -38,7 +38,7 @@ LOOK_S = 0.5
 DEPLOYED = "deployed.yaml"
 
 
-def wanted(out: Path, ports: Ports, limit: int = 2) -> tuple[Service, ...]:
+def wanted(out: Path, ports: Ports, limit: int = 3) -> tuple[Service, ...]:
     """The services of one machine, in the order in which they start."""
     home = health.services_folder(out) / "prefect"
     artifacts = (out / "mlflow-artifacts").as_uri()
@@ -51,7 +51,7 @@ def wanted(out: Path, ports: Ports, limit: int = 2) -> tuple[Service, ...]:
 
 
 # ------------------------------------------------------------------ up
-def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
+def up(out: Path, ports: Ports, limit: int = 3) -> dict[str, Running]:
     """Start what does not run, deploy, wait until all are well. Raises ConfigError (port), MissingTool (start)."""
     out = out.resolve()
     with _alone(health.services_folder(out)) as folder:
@@ -65,6 +65,7 @@ def up(out: Path, ports: Ports, limit: int = 2) -> dict[str, Running]:
             _deploy(folder, api)
         _start_and_wait([s for s in missing if s.name == "worker"], folder)
         _wait_for_worker(api, folder)
+        inbox.begin(api)
         return health.noted(folder)
 
 
@@ -160,6 +161,8 @@ def down(out: Path) -> list[str]:
     """End what runs, the worker first; names of what was ended. Results and logs stay."""
     with _alone(health.services_folder(out.resolve())) as folder:
         there = health.noted(folder)
+        if "server" in there and there["server"].alive():
+            inbox.end(f"{there['server'].address}/api")
         ended = []
         for name in sorted(there, key=["worker", "mlflow", "server"].index):
             if there[name].alive():
@@ -210,7 +213,7 @@ def _asked(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Services on this machine.")
     parser.add_argument("what", choices=("up", "down", "status"))
     parser.add_argument("--out", type=Path, default=Path("runs"), help="results, databases, logs")
-    parser.add_argument("--limit", type=int, default=2, help="flow runs at a time")
+    parser.add_argument("--limit", type=int, default=3, help="flow runs at a time; one of them watches the inbox")
     for name in ("server", "mlflow", "worker"):
         parser.add_argument(f"--{name}-port", type=int, default=getattr(Ports(), name))
     return parser.parse_args(arguments)
@@ -223,6 +226,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.what == "up":
             found = up(asked.out, Ports(asked.server_port, asked.mlflow_port, asked.worker_port), asked.limit)
             status(asked.out)
+            _say(f"inbox: {inbox.place()}: drop .txt, .xml, .pdf or a folder a case; looked at every second")
+            _say(f"results: {asked.out.resolve()}; reports go to done/, refused/, failed/, unread/ with outcome.json")
             _say(f"export PREFECT_API_URL={found['server'].address}/api")
         elif asked.what == "down":
             _say(f"ended: {', '.join(down(asked.out)) or 'nothing ran'}")

@@ -156,7 +156,7 @@ def across_the_centerline() -> None:
     s.car(125, 60, 180, "V2", BLUE, 52)
     s.arrow((125, 88), (128, 150), (160, 220))
     s.car(165, 250, 172, "V2", BLUE, 52)
-    s.car(238, 380, 125, "V1", RED)
+    s.car(214, 400, 326, "V1", RED)  # where the replay ends: turned counterclockwise, off the north edge
     s.arrow((240, 40), (278, 40))
     s.text(288, 40, "N", 14, center=True)
     s.text(8, 590, "rural road", 12)

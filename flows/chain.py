@@ -201,7 +201,7 @@ class _Run:
         if self.execution:
             store.write_trajectories(folder / "trajectories.csv", self.execution.trajectories)
         if self.metrics is not None:
-            self._drive(folder, record)
+            self._hand_over(folder, record)
             store.write_json(folder / "metrics.json", self.metrics)
         if self.trace:
             (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
@@ -212,13 +212,19 @@ class _Run:
         store.write_json(folder / "result.json", result)
         return result
 
-    def _drive(self, folder: Path, record: CaseRecord) -> None:
-        """Hand the executed scenario to the config's drivers; what came of it stands under `drive` in the metrics."""
-        if self.config.drive and self.metrics is not None and record.scenario and record.network and self.execution:
-            from flows.drives.stage import driven
+    def _hand_over(self, folder: Path, record: CaseRecord) -> None:
+        """What the contact was like, and what the config's drivers made of it (`drive`), into the metrics."""
+        if self.metrics is None or not (
+            record.scenario and record.network and record.network.net_xml and self.execution
+        ):
+            return
+        from flows.drives import stage
 
+        with self._clock("measure"):
+            self.metrics["exact"] |= stage.contact(record)
+        if self.config.drive:
             with self._clock("drive"):
-                self.metrics["drive"] = driven(self.config.drive, record, folder)
+                self.metrics["drive"] = stage.driven(self.config.drive, record, folder)
 
     def _draw(self, folder: Path, record: CaseRecord) -> None:
         """player.html and picture.png of an executed case."""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from flows.drives.commands import drive
+from flows.drives.commands import drive, vary
 from flows.index import index_app
 from flows.plugin_commands import plugins_app
 from flows.results.commands import report, score, table
@@ -225,6 +225,7 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
 
 
 app.command()(drive)
+app.command()(vary)
 app.command()(table)
 app.command()(report)
 app.command()(score)

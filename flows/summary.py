@@ -15,6 +15,7 @@ from flows.batch import Batch, Job
 from flows.chain import Ending
 from flows.store import CaseFolder
 from flows.terminal import escape
+from sgcad_core.narrative.limits import BEYOND
 from sgcad_core.result import STATUSES
 
 MAX_REASONS = 10
@@ -65,7 +66,7 @@ def show(tally: Tally) -> None:
     console.width = max(console.width, TABLE_WIDTH)
     console.print(_table(tally))
     judging.show(console, {c.name: [e.result for e in tally.of(c.name)] for c in tally.batch.configs})
-    for line in [*_reasons(tally), *single.lines([ending.result for _, ending in tally.endings])]:
+    for line in [*_reasons(tally), *_limits(tally), *single.lines([ending.result for _, ending in tally.endings])]:
         console.print(escape(line), soft_wrap=True)
     console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)
     if page := tally.first_player():
@@ -97,6 +98,15 @@ def _realised(endings: list[Ending]) -> str:
 def _seconds(endings: list[Ending]) -> str:
     spent = [sum(e.result["seconds"].values()) for e in endings]
     return f"{sum(spent) / len(spent):.2f}" if spent else "-"
+
+
+def _limits(tally: Tally) -> list[str]:
+    """What of the reports was beyond a limit of ours, the first few; of one case its notes are told anyway."""
+    if len(tally.endings) < 2:
+        return []
+    told = [f"{job.name}: {note}" for job, e in tally.endings for note in e.result["notes"] if note.startswith(BEYOND)]
+    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
+    return [line[:400] for line in told[:MAX_REASONS]] + more
 
 
 def _reasons(tally: Tally) -> list[str]:

@@ -30,19 +30,36 @@ from sgcad_core.interfaces import Plugin
 OnEnding = Callable[[Job, Ending, str], None]
 """Told of every case as it ends, from one thread; the text says why it could not be tracked, if it could not."""
 
+GIVE_UP_AFTER = 2
+"""Cases in a row that could not be logged, each after a database's own patience; the next run logs the rest."""
+_failed: dict[str, int] = {}
+"""Failures in a row, by tracker."""
+
 OPEN = ".tracking"
 """In a config's folder while its tracker waits for more cases."""
 
 
 def track_safely(job: Job, ending: Ending) -> str:
     """`track`; why it failed, or an empty text. Raises ConfigError: a tracker that can never work."""
+    mark = job.config.tracker.model_dump_json()
+    if _failed.get(mark, 0) >= GIVE_UP_AFTER:
+        return "not tried, since the cases before it could not be logged"
     try:
         track(job, ending)
     except SgcadError:
         raise
     except Exception as fault:  # noqa: BLE001 - the case is safe on disk: a locked database must not end the batch
-        return f"{type(fault).__name__}: {fault}"
+        _failed[mark] = _failed.get(mark, 0) + 1
+        return plainly(fault)
+    _failed.pop(mark, None)
     return ""
+
+
+def plainly(fault: Exception) -> str:
+    """A tracker's fault in one line; of a database's, what the database itself says and not the statement."""
+    lines = [line.strip() for line in str(fault).splitlines() if line.strip()]
+    said = next((line for line in lines if "Error) " in line), lines[0] if lines else "")
+    return f"{type(fault).__name__}: {said}"[:300]
 
 
 def track(job: Job, ending: Ending) -> None:
@@ -82,6 +99,7 @@ def following(plan: Sequence[Job]) -> Iterator[None]:
 
     A config whose cases are all tracked is not told again.
     """
+    _failed.clear()
     arms = [(jobs[0], _arm(jobs)) for jobs in _by_config(plan) if not all(tracked(job) for job in jobs)]
     for job, arm in arms:
         _open(job).parent.mkdir(parents=True, exist_ok=True)
@@ -106,7 +124,7 @@ def _safely(job: Job, tell: Callable[[], None]) -> bool:
         raise
     except Exception as fault:  # noqa: BLE001 - the cases are safe on disk: a locked database must not end the batch
         told = logging.getLogger(__name__)
-        told.warning("%s: tracking, %s: %s; run again to mend it", job.config.name, type(fault).__name__, fault)
+        told.warning("%s: tracking, %s; run again to mend it", job.config.name, plainly(fault))
         return False
     return True
 

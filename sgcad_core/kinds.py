@@ -8,7 +8,7 @@ its rule.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 JunctionKind = Literal["none", "roundabout", "parking_lot", "t", "four_leg", "driveway", "ramp"]
 RoadKind = Literal["road", "driveway", "ramp"]
@@ -17,6 +17,15 @@ Maneuver = Literal[
     "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
     "departing_road_left", "departing_road_right", "backing", "other",
 ]  # fmt: skip
+T: Final = "t"
+FOUR_LEG: Final = "four_leg"
+ROUNDABOUT: Final = "roundabout"
+PARKING_LOT: Final = "parking_lot"
+DRIVEWAY: Final = "driveway"
+RAMP: Final = "ramp"
+"""Names of junctions and roads for code that treats one of them apart; no other module spells them (a test looks)."""
+JOINING: Final = (DRIVEWAY, RAMP)
+"""Roads that lead to or from a street and are told of by a word alone."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +51,7 @@ class Junction:
     @property
     def meets(self) -> bool:
         """Whether it has a leg that one of two roads may lack: a stem, or both legs of the crossing road."""
-        return self.legs > 2 and self.stem != "ramp"
+        return self.legs > 2 and self.stem != RAMP
 
 
 JUNCTIONS: tuple[Junction, ...] = (

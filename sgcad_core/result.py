@@ -13,6 +13,7 @@ from sgcad_core.execution.contact import realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.narrative.limits import beyond
 from sgcad_core.records import (
     ActorInfo,
     Execution,
@@ -89,7 +90,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "sentences": _sentences(record.reading),
         "facts": [fact.model_dump(mode="json") for fact in facts_of(record)],
         "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
-        "notes": [*record.notes, *_stage_notes(record)],
+        "notes": [*record.notes, *(beyond(record.reading) if record.reading else ()), *_stage_notes(record)],
     }
 
 

@@ -20,6 +20,7 @@ from pydantic import (
     model_serializer,
 )
 
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 
@@ -177,7 +178,7 @@ class Access(Spec):
     leg: Compass
     side: Literal["left", "right", "both"] = Field(description="as one drives towards the hub")
     distance_m: Annotated[float, Field(ge=15, le=150)] = 40.0
-    kind: RoadKind = "driveway"
+    kind: RoadKind = DRIVEWAY
     lanes_in: Lanes = 1
     lanes_out: Lanes = 1
     control: Literal["none", "signal", "stop", "yield"] = "none"

@@ -43,23 +43,25 @@ def inbox_flow(
     settle_s: float = 10.0,
     lease_s: float = 120.0,
     wait_s: float = 30.0,
+    watch_s: float = 0.0,
 ) -> dict[str, int]:
     """Turn what lies at an address into scenarios; how many ended how.
 
     `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as whole when
     nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
-    when the inbox is empty or nothing could be taken for `wait_s`.
+    when the inbox is empty or nothing could be taken for `wait_s`, but not before `watch_s` have passed.
     """
     address, named = inbox_address(address), overrides_of(overrides)
     batch_of((), [Path(config)], Path(out), named, jobs)  # a faulty config claims nothing
-    if min(settle_s, wait_s) < 0 or lease_s <= 0 or portion < 1:
+    if min(settle_s, wait_s, watch_s) < 0 or lease_s <= 0 or portion < 1:
         raise ConfigError(
-            f"settle_s {settle_s}, wait_s {wait_s} below 0, or lease_s {lease_s}, portion {portion} not above"
+            f"settle_s {settle_s}, wait_s {wait_s}, watch_s {watch_s} must not be below 0, "
+            f"lease_s {lease_s}, portion {portion} not below or at 0"
         )
     place = Place(address)
     with tempfile.TemporaryDirectory(prefix="sgcad-inbox-") as staging:
-        intake = Intake(place, Claims(place, lease_s), Path(staging), settle_s, config)
-        return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s)
+        intake = Intake(place, Claims(place, lease_s), Path(staging), settle_s, config, Path(out))
+        return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s, watch_s)
 
 
 def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | None) -> Do:
@@ -87,7 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", default="runs")
     parser.add_argument("--jobs", type=int)
     parser.add_argument("--portion", type=int, default=PORTION)
-    for name, value in (("settle", 10.0), ("lease", 120.0), ("wait", 30.0)):
+    for name, value in (("settle", 10.0), ("lease", 120.0), ("wait", 30.0), ("watch", 0.0)):
         parser.add_argument(f"--{name}-s", type=float, default=value)
     asked = vars(parser.parse_args(arguments))
     sys.stdout.write(json.dumps(inbox_flow(**asked)) + "\n")

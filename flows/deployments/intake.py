@@ -27,11 +27,14 @@ from flows.deployments.claims import ALONE_FROM, MAX_TAKES, Claim, Claims
 from flows.deployments.place import HIDDEN, Entry, Place, Stamp
 
 LEDGER = f"{HIDDEN}/ledger"
-APART = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed"}
-"""Status of a case -> folder its report is moved to."""
+UNREAD = "unread"
+APART = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed", UNREAD: UNREAD}
+"""Status of a case -> folder its report is moved to; `unread`: nothing that we read."""
 UNFINISHED = (".part", ".partial", ".tmp", ".temp", ".crdownload", ".filepart", ".swp", "~")
 """Names that programs give to files they have not finished."""
 LITTER_S = 3600.0
+LOOK_S = 1.0
+"""Between two looks at an inbox that is watched."""
 
 OnResult = Callable[[Case, dict[str, Any]], None]
 Do = Callable[[Sequence[Case], OnResult], None]
@@ -55,19 +58,26 @@ class Intake:
     staging: Path
     settle_s: float = 10.0
     config: str = ""
+    out: Path = Path("runs")
     counts: Counter[str] = field(default_factory=Counter)
     _seen: dict[str, tuple[tuple[Stamp, ...], float]] = field(default_factory=dict)
     _digests: dict[Entry, str] = field(default_factory=dict)
 
-    def work(self, do: Do, portion: int, wait_s: float) -> dict[str, int]:
-        """Take and do reports until none is left, or nothing could be taken for `wait_s`; counts by status."""
+    def work(self, do: Do, portion: int, wait_s: float, watch_s: float = 0.0) -> dict[str, int]:
+        """Take and do reports until none is left, or nothing could be taken for `wait_s`; counts by status.
+
+        However empty it is, new ones are looked for until `watch_s` have passed.
+        """
         self.place.sweep(LITTER_S, time.time())
-        patience = time.monotonic() + wait_s
+        patience, watched = time.monotonic() + wait_s, time.monotonic() + watch_s
         with self.claims.beating():
             while True:
+                self.put_unread_apart()
                 if taken := self.take(portion):
                     self._do(taken, do)
                     patience = time.monotonic() + wait_s
+                elif time.monotonic() < watched:
+                    time.sleep(LOOK_S)
                 elif not any(_is_report(e) for e in self._waiting()) or time.monotonic() >= patience:
                     self.claims.drop_dead(lambda digest: self._outcome(digest) is not None)
                     return self._counts_now()
@@ -87,6 +97,26 @@ class Intake:
             for rest in mine.values():
                 self.claims.release(rest.claim)
                 _unstage(rest)
+
+    def put_unread_apart(self) -> None:
+        """Move what no reader reads beside the reason, so that its sender is not left waiting."""
+        for entry in self._waiting():
+            if _is_report(entry) or entry.name.lower().endswith(UNFINISHED) or not self._is_settled(entry):
+                continue
+            suffix = PurePosixPath(entry.name).suffix or "no suffix"
+            reason = (
+                f"{entry.name} cannot be read ({suffix}): give {', '.join(sorted(SUFFIXES))}, or a folder with "
+                "report.txt and a diagram; a .docx or an e-mail is saved as .txt or .pdf first"
+            )
+            outcome = {
+                "status": UNREAD,
+                "reason": reason,
+                "missing": [],
+                "case": safe_id(entry.name),
+                "name": entry.name,
+            }
+            if self._put_apart(entry, outcome):
+                self.counts[UNREAD] += 1
 
     # ------------------------------------------------------------------ taking
     def take(self, count: int) -> list[Taken]:
@@ -182,6 +212,7 @@ class Intake:
             "config": self.config,
             "digest": taken.claim.digest,
             "name": taken.entry.name,
+            "result": self._result_of(taken.case, result),
         }
         if outcome["status"] != "failed":  # a failed one may be dropped again
             self.place.create(f"{LEDGER}/{taken.claim.digest}.json", _json(outcome))
@@ -189,6 +220,11 @@ class Intake:
         self._put_apart(taken.entry, outcome)
         self.claims.release(taken.claim)
         self.counts[str(outcome["status"])] += 1
+
+    def _result_of(self, case: Case, result: dict[str, Any]) -> str | None:
+        """The folder that holds what became of a case; None where nothing was written."""
+        config = result.get("config")
+        return str(self.out.resolve() / str(config) / case.id) if config else None
 
     def _put_apart(self, entry: Entry, outcome: dict[str, Any]) -> bool:
         """Move a report beside its outcome, unless it was written anew or another worker has moved it."""

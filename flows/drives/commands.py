@@ -81,3 +81,26 @@ def _given(entries: list[str]) -> dict[str, str]:
     if wrong := next((e for e in entries if "=" not in e), None):
         raise ConfigError(f"--role-of {wrong}: write ACTOR=ROLE, such as V1=responder")
     return dict(e.split("=", 1) for e in entries)
+
+
+def vary(
+    cases: Cases,
+    count: Annotated[int, typer.Option("-n", "--count", min=1, max=10_000, help="Members of each family.")] = 200,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Equal seeds give equal families.")] = 1,
+    driver: Annotated[str, typer.Option("--driver", "-d", help="Look for the hardest ones for this driver.")] = "",
+    role: Annotated[str, typer.Option("--role", help="Whom it drives.")] = "responder",
+    role_of: RoleOf = None,
+) -> None:
+    """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
+    from flows.drives.families import family_of
+    from flows.drives.families import vary as write
+    from flows.drives.reading import case_folders
+    from sgcad_core.config import driver_entry
+
+    entry = driver_entry(_yaml(driver)) if driver else None
+    roles = _roles(role)
+    if len(roles) != 1:
+        raise ConfigError(f"--role {role}: a family is driven in one role; give initiator or responder")
+    for folder in case_folders(cases):
+        place = write(family_of(folder, _given(role_of or [])), count, seed, entry, roles[0])
+        typer.echo(str(place))

@@ -10,6 +10,7 @@ from flows.drives.reading import roles_of
 from flows.drives.running import FOLDER, Order, drive_script
 from sgcad_core.config import DriveStage
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.handover.figures import contact_figures
 from sgcad_core.handover.outcome import OUTCOMES
 from sgcad_core.handover.script import Script
 from sgcad_core.result import CaseRecord
@@ -25,6 +26,11 @@ def driven(stage: DriveStage, record: CaseRecord, folder: Path) -> dict[str, Any
     for told in drive_script(script, order, folder / FOLDER):
         found.setdefault(told["driver"], {})[told["role"]] = _figures(told)
     return found
+
+
+def contact(record: CaseRecord) -> dict[str, Any]:
+    """How hard the scripted contact is, and until when it could have been avoided."""
+    return contact_figures(script_in(record, {}), record.execution.contact if record.execution else None)
 
 
 def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:

@@ -51,6 +51,19 @@ LAYOUTS = (
         "cases; TTC and PET of the cases that have one. Not comparable with published values.", m.EXACT,
     ),
     Layout(
+        "conflict", "What tells the scripted crashes apart", "Of generated cases that touch, in the script, nobody "
+        "reacting. TTC-1s, DRAC-1s: a second before the contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
+        "of both; death: risk; brake by, steer by: the last moment at which it still avoids, of whichever had to act "
+        "first. Drives by drivers stand in the tables of `sgcad drive`.",
+        m.CONFLICT,
+    ),
+    Layout(
+        "driven", "Handed over to a driver", "Arms whose config has one driver in its stage `drive`; shares of driven "
+        "cases, percent, initiators and responders apart (docs/drivers.md). Mitigated: delta-v 10 % and 0.5 m/s under "
+        "the script's; lost: the ego never came into the conflict, no credit. Scripted figures stand elsewhere.",
+        m.DRIVEN,
+    ),
+    Layout(
         "robustness", "Robustness levels", "Network errors as share of generated reports with any error, percent (a "
         "refused case is no network error here).", m.ROBUSTNESS, True,
     ),

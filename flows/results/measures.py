@@ -109,6 +109,26 @@ EXACT = (
         ("critical", "critical"), ("high", "high"), ("moderate_low", "moderate and low"),
     )),
 )  # fmt: skip
+CONFLICT = (
+    Measure("c_ttc", "TTC-1s", "mean", "s", digits=2),
+    Measure("c_drac", "DRAC-1s", "mean", "m/s2", digits=2),
+    Measure("c_exposed", "exposed", "mean", "s", digits=2),
+    Measure("c_closing", "closing", "mean", "m/s", digits=1),
+    Measure("c_delta_v", "delta-v", "mean", "m/s", digits=1),
+    Measure("c_risk", "death", "mean", "%", digits=1),
+    Measure("c_brake", "brake by", "mean", "s", digits=2),
+    Measure("c_steer", "steer by", "mean", "s", digits=2),
+)
+DRIVEN = tuple(
+    measure
+    for role, short in (("initiator", "init."), ("responder", "resp."))
+    for measure in (
+        Measure(f"d_{role}_avoided", f"{short} avoided", better="high"),
+        Measure(f"d_{role}_mitigated", f"{short} mitigated"),
+        Measure(f"d_{role}_worse", f"{short} worse", better="low"),
+        Measure(f"d_{role}_lost", f"{short} lost"),
+    )
+)
 ROBUSTNESS = (
     _right("generated", "GSR", "share"),
     Measure("refused", "refused"),
@@ -126,6 +146,11 @@ _EXACT = {
     "x_ttc": "time_to_collision_s", "x_pet": "post_encroachment_time_s", "x_ade": "average_displacement_error_m",
     "x_fde": "final_displacement_error_m",
 }  # fmt: skip
+_CONFLICT = {
+    "c_ttc": "ttc_1_s_before_s", "c_drac": "drac_1_s_before_mps2", "c_exposed": "time_exposed_ttc_s",
+    "c_closing": "collision_speed_mps", "c_delta_v": "delta_v_worst_mps", "c_risk": "fatality_risk",
+    "c_brake": "brake_by_s", "c_steer": "steer_by_s",
+}  # fmt: skip
 
 
 def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
@@ -136,6 +161,8 @@ def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
     if ran.generated:
         found |= dict(_reading(ran.metrics.get("paper", {}), _PAPER, "p"))
         found |= dict(_reading(ran.metrics.get("exact", {}), _EXACT, "x"))
+        found |= dict(_conflict(ran.metrics.get("exact", {})))
+        found |= dict(_driven(ran.metrics.get("drive") or {}))
     return found
 
 
@@ -169,6 +196,23 @@ def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
             if generated:
                 found[f"made_{short}_wrong"] = marks[f"{field}_any"]
     return found
+
+
+def _conflict(figures: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """What tells crashes apart; of a figure by actor the one of whoever had to act first."""
+    for name, key in _CONFLICT.items():
+        value = figures.get(key)
+        if isinstance(value, Mapping):
+            value = max((v for v in value.values() if v is not None), default=None)
+        if value is not None:
+            yield name, float(value)
+
+
+def _driven(drivers: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Outcomes by role, of an arm with one driver; drives that failed are left out."""
+    for role, figures in next(iter(drivers.values())).items() if len(drivers) == 1 else ():
+        if not figures.get("failed"):
+            yield from ((f"d_{role}_{k}", float(figures[k])) for k in ("avoided", "mitigated", "worse", "lost"))
 
 
 def _reading(figures: Mapping[str, Any], names: Mapping[str, str], prefix: str) -> Iterator[tuple[str, float]]:

@@ -17,6 +17,7 @@ from mini.generator.grammar import StatedFacts, clause_of, fill
 from mini.generator.labels import has, plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import WORDS, Actor, Contact, Crash
+from sgcad_core.kinds import DRIVEWAY
 
 BY_MANEUVER = {
     "turn_left": "turn_left",
@@ -61,7 +62,7 @@ def _own_event(crash: Crash, actor: Actor, other: Actor) -> str | None:
 def _encroachment(crash: Crash, culprit: Actor, actor: Actor) -> str | None:
     if crash.config in ("left_lateral", "right_into"):
         leg = crash.leg(culprit.leg)
-        if leg is not None and leg.kind == "driveway":
+        if leg is not None and leg.kind == DRIVEWAY:
             return "from_driveway"
         return "from_side_left" if crash.config == "left_lateral" else "from_side_right"
     if crash.config == "overtaking":

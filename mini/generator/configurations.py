@@ -10,6 +10,7 @@ from random import Random
 
 from mini.generator.vehicles import KIND_WEIGHTS
 from mini.generator.world import OPPOSITE, TURN_OF, Actor, Contact, Crash, pick
+from sgcad_core.kinds import DRIVEWAY, RAMP
 
 
 def _vehicle(rng: Random, leg: int, out: int | None, maneuver: str, purpose: str = "") -> Actor:
@@ -107,7 +108,7 @@ def _out_of_side(rng: Random, crash: Crash, maneuver: str) -> bool:
 
 def rear_end(rng: Random, crash: Crash) -> bool:
     """A vehicle runs into the one ahead; a third may be pushed or follow."""
-    a = _through(crash, rng, main_only=crash.layout == "driveway")
+    a = _through(crash, rng, main_only=crash.layout == DRIVEWAY)
     if a is None:
         return False
     lead = _lead(rng, crash, a)
@@ -239,7 +240,7 @@ def u_turn(rng: Random, crash: Crash) -> bool:
 
 def backing(rng: Random, crash: Crash) -> bool:
     """A vehicle backs out of a driveway."""
-    drive = next(leg.bearing for leg in crash.legs if leg.kind == "driveway")
+    drive = next(leg.bearing for leg in crash.legs if leg.kind == DRIVEWAY)
     b = _on_main(crash, rng)
     crash.actors = [
         _vehicle(rng, drive, rng.choice((drive + 2, drive - 2)), "backing"),
@@ -255,7 +256,7 @@ def backing(rng: Random, crash: Crash) -> bool:
 
 def merge(rng: Random, crash: Crash) -> bool:
     """A vehicle merges from a ramp into a highway lane."""
-    ramp = next(leg.bearing for leg in crash.legs if leg.kind == "ramp")
+    ramp = next(leg.bearing for leg in crash.legs if leg.kind == RAMP)
     a = (ramp + 1) % 8
     if a % 4 != crash.main % 4 or not opens(crash, a + 4) or not crash.leg(a).lanes_in:  # type: ignore[union-attr]
         return False

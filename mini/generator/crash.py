@@ -11,6 +11,7 @@ from random import Random
 from mini.generator import roads
 from mini.generator.configurations import BUILDERS, opens
 from mini.generator.world import Actor, Crash, Leg, pick
+from sgcad_core.kinds import DRIVEWAY
 
 CONFIGS = {
     "crossing": 15.0,
@@ -30,16 +31,16 @@ CONFIGS = {
 }
 LAYOUTS = {
     "crossing": {"four": 9.0, "t": 0.0},
-    "left_opposite": {"four": 5.0, "t": 2.5, "driveway": 1.5},
-    "left_lateral": {"four": 2.5, "t": 4.0, "driveway": 2.5},
-    "right_into": {"four": 2.0, "t": 3.0, "driveway": 2.0},
-    "rear_end": {"plain": 4.5, "four": 3.5, "t": 2.0, "driveway": 1.0},
-    "backing": {"driveway": 1.0},
+    "left_opposite": {"four": 5.0, "t": 2.5, DRIVEWAY: 1.5},
+    "left_lateral": {"four": 2.5, "t": 4.0, DRIVEWAY: 2.5},
+    "right_into": {"four": 2.0, "t": 3.0, DRIVEWAY: 2.0},
+    "rear_end": {"plain": 4.5, "four": 3.5, "t": 2.0, DRIVEWAY: 1.0},
+    "backing": {DRIVEWAY: 1.0},
     "pedestrian": {"plain": 2.0, "four": 2.0, "t": 1.0},
     "merge": {"merge": 1.0},
     "u_turn": {"plain": 3.0, "t": 1.0, "four": 1.0},
     "lane_change": {"plain": 5.0, "four": 1.5, "t": 1.5},
-    "overtaking": {"plain": 2.0, "driveway": 1.0, "t": 1.0},
+    "overtaking": {"plain": 2.0, DRIVEWAY: 1.0, "t": 1.0},
     "head_on": {"plain": 6.5, "t": 1.5, "four": 1.0},
 }
 GLANCED = 0.2
@@ -163,7 +164,7 @@ def _lane_and_speed(rng: Random, crash: Crash, actor: Actor) -> None:
         slow = (
             actor.maneuver.startswith("turn")
             or actor.maneuver in ("u_turn", "backing", "slowing")
-            or leg.kind == "driveway"
+            or leg.kind == DRIVEWAY
         )
         actor.speed = (
             rng.choice((5, 5, 5, 5, 10, 15, 20))

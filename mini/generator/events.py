@@ -19,6 +19,7 @@ from mini.generator.impacts import TRIES, ImpactsMixin
 from mini.generator.labels import has, plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import OPPOSITE, Actor, Crash
+from sgcad_core.kinds import DRIVEWAY
 
 STATES = ("stopped", "slowing")
 """What clauses of an error may say of the other vehicle, as labels and as maneuvers."""
@@ -118,9 +119,9 @@ class EventsMixin(ImpactsMixin):
         """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
         if self.held_out:
             return CRITICAL[key]
-        if self.crash.layout == "driveway" and key == "left_opposite" and self.rng.random() < 0.5:
+        if self.crash.layout == DRIVEWAY and key == "left_opposite" and self.rng.random() < 0.5:
             return turning.INTO
-        turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != "driveway")
+        turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != DRIVEWAY)
         if turns and self.rng.random() < BOUND:
             return turning.ONWARD
         if key == "lane_change" and self.rng.random() < STRAYING:
@@ -154,12 +155,12 @@ class EventsMixin(ImpactsMixin):
 
     def reason(self, key: str, actor: Actor) -> str:
         """What one stands or slows for; of those who turn off a road into a driveway half say so."""
-        leaves = self.crash.layout == "driveway" and not self.crash.is_main(actor.leg)
+        leaves = self.crash.layout == DRIVEWAY and not self.crash.is_main(actor.leg)
         others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
         if others and self.rng.random() < YIELDING:
             slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
             return fill(clause_of(self.rng, turning.YIELDS, False), slots.__getitem__)
-        if key in turning.INTO_WHY and self.crash.layout == "driveway" and not leaves and not self.held_out:
+        if key in turning.INTO_WHY and self.crash.layout == DRIVEWAY and not leaves and not self.held_out:
             options = turning.INTO_WHY[key] if self.rng.random() < 0.5 else motion.WHY[key]
             return plain(self.spoken(self.fitting(options, actor)))
         if key in ("sign", "light"):
@@ -191,7 +192,7 @@ class EventsMixin(ImpactsMixin):
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if turnoffs.suits(clause, self.crash, actor) and (into or not has(clause, "driveway")):
+            if turnoffs.suits(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
         return clause

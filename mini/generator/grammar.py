@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from random import Random
 
 from mini.generator.labels import plain
-from mini.generator.notes import name_of
+from mini.generator.notes import MARKS, name_of
 from mini.generator.records import SLOTS, Group
 
 _CHOICE = re.compile(r"\[([^\[\]]*)\]")
@@ -56,6 +56,7 @@ def fill(clause: str, slot: Fill) -> str:
 
 MARK = 0xE000
 """Private-use letters from here on stand behind the sentences of a report while it is written."""
+_MARKED = re.compile(f"[{chr(MARK)}-{chr(MARK + 0x18FF)}{MARKS}]+")
 
 
 HINT = "~"
@@ -97,18 +98,19 @@ class Written:
 
 def unmark(text: str) -> tuple[str, list[tuple[int, int]], list[tuple[int, list[str]]]]:
     """A text without its marks, (end, number) of every marked sentence and (end, names) of every noted phrase."""
-    out: list[str] = []
     marks: list[tuple[int, int]] = []
     notes: dict[int, list[str]] = {}
-    for letter in text:
-        number, name = ord(letter) - MARK, name_of(letter)
-        if 0 <= number < 0x1900:
-            marks.append((len(out), number))
-        elif name:
-            notes.setdefault(len(out), []).append(name)
-        else:
-            out.append(letter)
-    return "".join(out), marks, list(notes.items())
+    size = end = 0
+    out: list[str] = []
+    for run in _MARKED.finditer(text):
+        out.append(text[end : run.start()])
+        size, end = size + run.start() - end, run.end()
+        for letter in run[0]:
+            if name := name_of(letter):
+                notes.setdefault(size, []).append(name)
+            else:
+                marks.append((size, ord(letter) - MARK))
+    return "".join([*out, text[end:]]), marks, list(notes.items())
 
 
 def sentence(text: str) -> str:

@@ -12,6 +12,7 @@ from mini.generator.lane_lists import split
 from mini.generator.records import Group, slots_of
 from mini.generator.settled import AXIS, FLOW, ROAD, VAGUE
 from mini.generator.world import Crash, Leg
+from sgcad_core.kinds import DRIVEWAY, RAMP
 
 UNCOUNTED = 0.5
 """Share of one-way roads whose lanes nobody counts: in real reports most often there is one."""
@@ -47,8 +48,8 @@ class RoadsMixin:
         leg = legs[0] if legs else self.crash.legs[0]
         if leg.kind != "road" and len(legs) == 1:
             self.stated |= {"layout"}
-            driveway = clause_of(rng, clauses_words.ACCESS["driveway"], False)
-            return driveway if leg.kind == "driveway" else clauses_words.ACCESS["ramp"].side(False)[0]
+            driveway = clause_of(rng, clauses_words.ACCESS[DRIVEWAY], False)
+            return driveway if leg.kind == DRIVEWAY else clauses_words.ACCESS[RAMP].side(False)[0]
         key = f"lanes.{axis % 4}"
         if not bare and (key in self.worded or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:

@@ -10,6 +10,7 @@ from random import Random
 
 from mini.answers import MAX_ACCESSES
 from mini.generator.world import OPPOSITE, TURN_OF, Access, Actor, Crash, Leg, pick
+from sgcad_core.kinds import DRIVEWAY, RAMP
 
 LIMITS = {
     "rural": (35, 40, 45, 45, 50, 55, 55, 55),
@@ -85,7 +86,7 @@ def lane_uses(rng: Random, turns: list[str], lanes: int) -> list[str]:
 def control(rng: Random, legs: list[Leg], main: int) -> None:
     """Signal, signs or nothing, the same way for both legs of a road."""
     lanes = max(leg.lanes_in for leg in legs)
-    drive = any(leg.kind == "driveway" for leg in legs)
+    drive = any(leg.kind == DRIVEWAY for leg in legs)
     weights = {
         "signal": 0.25 + 0.5 * (lanes > 1),
         "stop": 0.9 if lanes <= 2 else 0.4,
@@ -124,7 +125,7 @@ def junction(rng: Random, layout: str, main: int, area: str) -> list[Leg]:
     else:
         legs.append(stem(rng, layout, main))
     bearings = {leg.bearing for leg in legs if leg.lanes_out}
-    if layout != "driveway":
+    if layout != DRIVEWAY:
         add_turn_lanes(rng, legs, bearings, 0.22 if area == "rural" else 0.38)
     control(rng, legs, main)
     return sorted(legs, key=lambda leg: leg.bearing)
@@ -133,8 +134,8 @@ def junction(rng: Random, layout: str, main: int, area: str) -> list[Leg]:
 def stem(rng: Random, layout: str, main: int) -> Leg:
     """The third leg of a T: a side road or a driveway."""
     bearing = (main + rng.choice((2, -2))) % 8
-    if layout == "driveway":
-        return Leg(bearing, kind="driveway")
+    if layout == DRIVEWAY:
+        return Leg(bearing, kind=DRIVEWAY)
     lanes = 2 if rng.random() < 0.1 else 1
     return Leg(bearing, lanes, lanes, limit=rng.choice(LIMITS["urban"]) if rng.random() < 0.5 else None)
 
@@ -142,7 +143,7 @@ def stem(rng: Random, layout: str, main: int) -> Leg:
 def merge(rng: Random, main: int) -> list[Leg]:
     """A highway (one carriageway's direction matters) with an entrance ramp that leans to its approach leg."""
     legs = pair(rng, main, "highway", least=2)
-    ramp = Leg((main + rng.choice((1, -1))) % 8, 1, 0, kind="ramp")
+    ramp = Leg((main + rng.choice((1, -1))) % 8, 1, 0, kind=RAMP)
     ramp.bearing = (main - 1) % 8
     return sorted([*legs, ramp], key=lambda leg: leg.bearing)
 
@@ -161,7 +162,7 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
             leg.bearing,
             rng.choice(("left", "right")),
             rng.choice((30, 40, 40, 60)),
-            rng.choice(("driveway", "driveway", "road")),
+            rng.choice((DRIVEWAY, DRIVEWAY, "road")),
         )
     ]
 
@@ -176,17 +177,17 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     bare = crash.layout in ("t", "four") and not told and rng.random() > NEAR_JUNCTIONS
     found = [] if bare else [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
     free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
-    stem = next((leg.bearing for leg in crash.legs if leg.kind == "driveway"), None)
+    stem = next((leg.bearing for leg in crash.legs if leg.kind == DRIVEWAY), None)
     odds = 0.35 if found or stem is not None else 0.03
     while free and not bare and len(found) < MAX_ACCESSES and rng.random() < odds:
         leg = free.pop(rng.randrange(len(free)))
         side = rng.choice(("left", "right"))
         if stem is not None and rng.random() < 0.6:
             side = "right" if (leg.bearing - 2) % 8 == stem else "left"
-        kind = rng.choice(("driveway", "driveway", "driveway", "road"))
+        kind = rng.choice((DRIVEWAY, DRIVEWAY, DRIVEWAY, "road"))
         found.append(Access(leg.bearing, side, rng.choice((20, 20, 30, 30, 40)), kind, rng.uniform(1.5, 14.0)))
     came = {actor.leg for actor in crash.actors}
-    short = {leg.bearing for leg in crash.legs if leg.kind == "driveway" and rng.random() < 0.5} - came
+    short = {leg.bearing for leg in crash.legs if leg.kind == DRIVEWAY and rng.random() < 0.5} - came
     legs = [replace(leg, mouth=rng.uniform(2.0, 6.0)) if leg.bearing in short else leg for leg in crash.legs]
     return replace(crash, legs=legs, accesses=found)
 

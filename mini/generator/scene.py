@@ -10,12 +10,13 @@ from mini.generator import clauses_scene as scene
 from mini.generator import conditions, words
 from mini.generator.grammar import choose, sided
 from mini.generator.junction_phrases import JunctionMixin
-from mini.generator.labels import has, plain
+from mini.generator.labels import has, mark, plain
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
 from mini.generator.records import Group, slots_of
 from mini.generator.settled import AXIS, FLOW, ROAD, STEM
 from mini.generator.world import WORDS, Leg
+from sgcad_core.kinds import DRIVEWAY
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
 _DARK = ("early morning", "evening", "evening", "night", "night", "late evening")
@@ -93,13 +94,13 @@ class SceneMixin(JunctionMixin):
         kinds = {
             "four": scene.OPENING_JUNCTION,
             "t": scene.OPENING_JUNCTION,
-            "driveway": scene.OPENING_DRIVEWAY,
+            DRIVEWAY: scene.OPENING_DRIVEWAY,
             "merge": scene.OPENING_MERGE,
         }
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
-        if self.crash.layout == "driveway" and not self.held_out and self.rng.random() < PASSED_OVER:
+        if self.crash.layout == DRIVEWAY and not self.held_out and self.rng.random() < PASSED_OVER:
             return self._of_road(scene.OPENING_PLAIN, main)
-        if self.crash.layout in ("driveway", "merge", "four"):
+        if self.crash.layout in (DRIVEWAY, "merge", "four"):
             self.stated.add("layout")
         group = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         options: Sequence[str] = group.without(self.held_out, ["two"] * self.crash.alone)
@@ -110,9 +111,10 @@ class SceneMixin(JunctionMixin):
     def _of_road(self, options: Group | Sequence[str], main: int) -> list[str]:
         """A sentence on the road of an actor, true of it: of limits that there are, of curves; none if no clause is."""
         untrue = self._untrue() + ["two"] * (self.crash.alone and not self.held_out)
-        unset = [slot for slot in ("lim", "lim2") if self._limit_of(slot) is None]
-        clauses = sided(options, self.held_out)
-        true = [c for c in clauses if not (any(has(c, label) for label in untrue) or set(unset) & set(slots_of(c)))]
+        letters = [mark(label) for label in untrue]
+        unset = {slot for slot in ("lim", "lim2") if self._limit_of(slot) is None}
+        clauses = (c for c in sided(options, self.held_out) if not any(letter in c for letter in letters))
+        true = [c for c in clauses if not unset.intersection(slots_of(c))]
         if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
             true = [clause for clause in true if "axis" in slots_of(clause) or not has(clause, "last_road")]
         self.of_road = True
@@ -235,7 +237,7 @@ class SceneMixin(JunctionMixin):
         access = self.crash.accesses[0]
         self.stated.add("access")
         side = (access.leg + 4 + (2 if access.side == "right" else -2)) % 8
-        kind = "driveway" if access.kind == "driveway" else "side street"
+        kind = DRIVEWAY if access.kind == DRIVEWAY else "side street"
         place = "[crash|intersection|impact]" if self.crash.layout in ("four", "t") else "[crash|impact]"
         clause = f"There [was|is] a {{acc}} on the {{accdir}} side of the road[way|] {{accleg}} of the {place}"
         return [self.say([clause], acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mini.generator.labels import has
 from mini.generator.settled import VAGUE
 from mini.generator.world import Actor, Crash
+from sgcad_core.kinds import DRIVEWAY
 
 
 def suits(text: str, crash: Crash, actor: Actor) -> bool:
@@ -17,17 +18,17 @@ def suits(text: str, crash: Crash, actor: Actor) -> bool:
         return False
     if crash.layout != "four" and has(text, "four_legs"):
         return False
-    if crash.layout == "driveway":
+    if crash.layout == DRIVEWAY:
         return not has(text, "street")
     if crash.layout not in ("four", "t"):
         return True
     stops = bool(controls & {"stop", "flashing", "signal"})
-    return not has(text, "driveway") and (not has(text, "stop_line") or stops)
+    return not has(text, DRIVEWAY) and (not has(text, "stop_line") or stops)
 
 
 def facts_beside(text: str, crash: Crash) -> set[str]:
     """Facts of the roads that the words tell beside their own: that there is a driveway, a signal or a stop sign."""
-    found = {"layout"} if crash.layout == "driveway" and has(text, "leaves") else set()
+    found = {"layout"} if crash.layout == DRIVEWAY and has(text, "leaves") else set()
     if has(text, "sign") and any(leg.control == "stop" for leg in crash.legs):
         found |= met("sign", crash)
     return found | (met("light", crash) if has(text, "signal") else set())

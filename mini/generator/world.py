@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from random import Random
 
 from mini.answers import COMPASS as COMPASS
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.language import values
 
 _WORD_OF = {point: word for word, point in values("compass").items()}
@@ -57,7 +58,7 @@ class Access:
     leg: int
     side: str
     distance_m: int
-    kind: str = "driveway"
+    kind: str = DRIVEWAY
     mouth: float | None = None
     """Metres of it that a drawing shows beyond the curb, open at its end; None: a closed stub."""
 

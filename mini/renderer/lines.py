@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mini.generator.world import Actor, Crash, Leg
+from sgcad_core.kinds import DRIVEWAY
 
 Points = NDArray[np.float64]
 LANE = 3.6
@@ -35,7 +36,7 @@ class Band:
     @property
     def lane(self) -> float:
         """Lane width."""
-        return 2.8 if self.leg.kind == "driveway" else self.wide
+        return 2.8 if self.leg.kind == DRIVEWAY else self.wide
 
     @property
     def middle(self) -> float:

@@ -17,7 +17,7 @@ from plugins.road_writer.template import Template
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.kinds import JunctionKind
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JunctionKind
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import axis_of
@@ -80,9 +80,9 @@ def with_junction(facts: RoadFacts, legs: Sequence[Leg]) -> RoadFacts:
     if not sides:
         return facts
     stem, side = next(iter(sides.items()))
-    kind: JunctionKind = "four_leg" if len(sides) == 2 else "driveway" if side.kind == "driveway" else "t"
+    kind: JunctionKind = FOUR_LEG if len(sides) == 2 else DRIVEWAY if side.kind == DRIVEWAY else "t"
     cross = RoadFact(axis_of(stem), "road", LaneFacts(total=side.lanes_in + side.lanes_out), (), cross=True)
-    junction = JunctionFacts(kind, None if kind == "four_leg" else stem)
+    junction = JunctionFacts(kind, None if kind == FOUR_LEG else stem)
     return replace(facts, roads=(*facts.roads, cross), junction=junction)
 
 

@@ -13,6 +13,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from plugins.road_writer._maps import compiled, library, nearest
+from sgcad_core import kinds
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
@@ -85,8 +86,8 @@ def layout_of_scene(scene: SceneLayout) -> RoadLayout:
             joining = [_cross(scene, COMPASS[(ahead + 2) % 8], True), _cross(scene, COMPASS[(ahead + 6) % 8], False)]
         case "t_junction":
             joining = [_cross(scene, _bearing(scene, 2), True)]
-        case "driveway":
-            joining = [_cross(scene, _bearing(scene, 2), True).model_copy(update={"kind": "driveway"})]
+        case kinds.DRIVEWAY:
+            joining = [_cross(scene, _bearing(scene, 2), True).model_copy(update={"kind": kinds.DRIVEWAY})]
         case "merge":
             joining = [_ramp(scene, _bearing(scene, 3))]
     legs = {leg.bearing: leg for leg in [*joining, *main]}  # a joining road on the main road's bearing is the main road
@@ -113,7 +114,7 @@ def _cross(scene: SceneLayout, bearing: Compass, inward: bool) -> Leg:
 
 
 def _ramp(scene: SceneLayout, bearing: Compass) -> Leg:
-    return Leg(bearing=bearing, lanes_in=scene.cross_lanes, lanes_out=0, kind="ramp")
+    return Leg(bearing=bearing, lanes_in=scene.cross_lanes, lanes_out=0, kind=kinds.RAMP)
 
 
 def _bearing(scene: SceneLayout, default: int) -> Compass:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.doubts import least_doubted
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
@@ -17,6 +18,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
+from sgcad_core.narrative.reading import Reading
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import RoadSpec
 
@@ -25,11 +27,13 @@ class Rules(ScenarioWriter):
     """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
-    version: ClassVar[str] = "2"
+    version: ClassVar[str] = "3"
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
     encoding: Encoding = DEFAULT_ENCODING
     """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
+    try_others: bool = True
+    """Plan readings that differ in one weak fact where our own checks doubt the first, and keep the least doubted."""
 
     def write(
         self,
@@ -42,18 +46,29 @@ class Rules(ScenarioWriter):
     ) -> Scenario:
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
         spec = network.spec or _read_back(network)
-        facts = context.reading.crash
-        lost = context.reading.lost_control
-        scenario = compile_scenario(
+        reading = context.reading
+        scenario = self._compiled(reading.crash, spec, network, reading)
+        said: list[str] = []
+        if self.try_others and network.net_xml and not reading.lost_control:
+            least = least_doubted(
+                reading.crash, lambda facts: behavior_of_facts(facts, spec), parse_net(network.net_xml), scenario
+            )
+            said = least.notes()
+            if least.words:
+                scenario = self._compiled(least.facts, spec, network, reading)
+        return scenario.model_copy(update={"notes": (*_inferred(reading.crash), *said, *scenario.notes)})
+
+    def _compiled(self, facts: CrashFacts, spec: RoadSpec, network: RoadNetwork, reading: Reading) -> Scenario:
+        """The scenario of one reading of the crash."""
+        return compile_scenario(
             behavior_of_facts(facts, spec),
             network,
             self.openscenario,
             self.encoding,
-            may_skid=lost,
+            may_skid=reading.lost_control,
             courses=facts.courses,
-            signals=context.reading.signals,
+            signals=reading.signals,
         )
-        return scenario.model_copy(update={"notes": (*_inferred(facts), *scenario.notes)})
 
 
 def _read_back(network: RoadNetwork) -> RoadSpec:

@@ -21,6 +21,7 @@ from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VER
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
@@ -165,9 +166,9 @@ def facts_of(parsed: Representation) -> CrashFacts:
 
 def _vehicle(role: Role, parsed: Representation) -> VehicleFacts:
     done = _before_contact(role.id, parsed)
-    origin: Access | None = "driveway" if role.comes_from == "driveway" else None
-    if role.comes_from == "ramp":
-        origin = "ramp"
+    origin: Access | None = DRIVEWAY if role.comes_from == DRIVEWAY else None
+    if role.comes_from == RAMP:
+        origin = RAMP
     return VehicleFacts(
         id=role.id, kind=role.kind, heading=role.heading, heading_stated=role.heading is not None,
         maneuver=done[-1] if done else "straight", maneuver_stated=bool(done), lane=role.lane,

@@ -61,6 +61,7 @@ class Store:
         if not event.contains(Engine, "connect", _fast_commits):
             event.listen(Engine, "connect", _fast_commits)
         logging.getLogger("mlflow").setLevel(logging.WARNING)
+        logging.getLogger("mlflow.store.db.utils").setLevel(logging.CRITICAL)  # tracebacks of what it raises anyway
         try:
             if self._file:
                 make_database(self._file)
@@ -84,7 +85,10 @@ class Store:
         """
         if not self._file or not self._file.is_file():
             return ""
-        with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(self._file, timeout=30)) as found:
+        with (
+            contextlib.suppress(sqlite3.Error),
+            contextlib.closing(sqlite3.connect(self._file, timeout=mlflow_ready.LOCKED_S)) as found,
+        ):
             asked = "SELECT experiment_id, creation_time FROM experiments WHERE name = ?"
             row = found.execute(asked, (self.experiment,)).fetchone()
             return " ".join(map(str, row)) if row else ""

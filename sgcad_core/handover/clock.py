@@ -38,8 +38,6 @@ class Clock:
     released: bool = False
     lag_s: float = 0.0
     """At the release: how far the ego's own script time was ahead of the others'."""
-    pace: float = 1.0
-    """At the release: the ego's speed over the report's driver's at that place."""
 
     def advance(self, script_s: float, speed_mps: float) -> None:
         """One step on: the ego is where the report's driver was at `script_s`, with that speed."""
@@ -47,8 +45,6 @@ class Clock:
             self._follow(script_s, speed_mps)
             if self.now_s >= self.contact_s - self.release_s:
                 self.released, self.lag_s = True, script_s - self.now_s
-                scripted = self.way.speed_at(script_s)
-                self.pace = speed_mps / scripted if scripted > _SLOW_MPS else 1.0
         self.now_s += self.rate * STEP_S
 
     def _follow(self, script_s: float, speed_mps: float) -> None:

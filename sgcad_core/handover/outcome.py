@@ -6,8 +6,8 @@
     worse       clearly harder
     lost        the ego never came into the conflict, so that nothing can be credited to its driver
 
-Whether the conflict came about is asked of the clock: had the ego gone on from the release at the proportion of the
-script's speeds that it had then, it would have touched. Knows drives; no plugin.
+Whether the conflict came about is asked of the clock: had the ego gone on from the release in step with the others, at
+their proportion of the script's speeds, it would have touched. Knows drives; no plugin.
 """
 
 from __future__ import annotations
@@ -119,14 +119,13 @@ def _lost(drive: Drive) -> str:
 
 
 def _would_touch(drive: Drive) -> bool:
-    """Whether the ego, going on at its pace of the release, would have touched its partner of the script."""
+    """Whether the ego, going on in step with the others, would have touched its partner of the script."""
     staging, clock = drive.staging, drive.clock
     contact = staging.contact
     other = contact.other if contact and contact.actor == staging.ego else contact.actor if contact else ""
     t = np.arange(0.0, 3 * clock.release_s + 4.0, _GRAIN_S)
     begun = staging.contact_s - clock.release_s
-    pace = clock.pace if clock.pace > 0.05 else clock.rate
-    mine = _at(staging.way, begun + clock.lag_s + pace * t)
+    mine = _at(staging.way, begun + clock.lag_s + clock.rate * t)
     theirs = _at(staging.lines[other], begun + clock.rate * t)
     sizes = staging.script.sizes
     return bool((box_gaps(mine, sizes[staging.ego], theirs, sizes[other]) <= 0).any())

@@ -47,6 +47,8 @@ class Script:
     roles: Mapping[str, str] = field(default_factory=dict)
     surface: Surface | None = None
     net_xml: str = ""
+    grip: float | None = None
+    """Peak friction, where it is given; else that of the surface."""
 
     @property
     def sizes(self) -> dict[str, Size]:
@@ -56,7 +58,7 @@ class Script:
     @property
     def friction_mps2(self) -> float:
         """The most that tires transmit on the surface that is told."""
-        return DRIVING.friction_mps2(self.surface)
+        return DRIVING.friction_mps2(self.surface) if self.grip is None else DRIVING.gravity_mps2 * self.grip
 
     def info(self, actor: str) -> ActorInfo:
         """An actor by id. Raises ConfigError naming those there are."""

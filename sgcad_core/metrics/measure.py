@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sgcad_core.metrics import conflict, criticality, displacement
+from sgcad_core.metrics import conflict, criticality, displacement, telling
 from sgcad_core.metrics.conflict import Encroachment, Track
 from sgcad_core.metrics.thresholds import Thresholds
 from sgcad_core.records import Execution, Floats, Scenario, Trajectory
@@ -90,6 +90,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
         "average_displacement_error_m": errors[0] if errors else None,
         "final_displacement_error_m": errors[1] if errors else None,
         "emergency_score": score, "emergency_level": criticality.emergency_level(score, limits),
+        **telling.told(tracks),
     }  # fmt: skip
 
 

@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from sgcad_core.kinds import FOUR_LEG
 from sgcad_core.metrics.road_network import any_error, relative_error
 from sgcad_core.metrics.truth_motion import Path, motion_marks
 from sgcad_core.roads.lane_graph import RoadCounts, road_counts
 
 NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
 """Errors; each also stands as `<name>_any`, 1 where there is any."""
-_LEGS = {"t": 3, "four_leg": 4}
+_LEGS = {"t": 3, FOUR_LEG: 4}
 
 Label = Mapping[str, Any]
 

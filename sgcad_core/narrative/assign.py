@@ -10,6 +10,7 @@ import math
 from itertools import product
 from typing import NamedTuple
 
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import DRIVES
@@ -85,17 +86,17 @@ class _Assignment:
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
         """Driveways are for those who come from one; ramps likewise."""
-        from_access, from_ramp = v.origin in DRIVES, v.origin == "ramp"
+        from_access, from_ramp = v.origin in DRIVES, v.origin == RAMP
         cost = 0.0
-        if (way.road.kind == "driveway") != from_access:
-            cost += 1.5 if way.road.kind == "driveway" else 0.6
-        if (way.road.kind == "ramp") != from_ramp:
+        if (way.road.kind == DRIVEWAY) != from_access:
+            cost += 1.5 if way.road.kind == DRIVEWAY else 0.6
+        if (way.road.kind == RAMP) != from_ramp:
             cost += 0.8
         return cost
 
     def _flow_rad(self, way: Way) -> float:
         """Where a way heads; who is on a ramp is said to head as the road does that it joins."""
-        onward = exits(way, self.ways) if way.road.kind == "ramp" else ()
+        onward = exits(way, self.ways) if way.road.kind == RAMP else ()
         return min(onward, key=lambda w: abs(turn_of(way, w))).heading_rad if onward else way.heading_rad
 
     def _place_cost(self, way: Way) -> float:
@@ -123,11 +124,11 @@ class _Assignment:
         off = apart(turn_of(way, onward), wanted) / _QUARTER
         if wanted and v.exit_heading and apart(onward.start_rad, angle_of(v.exit_heading)) < math.radians(50):
             off -= 0.1
-        if wanted and v.target in DRIVES and onward.road.kind == "driveway":
+        if wanted and v.target in DRIVES and onward.road.kind == DRIVEWAY:
             off -= 0.3
-        if onward.road.kind == "driveway" and v.target not in DRIVES:
+        if onward.road.kind == DRIVEWAY and v.target not in DRIVES:
             off += 0.2
-        if not wanted and onward.road.kind == "ramp":
+        if not wanted and onward.road.kind == RAMP:
             off += 0.1
         return max(off, 0.0)
 
@@ -144,7 +145,7 @@ class _Assignment:
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
             cost += 1.2
-        merge = "ramp" in (one.road.kind, other.road.kind)
+        merge = RAMP in (one.road.kind, other.road.kind)
         if not same and not merge and apart(one.heading_rad, other.heading_rad) < math.radians(30):
             cost += 0.8
         return cost

@@ -7,6 +7,7 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
+from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
@@ -48,7 +49,7 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
     return Actor(
         id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
         lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None,
-        maneuver="merge" if place.way.road.kind == "ramp" and v.maneuver in _SHIFTS else v.maneuver,
+        maneuver="merge" if place.way.road.kind == RAMP and v.maneuver in _SHIFTS else v.maneuver,
         speed_mph=_speed_mph(v), length_m=_length(v),
     )  # fmt: skip
 

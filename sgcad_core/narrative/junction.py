@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import JUNCTIONS, JunctionKind, junction_kind
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
@@ -102,17 +102,17 @@ def _kind(
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
-        return "ramp", True
+        return RAMP, True
     if named != "none" and named != "some":
         return named, True
     if access and not (named == "some" and controlled(story)):
-        return "driveway", True
+        return DRIVEWAY, True
     if named == "some" or controlled(story):
-        return ("t", False) if _one_sided(story, roads) else ("four_leg", False)
+        return (T, False) if _one_sided(story, roads) else (FOUR_LEG, False)
     if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
-        return "t", False
+        return T, False
     if _crossing(vehicles) or _turning(vehicles):
-        return ("t", False) if _one_sided(story, roads) or not _crossing(vehicles) else ("four_leg", False)
+        return (T, False) if _one_sided(story, roads) or not _crossing(vehicles) else (FOUR_LEG, False)
     return "none", False
 
 
@@ -147,7 +147,7 @@ def _circle_lanes(story: Sequence[Statement]) -> int | None:
 
 def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
     """Whether a vehicle comes on a ramp."""
-    return any(v.origin == "ramp" for v in vehicles) or any(r.kind == "ramp" and r.vehicles for r in roads)
+    return any(v.origin == RAMP for v in vehicles) or any(r.kind == RAMP and r.vehicles for r in roads)
 
 
 def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
@@ -177,7 +177,7 @@ def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
 
 
 # ------------------------------------------------------------------ stem
-_BESIDE = (*DRIVES, "ramp", "side_road")
+_BESIDE = (*DRIVES, RAMP, "side_road")
 """Where vehicles come from that come in by the stem."""
 
 
@@ -190,8 +190,8 @@ def _stem(
     lead: Compass | None,
 ) -> Compass | None:
     """Where a side leg lies that no compass word tells: on the side that the vehicles' paths need, else right of V1."""
-    main = next((r.axis for r in roads if r.axis and r.kind not in ("driveway", "ramp") and not r.cross), None)
-    from_paths = _stem_of_paths(vehicles, halted, main if kind == "driveway" else None)
+    main = next((r.axis for r in roads if r.axis and r.kind not in JOINING and not r.cross), None)
+    from_paths = _stem_of_paths(vehicles, halted, main if kind == DRIVEWAY else None)
     if from_paths:
         return from_paths
     said = _stem_told(story, vehicles, lead)

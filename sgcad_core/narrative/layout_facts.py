@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from sgcad_core.kinds import DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
 from sgcad_core.narrative.carriageway import Carriageway, Way, carriageway
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.facts import VehicleFacts
@@ -55,13 +56,13 @@ class _Builder:
         junction = self.facts.junction
         if junction.kind == "none":
             return RoadLayout(legs=self._plain(main))
-        if junction.kind == "parking_lot":
+        if junction.kind == PARKING_LOT:
             return parking_lot(self.facts, main.axis or "N")
-        if junction.kind == "ramp":
+        if junction.kind == RAMP:
             return RoadLayout(legs=self._merge(main))
-        if junction.kind == "driveway":
+        if junction.kind == DRIVEWAY:
             return RoadLayout(legs=self._with_driveway(main))
-        stem = self._stem(main) if junction.kind == "t" else None
+        stem = self._stem(main) if junction.kind == T else None
         if stem and axis_of(stem) == main.axis and cross.axis != main.axis:
             main, cross = cross, main
         crossing = tuple(skewed(self.facts, leg) for leg in self._crossing(cross, main, stem))
@@ -83,9 +84,9 @@ class _Builder:
 
     def _main(self, streets: list[RoadFact]) -> RoadFact:
         """The first road told; beside a ramp the road that the ramp joins."""
-        if self.facts.junction.kind != "ramp":
+        if self.facts.junction.kind != RAMP:
             return streets[0]
-        ramp = {v for r in self.facts.roads if r.kind == "ramp" for v in r.vehicles}
+        ramp = {v for r in self.facts.roads if r.kind == RAMP for v in r.vehicles}
         joined = [r for r in streets if r.cross] + [r for r in streets if set(r.vehicles) - ramp]
         return joined[0] if joined else streets[0]
 
@@ -130,22 +131,22 @@ class _Builder:
 
     def _with_driveway(self, main: RoadFact) -> tuple[Leg, ...]:
         stem = self._stem(main)
-        drive = Leg(bearing=stem, lanes_in=1, lanes_out=1, kind="driveway", control=self._leg_control(stem))
+        drive = Leg(bearing=stem, lanes_in=1, lanes_out=1, kind=DRIVEWAY, control=self._leg_control(stem))
         return (*self._through(main, stem), drive)
 
     def _merge(self, main: RoadFact) -> tuple[Leg, ...]:
         """A one-lane ramp that joins from behind on the right, or where its vehicle comes from, or leaves ahead."""
         flow = self._main_flow(main)
-        ramp = next((r for r in self.facts.roads if r.kind == "ramp"), None)
+        ramp = next((r for r in self.facts.roads if r.kind == RAMP), None)
         count = (ramp.lanes.total or 1) if ramp else 1
         if self.facts.leaves:
-            off = Leg(bearing=turned(flow, 45), lanes_in=0, lanes_out=count, kind="ramp")
+            off = Leg(bearing=turned(flow, 45), lanes_in=0, lanes_out=count, kind=RAMP)
             return (*self._through(main, off.bearing), off)
         at = self.facts.junction.stem
         if at is None or axis_of(at) == main.axis or between(flow, at) not in (135, 225):
             at = turned(flow, 135)
         legs = tuple(self._widened(leg, main, flow) for leg in self._through(main, at))
-        return (*legs, Leg(bearing=at, lanes_in=count, lanes_out=0, kind="ramp", control=self._leg_control(at)))
+        return (*legs, Leg(bearing=at, lanes_in=count, lanes_out=0, kind=RAMP, control=self._leg_control(at)))
 
     def _widened(self, leg: Leg, main: RoadFact, flow: Compass) -> Leg:
         """Behind the merge the road has the merging lane, told or left over by its total."""
@@ -158,13 +159,13 @@ class _Builder:
         """The direction of the traffic that the ramp joins."""
         axis = main.axis or "N"
         here = [v for v in self.facts.crash.vehicles if v.heading and axis_of(v.heading) == axis]
-        straight = [v for v in here if v.origin != "ramp"] or here
+        straight = [v for v in here if v.origin != RAMP] or here
         return straight[0].heading if straight and straight[0].heading else axis
 
     def _stem(self, main: RoadFact) -> Compass:
         """The side leg's bearing, never on the main road unless the story's cross road lies there."""
         stem = self.facts.junction.stem or turned(self._main_flow(main), 90)
-        if axis_of(stem) == main.axis and self.facts.junction.kind != "t":
+        if axis_of(stem) == main.axis and self.facts.junction.kind != T:
             return turned(self._main_flow(main), 90)
         return stem
 
@@ -255,11 +256,11 @@ def _median(road: RoadFact, lanes_in: int, lanes_out: int) -> Median:
 
 def _usual_limit(road: RoadFact) -> int | None:
     """The statutory limit that most states post on freeways and on rural roads, mph; None elsewhere."""
-    return {"freeway": 60, "ramp": None, "driveway": None}.get(road.kind, 50 if road.rural else None)
+    return {"freeway": 60, RAMP: None, DRIVEWAY: None}.get(road.kind, 50 if road.rural else None)
 
 
 def _kind(road: RoadFact) -> RoadKind:
-    return road.kind if road.kind in ("driveway", "ramp") else "road"
+    return road.kind if road.kind in JOINING else "road"
 
 
 def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:

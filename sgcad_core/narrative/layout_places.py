@@ -5,7 +5,7 @@ Knows no geometry and no file format.
 
 from __future__ import annotations
 
-from sgcad_core.kinds import junction_kind
+from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFacts
@@ -24,7 +24,7 @@ def with_edges(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
 
 def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
     """A road's leg with its edges; a crosswalk leads over all legs, on a plain road once."""
-    if leg.kind != "road" or facts.junction.kind == "ramp":
+    if leg.kind != "road" or facts.junction.kind == RAMP:
         return leg
     walked = facts.crosswalk and (len(legs) > 2 or leg is legs[0])
     sides = (*facts.beside, "sidewalk") if facts.crosswalk else facts.beside
@@ -37,7 +37,7 @@ def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     axes = (axis, *dict.fromkeys(axis_of(heading) for heading in told if axis_of(heading) != axis))[:2]
     ends = [end for way in axes for end in (turned(way, 180), way)]
     return RoadLayout(
-        legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", beside=("parking",)) for end in ends)
+        legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind=DRIVEWAY, beside=("parking",)) for end in ends)
     )
 
 

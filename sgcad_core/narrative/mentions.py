@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import COMPASS, compass_of
@@ -223,10 +224,10 @@ def _how(tail: str) -> How | None:
 
 def _kind(phrase: str, head: str) -> Kind:
     word = head.lower()
-    if "ramp" in word:
-        return "ramp"
+    if RAMP in word:
+        return RAMP
     if rule("mentions.driveway").search(word) or rule("mentions.private").search(phrase):
-        return "driveway"
+        return DRIVEWAY
     if rule("mentions.freeway").search(phrase):
         return "freeway"
     return "crossroads" if "intersection" in word else "road"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sgcad_core.kinds import junction_kind
+from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
@@ -15,7 +15,7 @@ from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.specs import Compass, Maneuver
 
 _ONWARD = ("straight", "slowing", "negotiating_curve")
-OFF_ROAD = (*DRIVES, "ramp", "shoulder")
+OFF_ROAD = (*DRIVES, RAMP, "shoulder")
 """Where vehicles come from that may tell of the street which they join, not of where they were."""
 
 
@@ -35,7 +35,7 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     for heading, maneuver in ways:
         legs.append(turned(heading, 180))
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
-    if junction.kind == "driveway":
+    if junction.kind == DRIVEWAY:
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
     if junction_kind(junction.kind).crossing and (junction.stated or faced):
         legs += _crossing(crash)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+from sgcad_core.kinds import DRIVEWAY, JOINING, RAMP
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.lane_sources import also, both
 from sgcad_core.narrative.lanes import LaneFacts
@@ -37,7 +38,7 @@ class GatheredRoad:
         self.lanes = merged(self.lanes, mention.lanes)
         self.vehicles += [v for v in mention.vehicles if v not in self.vehicles and mention.how == "on"]
         self.sentences.append(mention.sentence)
-        if mention.kind in ("freeway", "ramp", "driveway"):
+        if mention.kind in ("freeway", RAMP, DRIVEWAY):
             self.kind = mention.kind
 
 
@@ -68,7 +69,7 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
             continue
         if not _informative(mention):
             continue
-        if mention.kind in ("driveway", "ramp"):
+        if mention.kind in JOINING:
             _special(roads, mention, headings)
             continue
         _road_of(roads, mention, headings).take(_with_own(mention, headings))
@@ -97,7 +98,7 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
 
 
 def _informative(m: RoadMention) -> bool:
-    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in ("driveway", "ramp"))
+    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in JOINING)
 
 
 def _special(roads: list[GatheredRoad], mention: RoadMention, headings: Mapping[str, Compass]) -> None:
@@ -117,7 +118,7 @@ def _axis_of_vehicles(m: RoadMention, headings: Mapping[str, Compass]) -> Compas
 
 
 def _streets(roads: list[GatheredRoad]) -> list[GatheredRoad]:
-    return [r for r in roads if r.kind not in ("driveway", "ramp")]
+    return [r for r in roads if r.kind not in JOINING]
 
 
 def _road_of(roads: list[GatheredRoad], m: RoadMention, headings: Mapping[str, Compass]) -> GatheredRoad:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
@@ -73,7 +74,7 @@ class RoadFacts:
     @property
     def streets(self) -> tuple[RoadFact, ...]:
         """Roads that are neither driveway nor ramp."""
-        return tuple(r for r in self.roads if r.kind not in ("driveway", "ramp"))
+        return tuple(r for r in self.roads if r.kind not in JOINING)
 
 
 def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
@@ -129,10 +130,10 @@ _PLACE = rule("roads.place")
 
 def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
     """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
-    streets = [m for m in mentions if m.axis and m.kind not in ("driveway", "ramp")]
-    joined = [m for m in streets if m.relation == "other"] if any(m.kind == "ramp" for m in mentions) else []
+    streets = [m for m in mentions if m.axis and m.kind not in JOINING]
+    joined = [m for m in streets if m.relation == "other"] if any(m.kind == RAMP for m in mentions) else []
     axis = next((m.axis for m in joined + streets), None)
-    lead = next((v for v in crash.vehicles if v.heading and v.origin not in (*DRIVES, "ramp")), None)
+    lead = next((v for v in crash.vehicles if v.heading and v.origin not in (*DRIVES, RAMP)), None)
     place = next((m for t in told if t.role in ("opening", "impact", "road") and (m := _PLACE.search(t.text))), None)
     told_way = compass_of(place[1]) if place else None
     told_way = told_way if told_way and axis in (None, axis_of(told_way)) else None
@@ -156,7 +157,7 @@ def _telling(told: tuple[Statement, ...]) -> list[Statement]:
 
 def _without_circle(told: Statement) -> Statement:
     """The sentence without the lanes of a roundabout, which are those of no road."""
-    return told._replace(text=CIRCLE_LANES.sub("roundabout", told.text))
+    return told._replace(text=CIRCLE_LANES.sub(ROUNDABOUT, told.text))
 
 
 def _road(
@@ -166,10 +167,10 @@ def _road(
     bends: tuple[Curve, ...],
     headings: dict[str, Compass],
 ) -> RoadFact:
-    streets = [r for r in all_roads if r.kind not in ("driveway", "ramp")]
+    streets = [r for r in all_roads if r.kind not in JOINING]
     along = [h for h in headings.values() if axis_of(h) == road.axis]
     lead = (along[0] if along else road.axis) if streets and road is streets[0] else None
-    limit = _limit(road, limits) if road.kind != "driveway" else None
+    limit = _limit(road, limits) if road.kind != DRIVEWAY else None
     curves = _bends(road, lead, bends)
     where = {f"curve {way}": bend.cue for way, bend in curves.items()}
     where |= {"axis": Cue(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
@@ -199,7 +200,7 @@ def _bends(road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]) -
 
 def _open_ends(roads: tuple[RoadFact, ...], junction: JunctionFacts, crash: CrashFacts) -> tuple[str, ...]:
     """What a layout has to assume because the text does not say it."""
-    streets = [r for r in roads if r.kind not in ("driveway", "ramp")]
+    streets = [r for r in roads if r.kind not in JOINING]
     notes = [
         f"the {AXIS_NAMES[r.axis or 'N']} road's lanes are not stated"
         for r in streets
@@ -207,6 +208,6 @@ def _open_ends(roads: tuple[RoadFact, ...], junction: JunctionFacts, crash: Cras
     ]
     notes += ["no road is described"] if not streets else []
     notes += ["no direction of travel is stated"] if not crash.oriented else []
-    if junction.kind in ("t", "four_leg") and not junction.stated:
+    if junction.kind in (T, FOUR_LEG) and not junction.stated:
         notes.append("the kind of junction is not stated")
     return tuple(notes)

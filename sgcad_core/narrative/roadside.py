@@ -28,6 +28,7 @@ def with_roadside(
 ) -> tuple[tuple[Actor, ...], tuple[Contact, ...]]:
     """The actors and contacts with what is struck behind the first contact; `most`: actors and contacts in all."""
     joined, struck = list(actors), list(contacts)
+    struck += list(_again(facts, contacts))[: most[1] - len(struck)]
     for vehicle, other, impact in _struck(facts, {a.id for a in actors}):
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(struck) >= most[1]:
@@ -38,6 +39,21 @@ def with_roadside(
             struck_area="front" if other.kind == "object" else "left",
         ))  # fmt: skip
     return tuple(joined), tuple(struck)
+
+
+def _again(facts: CrashFacts, contacts: Sequence[Contact]) -> Iterator[Contact]:
+    """The pair that touched first touches a second time, as told."""
+    for impact in facts.impacts:
+        first = contacts[0] if contacts else None
+        if first is None or {impact.actor, impact.other} != {first.striker, first.struck}:
+            continue
+        sides = (impact.actor_area, impact.other_area) if impact.actor == first.striker else (
+            impact.other_area, impact.actor_area)  # fmt: skip
+        yield Contact(
+            striker=first.striker, struck=first.struck,
+            striker_area=sides[0] or first.striker_area, struck_area=sides[1] or first.struck_area,
+        )  # fmt: skip
+        return
 
 
 def _struck(facts: CrashFacts, taken: set[str]) -> Iterator[tuple[str, OtherFacts, ImpactTold]]:

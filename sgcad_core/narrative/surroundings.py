@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule, values
+from sgcad_core.narrative.limits import FASTEST_MPH, MILES
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.narrative.vehicles import Roster
@@ -66,11 +68,11 @@ _LIMIT = rule("surroundings.limit")
 def read_speed(motion: Motion, text: str, weight: int) -> None:
     if _LIMIT.search(text):
         return
-    for pattern, factor in ((_SPEED, 1.0), (_KMPH, 0.621)):
+    for pattern, factor in ((_SPEED, 1.0), (_KMPH, MILES)):
         m = pattern.search(text)
         if m:
             low, high = float(m.group("a")), float(m.group("b") or m.group("a"))
-            speed_mph = round(min(120.0, (low + high) / 2 * factor))
+            speed_mph = round(min(FASTEST_MPH, (low + high) / 2 * factor))
             motion.heard(motion.speeds_mph, weight, speed_mph, m.group(), pattern.id)
             return
 
@@ -100,11 +102,11 @@ def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, st
         return _place(origin.group("place")), origin.group("place"), _ORIGIN.id
     drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
     if drive and not _NEAR_DRIVE.search(text):
-        return "driveway", drive.group(), _ON_DRIVE.id
+        return DRIVEWAY, drive.group(), _ON_DRIVE.id
     if ramp:
-        return "ramp", ramp.group(), _RAMP.id
+        return RAMP, ramp.group(), _RAMP.id
     return ("shoulder", shoulder.group(), _SHOULDER.id) if shoulder else None
 
 
 def _place(word: str) -> Access:
-    return "driveway" if rule("surroundings.driveway").search(word) else "parking_lot"
+    return DRIVEWAY if rule("surroundings.driveway").search(word) else "parking_lot"

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import get_args
 
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
@@ -24,9 +25,9 @@ def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
     """Facts of the road along whose axis a leg lies (its id begins with its bearing), and those without an axis."""
     bearing = road.id.partition("_")[0]
-    if road.kind == "driveway" or bearing not in get_args(Compass):
+    if road.kind == DRIVEWAY or bearing not in get_args(Compass):
         return []
-    kinds = ("ramp",) if road.kind == "ramp" else ("road", "freeway", "crossroads")
+    kinds = (RAMP,) if road.kind == RAMP else ("road", "freeway", "crossroads")
     return [r for r in facts.roads if r.kind in kinds and (r.axis is None or r.axis == axis_of(bearing))]  # type: ignore[arg-type]
 
 

@@ -17,7 +17,6 @@ from sgcad_core.planner.role import (
     Role,
     Twist,
     along_with,
-    facing,
     is_beside,
     is_standing,
     mismatch,
@@ -37,7 +36,7 @@ _NOT_EVADING = 0.3
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
-_ASKEW, _STEERS = "stands askew", "steers aside before contact"
+ASKEW, _STEERS = "stands askew", "steers aside before contact"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
@@ -56,7 +55,8 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     wanted = _maneuver_shift(role)
     if wanted is not None:
         shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
-        shares += [(0.63, 0.12), (1.37, 0.17)] if role.spins or role.glances else []
+        if role.spins or role.glances:
+            shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
         gentle = [_drift(role, wanted * k, cost, 1.7) for k, cost in shares]
         hard = [_drift(role, wanted * k, cost + 0.12, 1.0) for k, cost in shares[:3]]
@@ -237,7 +237,7 @@ def aiming(role: Role) -> list[Twist]:
 def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
     """The ways to come to an angle: standing so, steering there, and in a skid where the report tells one."""
     if is_standing(role):
-        return [Twist(cost, angle_rad, _ASKEW)]
+        return [Twist(cost, angle_rad, ASKEW)]
     found = [Twist(cost, angle_rad, _STEERS)]
     if abs(role.place.aside_m) < 16:
         found.append(Twist(cost + 0.05, angle_rad, _STEERS, through=True))
@@ -282,41 +282,3 @@ def homing(role: Role) -> list[Drift]:
         return lines
     bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, "leaves its course")
     return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]
-
-
-def stand_offs(role: Role) -> list[Drift]:
-    """How far beside its lane a standing actor stands."""
-    width, right = role.size[1], role.course.right_edge_m
-    if role.actor.maneuver == "parked":
-        curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
-        lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
-        beside = role.course.beside_m
-        if aside_m := beside.get("parking", beside.get("shoulder")):
-            lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]
-        return [Drift(cost, left) for left, cost in lines]
-    return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
-
-
-def askew(role: Role) -> list[Twist]:
-    """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
-    if role.course.stalls and role.actor.maneuver == "parked":
-        return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
-    small = [Twist(0.2 + abs(a) / 60, math.radians(a), _ASKEW) for a in (15, -15, 35, -35)]
-    return [Twist(0.0), *small, *aiming(role)]
-
-
-def beside_the_way(role: Role) -> list[Drift]:
-    reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
-    offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
-    return [Drift(0.05 * i, left) for i, left in enumerate(offsets)]
-
-
-def any_angle(role: Role) -> list[Twist]:
-    """An object has no heading of its own: its wanted side is turned to the one that comes."""
-    side = facing(role.side) if role.side else 0.0
-    bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
-    return [Twist(cost, math.radians(degrees) - side) for degrees, cost in bearings]
-
-
-def steps_aside() -> list[Drift]:
-    return [Drift(abs(left) / 5, left, 1.0, -1e4) for left in (0.0, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0)]

@@ -16,6 +16,7 @@ import numpy as np
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
@@ -237,7 +238,7 @@ def _crosswalks(graph: LaneGraph, path: Path) -> tuple[float, ...]:
 
 def _has_stalls(graph: LaneGraph, way: Way) -> bool:
     edge = graph.edges.get(way.id)
-    return edge is not None and edge.parameters.get(KIND) == "driveway" and any(x.type == "parking" for x in edge.lanes)
+    return edge is not None and edge.parameters.get(KIND) == DRIVEWAY and any(x.type == "parking" for x in edge.lanes)
 
 
 def _beside(graph: LaneGraph, way: Way, right_m: float) -> dict[str, float]:

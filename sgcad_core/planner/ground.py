@@ -90,11 +90,12 @@ def _turning_mps2(one: Body, drag: Drag) -> float:
 
 
 def run_out(released: Released, drag: Drag, runs: Sequence[RunOut], end_s: float, step: float) -> Floats:
-    """(n, 3) poses at rest of a body that runs out in n ways, from `released.at_s` to `end_s`."""
+    """(m, n, 3) poses of a body that runs out in n ways, a step apart, from its release to rest at `end_s`."""
     one = released.body
     way, bend, turning = (np.array([getattr(r, name) for r in runs]) for name in RunOut._fields[1:])
     turning = _turning_mps2(one, drag) * turning
     x, y, heading, vx, vy, spin = (np.full(len(runs), v) for v in (one.x, one.y, one.heading, one.vx, one.vy, one.spin))
+    found = []
     for k in range(max(round((end_s - released.at_s) / step), 1)):
         left_s = max(end_s - released.at_s - k * step, 0.1)
         x, y, heading = x + vx * step, y + vy * step, heading + spin * step
@@ -115,4 +116,5 @@ def run_out(released: Released, drag: Drag, runs: Sequence[RunOut], end_s: float
         off = spin - target
         by = np.maximum(turning, np.abs(off) / left_s) * step
         spin = np.where(np.abs(off) <= by, target, spin - np.sign(off) * by)
-    return np.column_stack((x, y, heading))
+        found.append(np.column_stack((x, y, heading)))
+    return np.array(found)

@@ -20,17 +20,12 @@ from sgcad_core.planner.choices import (
     OTHER_LANE,
     OTHER_LANE_COST,
     aiming,
-    any_angle,
-    askew,
-    beside_the_way,
     drifts,
     homing,
     pacings,
     skids,
     slides,
     spins,
-    stand_offs,
-    steps_aside,
 )
 from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
@@ -49,6 +44,7 @@ from sgcad_core.planner.role import (
     usual_speed,
 )
 from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
+from sgcad_core.planner.standing import any_angle, askew, beside_the_way, stand_offs, steps_aside
 from sgcad_core.specs import Area
 
 _SWING_ASIDE_M = 5.0

@@ -8,29 +8,30 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.aftermath import run_out, strikes_of
 from sgcad_core.planner.bystanders import stand_clear, strike_later
-from sgcad_core.planner.course import Course, find_course
-from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.casting import course_of, facing_other, is_declared, other_of, seen_s
+from sgcad_core.planner.course import Course
+from sgcad_core.planner.motion import LEAD_S, STEP_S, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
-from sgcad_core.planner.resting import Rests, leaving
-from sgcad_core.planner.role import Role, speed_there, usual_speed
+from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import AFTER_S, Scene
-from sgcad_core.planner.stalls import out_of_stall
-from sgcad_core.planner.things import Strike, strike_things
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
-from sgcad_core.planner.walkers import at_the_edge, crosswalk_station, walking_courses
+from sgcad_core.planner.walkers import crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.roads.surface import road_surface
-from sgcad_core.specs import Actor, Area, BehaviorSpec, Contact, size_m
+from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
 from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
+_FURTHER_S = 3.0
+"""More time behind the first contact where somebody goes on far."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
 _TRIES = (16, 26, 24, 400)
@@ -80,7 +81,7 @@ def plan(
     Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    lines = {a.id: _course(graph, a, gentle) for a in behavior.actors}
+    lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
     cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
     contacts = cast.usable_contacts()
     first = contacts[0] if contacts else None
@@ -91,64 +92,14 @@ def plan(
         cast.later(scene, contact)
     cast.rest(scene)
     scene.settle()
-    cast.notes += _run_out(scene, cast, contacts[1:], graph)
+    cast.notes += run_out(scene, behavior, contacts[1:], courses, graph)
     observed = scene.first_contact()
-    realised = _is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
+    realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     order = tuple(a.id for a in behavior.actors)
     return Plan(
         trajectories=scene.trajectories(order), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
     )  # fmt: skip
-
-
-def _run_out(scene: Scene, cast: _Cast, later: Sequence[Contact], graph: LaneGraph) -> list[str]:
-    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be."""
-    strikes = [strike for contact in later if (strike := cast.strike(contact)) is not None]
-    told = {name: course for name, course in cast.told.items() if name in cast.actors}
-    if not told and not strikes:
-        return []
-    for strike in strikes:
-        told[strike.by] = leaving(told.get(strike.by, CourseTold()))
-    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes))
-    rests.fit()
-    missed = strike_things(scene, strikes, rests.surface, rests.cost)
-    return [*missed, *rests.missed()]
-
-
-def _other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
-    """Whom a partner touches in a contact, and the sides of the partner and of the other one."""
-    if partner == contact.striker:
-        return contact.struck, (contact.striker_area, contact.struck_area)
-    return contact.striker, (contact.struck_area, contact.striker_area)
-
-
-def _course(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
-    course = find_course(graph, actor, gentle)
-    if actor.maneuver == "backing" and course.stalls:
-        return out_of_stall(course, size_m(actor)[0])
-    if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
-        return course.reversed()
-    keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
-    return at_the_edge(course) if keeps_right else course
-
-
-def _facing(role: Role, other: Role) -> Role:
-    return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
-
-
-def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
-    """How long before the contact the clock must begin to show a told speed; 0 where it is never driven."""
-    if motion.standing or role.actor.speed_mph is None:
-        return 0.0
-    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
-    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0
-
-
-def _is_declared(seen: ObservedContact | None, declared: Contact | None) -> bool:
-    if seen is None or declared is None:
-        return seen is None and declared is None
-    sides = {seen.actor: seen.actor_area, seen.other: seen.other_area}
-    return sides == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
 
 
 @dataclass
@@ -168,6 +119,11 @@ class _Cast:
         self.actors = {a.id: a for a in self.behavior.actors}
         for course in self.courses.values():
             self.notes += course.notes
+
+    @cached_property
+    def things(self) -> frozenset[str]:
+        """What is struck on the way to rest: placed when that way is known."""
+        return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.behavior.contacts[1:]))
 
     def usable_contacts(self) -> list[Contact]:
         """Declared contacts between two different actors of the behavior."""
@@ -225,8 +181,8 @@ class _Cast:
         ]
         first, second = pair
         return (
-            _facing(first, second),
-            _facing(second, first),
+            facing_other(first, second),
+            facing_other(second, first),
         )
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
@@ -265,10 +221,11 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
+        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
-        scene = Scene(contact + round(AFTER_S / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
+        after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
+        scene = Scene(contact + round(after / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
@@ -277,6 +234,11 @@ class _Cast:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
         return scene
+
+    def _runs_on(self) -> bool:
+        """Whether anybody goes on far behind the first contact: off the road, or into something else."""
+        afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
+        return afar or len(self.behavior.contacts) > 1
 
     def _struck_again(self) -> frozenset[str]:
         return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
@@ -306,30 +268,20 @@ class _Cast:
     def later(self, scene: Scene, contact: Contact) -> None:
         """A further declared contact of vehicles, where one of the two is not placed yet; best effort."""
         placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
-        if len(placed) != 1 or self.strike(contact) is not None:
+        if len(placed) != 1 or contact.struck in self.things:
             return
         partner = placed[0]
-        new, sides = _other_of(contact, partner)
+        new, sides = other_of(contact, partner)
         role = self._own_role(new)
         target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
         role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
         if not strike_later(scene, role, partner, sides):
             self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
 
-    def strike(self, contact: Contact) -> Strike | None:
-        """A further contact with a thing, or with somebody who stands beside the road; None of two vehicles."""
-        later = self.behavior.contacts[1:]
-        thing = self.actors[contact.struck]
-        if contact not in later or thing.kind not in _THINGS:
-            return None
-        goes_on = any(c.striker == contact.striker for c in later[later.index(contact) + 1 :])
-        return Strike(thing, contact.striker, contact.striker_area, goes_on)
-
     def rest(self, scene: Scene) -> None:
         """Everybody who is not placed yet and is not struck on the way, clear of the others."""
-        things = {s.thing.id for c in self.behavior.contacts[1:] if (s := self.strike(c))}
         for actor in self.behavior.actors:
-            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in things:
+            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things:
                 continue
             note = stand_clear(scene, self._own_role(actor.id))
             self.notes += [note] if note else []

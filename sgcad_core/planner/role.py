@@ -20,7 +20,7 @@ from sgcad_core.told_course import CourseTold
 MPH = 0.44704
 IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
-BRAKED_TO = 0.62
+BRAKED_TO = 0.72
 """Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""

@@ -75,6 +75,8 @@ class Scene:
     """How actors run out from their blow, where that was chosen."""
     friction: float = FRICTION
     restitution: float = RESTITUTION
+    again: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch a second time as told."""
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
         """Place an actor so that its own clock shows the given time at the first contact."""
@@ -113,7 +115,7 @@ class Scene:
         """The simulation of what follows from the first touch."""
         movers = tuple(self._mover(track) for track in self.tracks.values())
         hitches = [self._hitch(*coupled) for coupled in self.hitches]
-        return Wreck(movers, self.count, hitches, self.friction, self.restitution)
+        return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again)
 
     def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
         first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))

@@ -27,6 +27,8 @@ SEEN_M = 0.022
 """Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
 APART_M = 0.008
 """Gap that is left between bodies that touched."""
+_PARTED_M = 0.05
+"""Two that are so far apart touch anew when they meet again."""
 _SHOWN_M = 0.008
 """Overlap that is left for the sample behind a touch."""
 _SHORTEST_S, _LONGEST_S = 0.0005, 0.01
@@ -78,6 +80,10 @@ class Wreck:
     hitches: Sequence[Hitch] = ()
     friction: float = FRICTION
     restitution: float = RESTITUTION
+    again: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch a second time as told: the new touch is seen as the first was."""
+    past: list[tuple[float, tuple[str, str]]] = field(default_factory=list)
+    """Touches of these pairs that are over."""
     touches: dict[tuple[str, str], float] = field(default_factory=dict)
     """Pairs that touched, with the time of it."""
     now: float = 0.0
@@ -98,7 +104,7 @@ class Wreck:
             for m in self.movers:
                 if m.free:
                     poses[m.name][k + 1] = (m.body.x, m.body.y, m.body.heading)
-        seen = sorted((t, pair) for pair, t in self.touches.items())
+        seen = sorted([*self.past, *((t, pair) for pair, t in self.touches.items())])
         return poses, [Touch(t, *pair) for t, pair in seen]
 
     def _pairs(self) -> list[tuple[Mover, Mover]]:
@@ -192,6 +198,8 @@ class Wreck:
     def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
         key = _key(a, b)
+        if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
+            self.past.append((self.touches.pop(key), key))
         if key in self.touches:
             return seen.gap_m < APART_M
         if seen.gap_m > 0:

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from sgcad_core.kinds import RAMP
 from sgcad_core.roads.lane_graph import edge_id, road_of
 from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes
 from sgcad_core.specs import Beside, RoadSpec, Turn
@@ -152,7 +153,7 @@ def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:
 
 def _drivable(exits: list[_Exit], approach: _Way) -> list[_Exit]:
     def sharp(exit_: _Exit) -> bool:
-        ramp = "ramp" in (approach.kind, exit_.way.kind)
+        ramp = RAMP in (approach.kind, exit_.way.kind)
         return abs(exit_.angle_deg) > (RAMP_SHARP_DEG if ramp else SHARP_DEG)
 
     return [e for e in exits if not sharp(e)] or exits

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import get_args
 
+from sgcad_core.kinds import RAMP
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
 from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m, is_aisle
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
@@ -24,7 +25,7 @@ LEG_M = 240.0
 """Length of a leg: 8 s at 65 mph, so that every approach begins on the road."""
 ARC_M = 120.0
 """A curved leg bends over this length from the hub; beyond, it runs straight."""
-_LONGEST_M = {"ramp": ARC_M, "aisle": 80.0}
+_LONGEST_M = {RAMP: ARC_M, "aisle": 80.0}
 """Legs that are shorter than others: a long ramp would meet the road that it joins, and aisles are no longer."""
 ACCESS_M = 45.0
 ACCESS_ROAD_M = 80.0
@@ -129,7 +130,7 @@ def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
     bend = {"none": 0.0, "left": -1 / RADIUS_M, "right": 1 / RADIUS_M}[leg.curve]
     if rim:
         return _Path(_angle(leg), bend, rim.radius_m)
-    return _Path(_ramp_angle(leg, legs) if leg.kind == "ramp" else _angle(leg), bend)
+    return _Path(_ramp_angle(leg, legs) if leg.kind == RAMP else _angle(leg), bend)
 
 
 def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
@@ -137,7 +138,7 @@ def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
     own = _angle(leg)
     for other in legs:
         gap = (_angle(other) - own + math.pi) % (2 * math.pi) - math.pi
-        if other.kind != "ramp" and 0.1 < abs(gap) < math.radians(50):
+        if other.kind != RAMP and 0.1 < abs(gap) < math.radians(50):
             return _angle(other) - math.copysign(RAMP_ANGLE, gap)
     return own
 

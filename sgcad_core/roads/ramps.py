@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.kinds import RAMP
 from sgcad_core.specs import Node, Road
 
 _ALONG_RAD = math.radians(60)
@@ -25,14 +26,14 @@ class Joined(NamedTuple):
 
 def joined(ramp: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Joined | None:
     """The way of a road that a one-way ramp leads into, or comes from; None where it meets none on its right side."""
-    if ramp.kind != "ramp" or (ramp.lanes_forward and ramp.lanes_backward):
+    if ramp.kind != RAMP or (ramp.lanes_forward and ramp.lanes_backward):
         return None
     start, end = (ramp.from_node, ramp.to_node) if ramp.lanes_forward else (ramp.to_node, ramp.from_node)
     for node, enters in ((end, True), (start, False)):
         if len(meeting[node]) > 2:
             heading = _unit(nodes[start], nodes[end])
             away = _unit(nodes[node], nodes[start if enters else end])
-            found = [way for road in meeting[node] if (way := _way(road, node, nodes, enters)) and road.kind != "ramp"]
+            found = [way for road in meeting[node] if (way := _way(road, node, nodes, enters)) and road.kind != RAMP]
             along = [way for way in found if float(way.travel @ heading) > math.cos(_ALONG_RAD)]
             best = max(along, key=lambda way: float(way.travel @ heading), default=None)
             return best if best and float(best.travel[0] * away[1] - best.travel[1] * away[0]) < 0 else None

@@ -14,7 +14,7 @@ from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
 DEPLOY = settings.ROOT / "deploy"
-SECRETS = {"POSTGRES_PASSWORD": "p" * 24, "PREFECT_AUTH": "sgcad:" + "k" * 24}
+SECRETS = {"POSTGRES_PASSWORD": "p" * 24, "PREFECT_AUTH": "sgcad:" + "k" * 24, "MLFLOW_PASSWORD": "m" * 24}
 SERVICES = compose.services(SECRETS)
 DOCKERFILE = (DEPLOY / "Dockerfile").read_text()
 
@@ -32,6 +32,35 @@ def test_a_service_runs_as_nobody_special(name):
     assert SERVICES[name]["cap_drop"] == ["ALL"]
     assert SERVICES[name]["security_opt"] == ["no-new-privileges:true"]
     assert not SERVICES[name].get("privileged")
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_a_service_has_limits_of_memory_and_processes(name):
+    assert re.fullmatch(r"\d+g", SERVICES[name]["mem_limit"])
+    assert 0 < SERVICES[name]["pids_limit"] <= 1024
+
+
+def test_mlflow_asks_for_a_login_and_the_workers_have_it():
+    asked = SERVICES["mlflow"]["environment"]
+    assert "--app-name=basic-auth" in SERVICES["mlflow"]["command"]
+    assert (settings.ROOT / asked["MLFLOW_AUTH_CONFIG_PATH"]).is_file()
+    for name in ("worker", "worker-gpu"):
+        given = SERVICES[name]["environment"]
+        assert given["MLFLOW_TRACKING_USERNAME"] == asked["MLFLOW_AUTH_ADMIN_USERNAME"]
+        assert given["MLFLOW_TRACKING_PASSWORD"] == asked["MLFLOW_AUTH_ADMIN_PASSWORD"] == SECRETS["MLFLOW_PASSWORD"]
+
+
+def test_every_runtime_dependency_has_an_upper_bound():
+    import tomllib
+
+    from packaging.requirements import Requirement
+
+    project = tomllib.loads((settings.ROOT / "pyproject.toml").read_text())["project"]
+    asked = map(
+        Requirement,
+        [*project["dependencies"], *(r for n in ("hosts", "gpu") for r in project["optional-dependencies"][n])],
+    )
+    assert [r.name for r in asked if not any(s.operator in ("<", "==", "~=") for s in r.specifier)] == []
 
 
 @pytest.mark.parametrize("name", SERVICES)
@@ -53,7 +82,8 @@ def test_no_secret_stands_in_the_files():
         name for name, value in compose.read_environment(compose.EXAMPLE).items() if name in SECRETS and value
     } == set()
     text = compose.FILE.read_text() + DOCKERFILE
-    values = re.findall(r"(?:PASSWORD|AUTH\w*|SECRET\w*|ACCESS_KEY\w*|TOKEN)\s*[:=]\s*(\S.*)", text)
+    kinds = r"PASSWORD|AUTH(?!_CONFIG_PATH|_ADMIN_USERNAME)\w*|SECRET\w*|ACCESS_KEY\w*|TOKEN"
+    values = re.findall(rf"(?:{kinds})\s*[:=]\s*(\S.*)", text)
     assert values
     assert all(value.startswith("${") for value in values), values
 
@@ -75,7 +105,7 @@ def test_a_named_volume_is_declared_and_only_the_card_sets_the_workers_apart():
     assert named == set(document["volumes"])
     cpu, gpu = SERVICES["worker"], SERVICES["worker-gpu"]
     assert set(cpu["command"]) ^ set(gpu["command"]) == {
-        "--work-queue=default", "--limit=2", "--work-queue=gpu", "--limit=1",
+        "--work-queue=default", "--limit=3", "--work-queue=gpu", "--limit=1",
     }  # fmt: skip
     assert (cpu["profiles"], gpu["profiles"]) == (["cpu"], ["gpu"])
     assert gpu["deploy"]["resources"]["reservations"]["devices"][0]["capabilities"] == ["gpu"]

@@ -70,6 +70,23 @@ def test_files_of_one_name_keep_their_suffixes(tmp_path):
     assert [c.id for c in cases_in([tmp_path])] == ["one.txt", "one.xml", "two"]
 
 
+def test_a_folder_that_nobody_may_look_into_costs_its_own_case(tmp_path, monkeypatch):
+    from flows import cases
+
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    listed = Path.rglob
+
+    def closed(self, pattern):
+        if self.name == "b":
+            raise PermissionError(13, "Permission denied", str(self))
+        return listed(self, pattern)
+
+    monkeypatch.setattr(Path, "rglob", closed)
+    digests = {cases.source_digest(tmp_path / name) for name in ("a", "b")}
+    assert len(digests) == 2
+
+
 def test_a_case_folder_itself_is_one_case(reports):
     assert [c.id for c in cases_in([reports(c1="") / "c1"])] == ["c1"]
 

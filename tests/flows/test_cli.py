@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from flows import cli
+
 CODE = "from flows import cases, cli; cases._code_digest = lambda: 'as it is'; cli.main()"
 SGCAD = [sys.executable, "-c", CODE]
 """The command; code that is edited while tests run makes no case stale."""
@@ -19,6 +21,25 @@ def sgcad(*arguments, **environment):
     """Run a command; its exit code, stdout and stderr."""
     command = [*SGCAD, *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, env=os.environ | environment, timeout=300)
+
+
+@pytest.fixture
+def here(monkeypatch, capsys):
+    """The command in this process, for what ends before anything starts: a process of its own takes a second."""
+
+    def leave(code):
+        raise SystemExit(code)
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["sgcad", *map(str, arguments)])
+        monkeypatch.setattr(cli, "_leave", leave)
+        heeded = signal.getsignal(signal.SIGINT)
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        signal.signal(signal.SIGINT, heeded)
+        return subprocess.CompletedProcess(arguments, ended.value.code or 0, *capsys.readouterr())
+
+    return run
 
 
 def statuses(out, config="kit"):
@@ -54,28 +75,29 @@ def test_help_takes_less_than_half_a_second_of_work():
     ],
     ids=["pairing", "unknown field", "wrong type", "out of range", "missing plugin", "unknown key", "no backbone"],
 )
-def test_a_faulty_config_starts_nothing(reports, config_file, tmp_path, changes, message):
+def test_a_faulty_config_starts_nothing(here, reports, config_file, tmp_path, changes, message):
     config = config_file(**({"backbone": None} | changes))
-    ended = sgcad("evaluate", reports(a=""), "--config", config, "--out", tmp_path / "out")
+    ended = here("evaluate", reports(a=""), "--config", config, "--out", tmp_path / "out")
     assert ended.returncode == 2
     assert ended.stderr.startswith(f"sgcad: error: {config}: ")
     assert message in ended.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_a_judge_whose_program_is_missing_starts_nothing(reports, config_file, tmp_path):
+def test_a_judge_whose_program_is_missing_starts_nothing(here, reports, config_file, tmp_path, monkeypatch):
+    monkeypatch.setenv("ESMINI", "/no/such/esmini")
     out = tmp_path / "out"
     command = ["evaluate", reports(a=""), "--config", config_file(), "--judge", "esmini", "--out", out]
-    ended = sgcad(*command, ESMINI="/no/such/esmini")
+    ended = here(*command)
     assert ended.returncode == 2
     assert "'/no/such/esmini' is no program that can be run: name the esmini binary by `path`" in ended.stderr
     assert not out.exists()
 
 
-def test_the_version_is_told():
+def test_the_version_is_told(here):
     from importlib.metadata import version
 
-    ended = sgcad("--version")
+    ended = here("--version")
     assert (ended.returncode, ended.stdout) == (0, f"sgcad {version('sg-cadvlm')}\n")
 
 
@@ -114,27 +136,27 @@ def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
     assert "not looked at tracking: mend output first" in ended.stdout
 
 
-def test_a_config_that_is_no_yaml_is_named(reports, tmp_path):
+def test_a_config_that_is_no_yaml_is_named(here, reports, tmp_path):
     (tmp_path / "bad.yaml").write_text("a: [1, 2")
-    ended = sgcad("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")
+    ended = here("run", reports(a="") / "a", "--config", tmp_path / "bad.yaml")
     assert ended.returncode == 2
     assert "bad.yaml: cannot be read as YAML" in ended.stderr
 
 
-def test_a_bad_override_is_named(reports, config_file, tmp_path):
-    ended = sgcad("run", reports(a="") / "a", "--config", config_file(), "--set", "seed", "--out", tmp_path / "out")
+def test_a_bad_override_is_named(here, reports, config_file, tmp_path):
+    ended = here("run", reports(a="") / "a", "--config", config_file(), "--set", "seed", "--out", tmp_path / "out")
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "--set 'seed': expected key=value, such as decoder.alpha=0.3" in ended.stderr
 
 
-def test_an_output_folder_that_cannot_be_written_starts_nothing(reports, config_file):
-    ended = sgcad("run", reports(a="") / "a", "--config", config_file(), "--out", "/proc/runs")
+def test_an_output_folder_that_cannot_be_written_starts_nothing(here, reports, config_file):
+    ended = here("run", reports(a="") / "a", "--config", config_file(), "--out", "/proc/runs")
     assert ended.returncode == 2
     assert "--out /proc/runs: cannot be written" in ended.stderr
 
 
-def test_a_report_that_is_not_there_starts_nothing(config_file, tmp_path):
-    ended = sgcad("run", tmp_path / "nowhere", "--config", config_file())
+def test_a_report_that_is_not_there_starts_nothing(here, config_file, tmp_path):
+    ended = here("run", tmp_path / "nowhere", "--config", config_file())
     assert ended.returncode == 2
     assert "no such report" in ended.stderr
 

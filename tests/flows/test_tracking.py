@@ -145,3 +145,26 @@ def test_a_data_set_is_known_by_its_reports_in_any_order(plan):
     assert found.digest == tracking.dataset_of((second, first)).digest
     assert found.digest != tracking.dataset_of((first,)).digest
     assert (found.name, found.cases) == ("cases", 2)
+
+
+def test_a_database_that_stays_locked_is_tried_twice_and_told_in_one_line(config_file, reports, tmp_path):
+    from types import SimpleNamespace
+
+    tried = []
+
+    class Locked(Noting):
+        def log_case(self, config_name, params, case_dir, result):
+            tried.append(case_dir.name)
+            raise RuntimeError(
+                "raised as a result of autoflush\n(sqlite3.OperationalError) database is locked\n[SQL: ...]"
+            )
+
+    config = load(config_file()).model_copy(update={"tracker": Locked(file=tmp_path / "told.txt")})
+    folder = SimpleNamespace(path=tmp_path / "kit" / "a", out=tmp_path, tracked=lambda mark: False)
+    job = SimpleNamespace(config=config, folder=folder, case=SimpleNamespace(id="a"))
+    tracking._failed.clear()
+    said = [tracking.track_safely(job, SimpleNamespace(result={}, calls=())) for _ in range(4)]
+    tracking._failed.clear()
+    assert len(tried) == tracking.GIVE_UP_AFTER
+    assert said[0] == "RuntimeError: (sqlite3.OperationalError) database is locked"
+    assert said[-1] == "not tried, since the cases before it could not be logged"

@@ -1,7 +1,10 @@
 """The closed kinds: one record each, and every place that takes them agrees with it."""
 
+import ast
 import hashlib
 import json
+from collections.abc import Iterator
+from pathlib import Path
 from random import Random
 from typing import get_args
 
@@ -60,3 +63,43 @@ def test_a_kind_that_there_is_not_is_an_error() -> None:
         kinds.junction_kind("cloverleaf")  # type: ignore[arg-type]
     with pytest.raises(KeyError, match="t"):
         kinds.unsupported_kind("t")
+
+
+ROOT = Path(__file__).parents[2]
+SPELLED = {kinds.FOUR_LEG, kinds.ROUNDABOUT, kinds.DRIVEWAY, kinds.RAMP}
+"""Names of kinds that mean nothing else in the code ("t" and "road" do)."""
+OF_FORMATS = {
+    "sgcad_core/formats/sumo/net_xml.py", "sgcad_core/formats/sumo/plain_xml.py",
+    "sgcad_core/formats/opendrive/write.py",
+}  # fmt: skip
+"""Where `roundabout` is a word of the file format."""
+
+
+def _literals(tree: ast.AST) -> Iterator[ast.Constant]:
+    """Texts of the code: no docstrings, no messages, no types."""
+    aside: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == "Literal":
+            aside |= {id(inner) for inner in ast.walk(node.slice)}
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            aside.add(id(node.value))
+        if isinstance(node, ast.JoinedStr):
+            aside |= {id(inner) for inner in ast.walk(node)}
+    yield from (n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in aside)
+
+
+def _spelled(file: Path) -> list[str]:
+    known = SPELLED - ({kinds.ROUNDABOUT} if str(file.relative_to(ROOT)) in OF_FORMATS else set())
+    found = [n for n in _literals(ast.parse(file.read_text(encoding="utf-8"))) if n.value in known]
+    return [f"{file.relative_to(ROOT)}:{n.lineno}: {n.value!r}" for n in found]
+
+
+def test_no_module_outside_the_registry_spells_a_kind() -> None:
+    files = [f for folder in ("sgcad_core", "plugins", "mini", "flows") for f in sorted((ROOT / folder).rglob("*.py"))]
+    found = [line for f in files if f.name != "kinds.py" for line in _spelled(f)]
+    assert found == [], "take the name from sgcad_core.kinds"
+
+
+def test_a_kind_that_is_spelled_is_seen() -> None:
+    tree = ast.parse('"""ramp"""\nKind = Literal["ramp"]\nif road.kind in ("ramp", "driveway"):\n    pass\n')
+    assert [n.lineno for n in _literals(tree) if n.value in SPELLED] == [3, 3]

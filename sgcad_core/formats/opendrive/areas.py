@@ -12,6 +12,7 @@ from sgcad_core.formats.opendrive.reference import pose_at
 from sgcad_core.formats.opendrive.streets import Street
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.plane import Floats, parallel_polyline
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.lane_graph import LaneGraph
 
 STALL_WIDTH_M = 2.7
@@ -47,7 +48,7 @@ class Stall(NamedTuple):
 
 def stalls_of(street: Street, ids: Iterator[str]) -> Iterator[Stall]:
     """The stalls along an aisle of a parking lot; none along other roads."""
-    if street.forward.parameters.get(KIND) != "driveway":
+    if street.forward.parameters.get(KIND) != DRIVEWAY:
         return
     for strip in (*street.right, *street.left):
         if strip.type == "parking":

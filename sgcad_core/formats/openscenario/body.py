@@ -117,7 +117,7 @@ class Body:
         elif not course.fixed and (course.reverse != backwards or self._used_up(course, distance_m)):
             self.course = new = course_for(self, backwards)
             if course.way and new.way and not course.shift.over(math.inf if course.by_time else course.passed_m):
-                new.shift, new.by_time, new.passed_m = course.shift, course.by_time, course.passed_m
+                new.take_over(course)
             course = new
         return course
 

@@ -31,15 +31,25 @@ class Course:
         by_time: bool = True,
         way: Way | None = None,
         closed: bool | None = None,
+        aside_counts: bool = True,
     ) -> None:
-        """`way`: the lanes that the points lie in; `closed` stands for a trajectory: behind its end, begin again?"""
+        """`way`: the lanes that the points lie in; `closed` stands for a trajectory: behind its end, begin again?
+
+        `aside_counts`: whether the speed is that of the slanting way, or that along the lane.
+        """
         self.points, self.along = points, arc_lengths(points)
         self.s_m, self.shift, self.by_time = s_m, shift or Transition(0.0, 0.0, "step", 0.0), by_time
         self.way, self.closed, self.fixed, self.reverse = way, bool(closed), closed is not None, False
         self.headings: Floats | None = None
         """Stated heading of each point; else the line's own counts."""
+        self._aside_counts = aside_counts
         self.offset_m = self.shift.first
         self.passed_m = 0.0
+
+    def take_over(self, before: Course) -> None:
+        """Go on with another course's shift."""
+        self.shift, self.by_time, self.passed_m = before.shift, before.by_time, before.passed_m
+        self._aside_counts = before._aside_counts
 
     @property
     def rest_m(self) -> float:
@@ -58,7 +68,7 @@ class Course:
             self.offset_m = self.shift.at(t_s)
             aside = self.shift.slope(t_s - dt_s) * dt_s or self.offset_m - before
             if self.shift.shape != "step":
-                ahead = math.sqrt(max(distance_m**2 - aside**2, 0.0))
+                ahead = math.sqrt(max(distance_m**2 - aside**2, 0.0)) if self._aside_counts else distance_m
                 drift = math.atan2(aside, ahead) if distance_m > EPSILON else 0.0
         else:
             slope = self.shift.slope(self.passed_m)

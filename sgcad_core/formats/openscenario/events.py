@@ -145,12 +145,12 @@ class EventActor:
 
     def _shifts(self, shift: Shift) -> Happening:
         """Into another lane, or to another offset in its own."""
-        name, place = self.move.actor, shift.place
-        if shift.lane != place.lane:
+        name = self.move.actor
+        if shift.lanes:
             over = xosc.TransitionDynamics(
                 getattr(xosc.DynamicsShapes, shift.shape), xosc.DynamicsDimension.time, number(shift.span_s, 3)
             )
-            does: object = xosc.AbsoluteLaneChangeAction(shift.lane, over, number(shift.offset_m, 3))
+            does: object = xosc.RelativeLaneChangeAction(shift.lanes, name, over, number(shift.offset_m, 3))
         else:
             shape = getattr(xosc.DynamicsShapes, shift.shape)
             does = xosc.AbsoluteLaneOffsetAction(

@@ -62,10 +62,10 @@ class Shift(NamedTuple):
     span_s: float
     place: LanePlace
     """Where it begins: road, lane, s and offset."""
-    lane: int
-    """The lane to which it leads, where that is one of the same direction on the same road; else the one left."""
+    lanes: int
+    """How many lanes to the left it leads (right: negative), among those of one direction on one road; else 0."""
     offset_m: float
-    """In that lane at the end, to the left of the road's direction."""
+    """In the lane reached at the end, to the left of the road's direction."""
     lateral_mps2: float
     """Largest lateral acceleration of the curve, by which the offset's duration is told."""
     ahead: tuple[LanePlace, float, float] | None
@@ -215,24 +215,24 @@ def _shift(move: Trajectory, seen: _Along, roads: XodrRoads) -> Shift | None:
     lost = float(np.sum(np.diff(seen.left_m) ** 2 / (2 * np.maximum(np.diff(seen.s_m), STILL_M))))
     if lost > LOST_M:
         return None
-    for lane, by_m in _neighbors(move, seen, roads):
+    for lanes, by_m in _neighbors(move, seen, roads):
         if (fit := _fitted(move.t_s, aside, by_m)).drives:
-            return _told(seen, roads, fit, lane, 0.0)
+            return _told(seen, roads, fit, lanes, 0.0)
     fit = _fitted(move.t_s, aside)
     if not fit.drives or abs(fit.by_m) > UNSEEN * np.abs(aside).max():
         return None
     begin = seen.place(fit.row)
     left = (float(seen.left_m[0]) + fit.by_m) * roads.sense(begin, float(move.heading_rad[fit.row]))
-    return _told(seen, roads, fit, begin.lane, left)
+    return _told(seen, roads, fit, 0, left)
 
 
-def _told(seen: _Along, roads: XodrRoads, fit: _Fit, lane: int, offset_m: float) -> Shift:
+def _told(seen: _Along, roads: XodrRoads, fit: _Fit, lanes: int, offset_m: float) -> Shift:
     begin = seen.place(fit.row)
-    return Shift(fit.row, fit.shape, fit.span_s, begin, lane, offset_m, fit.across_mps2, _ahead(seen, fit.row, roads))
+    return Shift(fit.row, fit.shape, fit.span_s, begin, lanes, offset_m, fit.across_mps2, _ahead(seen, fit.row, roads))
 
 
 def _neighbors(move: Trajectory, seen: _Along, roads: XodrRoads) -> Iterator[tuple[int, float]]:
-    """The next lane on the side of the shift and how far to the left its line lies, metres.
+    """1 for the next lane to the left, -1 to the right, whichever way it shifts; how far to the left its line lies (m).
 
     Only where traffic goes the same way there, and while the motion stays on one road: lanes are told by the ids of the
     road where the shift begins.
@@ -247,7 +247,7 @@ def _neighbors(move: Trajectory, seen: _Along, roads: XodrRoads) -> Iterator[tup
         return
     if all(lane in line.section(place.s_m).lanes for place in (begin, end)):
         across = (line.lane_t(lane, begin.s_m) - line.lane_t(begin.lane, begin.s_m)) * sense
-        yield lane, across - float(seen.left_m[0])
+        yield side, across - float(seen.left_m[0])
 
 
 def _fitted(t_s: Floats, aside_m: Floats, by_m: float | None = None) -> _Fit:

@@ -100,6 +100,20 @@ class Timed:
         self._vertices, self._clock_s = (times_s, points, heading), t
         self._of_centers: tuple[BoxShape, list[float]] | None = None
 
+    def eased(self, first_mps: float, dt_s: float) -> Timed:
+        """The same places at the same times, but the speed changes evenly between them, from `first_mps` on.
+
+        Who would have to turn back in a piece brakes evenly to its end, and waits there.
+        """
+        times, points, headings = self._vertices
+        rows, speed = [np.array([times[0], *points[0], headings[0]])], first_mps
+        for i in range(len(times) - 1):
+            ends = np.column_stack((times, points, headings))[i : i + 2]
+            piece, speed = _eased_piece(ends, speed, dt_s)
+            rows += list(piece)
+        t, x, y, heading = np.array(rows).T
+        return Timed(t, np.column_stack((x, y)), heading, (self.first_step, dt_s))
+
     def pose(self, step: int) -> Pose:
         """Pose at a step of the clock; before and behind the vertices, that of the nearest one."""
         return Pose(*self._rows[min(step - self.first_step, len(self._rows) - 1)])
@@ -114,6 +128,25 @@ class Timed:
             times, points, heading = self._vertices
             self._of_centers = box, _speeds(times, box.centers(points, heading), self._clock_s).tolist()
         return float(self._of_centers[1][min(step - self.first_step, len(self._speeds) - 1)])
+
+
+def _eased_piece(ends: Floats, speed_mps: float, dt_s: float) -> tuple[Floats, float]:
+    """(n, 4) time, x, y, heading behind the first end (2, 4), at even acceleration, and the speed at the last."""
+    first, last = ends
+    span, way = float(last[0] - first[0]), math.hypot(*(last[1:3] - first[1:3]))
+    if span <= EPSILON or way <= EPSILON:
+        return ends[1:], 0.0
+    acceleration = 2 * (way - speed_mps * span) / span**2
+    if (final := speed_mps + acceleration * span) < 0:
+        acceleration, final = -(speed_mps**2) / (2 * way), 0.0
+        drives = 2 * way / speed_mps
+    else:
+        drives = span
+    t = np.linspace(0.0, drives, max(2, math.ceil(drives / dt_s) + 1))[1:]
+    share = (speed_mps * t + acceleration * t**2 / 2) / way
+    rows = first + share[:, None] * (last - first)
+    rows[:, 0] = first[0] + t
+    return (np.vstack((rows, last)) if drives < span - EPSILON else rows), final
 
 
 def _speeds(times_s: Floats, points: Floats, t_s: Floats) -> Floats:

@@ -5,7 +5,7 @@ At junctions the straightest way is taken unless a route says otherwise. Knows n
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -122,6 +122,11 @@ class XodrRoads:
         x, y, _, _, _, half = self._centers
         return bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
 
+    def on_road(self, pose: Pose) -> bool:
+        """Whether a point lies on a lane of any kind but "none": shoulders, borders and sidewalks are road."""
+        x, y, _, _, _, half = self._beside
+        return self.covers(pose) or bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
+
     def lane_center(self, road: str, lane: int) -> Floats:
         """(n, 2) center of a lane in driving direction, through the sections that have it. Raises ValueError."""
         line = self.road(road)
@@ -202,26 +207,38 @@ class XodrRoads:
         found = self._links.path(leg, length - here.s_m if leg.sense > 0 else here.s_m, self._goals(place))
         return found[0] if found else None
 
-    @cached_property
-    def _drivable(self) -> list[Step]:
+    def _of_kind(self, wanted: Callable[[str], bool]) -> list[Step]:
         return [
             Step(road.id, i, lane, road.sense(lane))
             for road in self._roads.values()
             for i, section in enumerate(road.sections)
             for lane, found in section.lanes.items()
-            if found.kind in DRIVABLE
+            if wanted(found.kind)
         ]
 
     @cached_property
+    def _drivable(self) -> list[Step]:
+        return self._of_kind(DRIVABLE.__contains__)
+
+    @cached_property
     def _centers(self) -> tuple[Floats, ...]:
-        """x, y, driving heading, s, index into `_drivable` and half width of every vertex of every drivable lane."""
-        total = sum(s.end_m - s.begin_m for s in (self._roads[d.road].sections[d.section] for d in self._drivable))
+        """Of the drivable lanes; places in `_drivable`."""
+        return self._vertices(self._drivable)
+
+    @cached_property
+    def _beside(self) -> tuple[Floats, ...]:
+        """Of the other lanes that are road."""
+        return self._vertices(self._of_kind(lambda kind: kind not in (*DRIVABLE, "none")))
+
+    def _vertices(self, lanes: Sequence[Step]) -> tuple[Floats, ...]:
+        """x, y, driving heading, s, index into the lanes and half width of every vertex of every lane."""
+        total = sum(s.end_m - s.begin_m for s in (self._roads[d.road].sections[d.section] for d in lanes))
         if total > MAX_LANES_M:
             raise self._root.fault(f"more than {MAX_LANES_M:g} m of lanes", f"{total:g}", "cut the network")
-        parts = [self._roads[step.road].center(step.section, step.lane) for step in self._drivable]
+        parts = [self._roads[step.road].center(step.section, step.lane) for step in lanes]
         if not parts:
             return (np.empty(0),) * 6
-        turned = [np.where(step.sense > 0, 0.0, np.pi) for step in self._drivable]
+        turned = [np.where(step.sense > 0, 0.0, np.pi) for step in lanes]
         rows = np.vstack([np.column_stack((p, np.full(len(p), i))) for i, p in enumerate(parts)])
         heading = rows[:, 3] + np.concatenate([np.full(len(p), t) for p, t in zip(parts, turned, strict=True)])
         return rows[:, 1], rows[:, 2], heading, rows[:, 0], rows[:, 5], rows[:, 4]

@@ -59,7 +59,7 @@ def _of_entity(inner: Node, made: RouteOf, turn: Callable[[Pose], Pose]) -> Wher
 
 
 def _in_route(inner: Node, made: RouteOf, turn: Callable[[Pose], Pose]) -> Where:
-    """Road coordinates as they are; lane ids that lead against the route are those of the other side."""
+    """Road and lane coordinates as they are on the road reached, whichever way the route leads over it."""
     path_m, with_lane = inner.number("pathS"), "Lane" in inner.tag
     lane, across = (
         (inner.whole("laneId"), inner.number("laneOffset", 0.0)) if with_lane else (0, inner.number("t", 0.0))
@@ -67,15 +67,11 @@ def _in_route(inner: Node, made: RouteOf, turn: Callable[[Pose], Pose]) -> Where
 
     def where(scene: Scene) -> Spot:
         roads = scene.road_map(inner)
-        road, s_m, sense = made(scene).at(path_m)
+        road, s_m, _ = made(scene).at(path_m)
         if not with_lane:
             x, y, h = roads.road_pose(road, s_m, across)
             return Spot(turn(Pose(x, y, h)), roads.place_at(road, s_m, across))
         place = LanePlace(road, lane, s_m, across)
-        pose = roads.lane_pose(*place)
-        if roads.sense(place, pose.heading_rad) != sense:
-            place = LanePlace(road, -lane, s_m, -across)
-            pose = roads.lane_pose(*place)
-        return Spot(turn(pose), place)
+        return Spot(turn(roads.lane_pose(*place)), place)
 
     return where

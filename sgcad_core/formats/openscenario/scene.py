@@ -55,8 +55,8 @@ class Roads(Protocol):
     def nearest(self, pose: Pose) -> LanePlace | None:
         """The lane one drives in there, if any."""
 
-    def covers(self, pose: Pose) -> bool:
-        """Whether a point lies on a drivable lane."""
+    def on_road(self, pose: Pose) -> bool:
+        """Whether a point lies on a lane of any kind but "none"."""
 
     def drive(self, place: LanePlace, sense: int, route: Route | None = None) -> Way:
         """The lane center ahead of a place in a sense of driving, over its successors."""

@@ -18,6 +18,8 @@ from sgcad_core.geometry.plane import Floats, arc_lengths
 Made = Callable[[Scene, str], Timed | Course]
 """What a body follows once its action starts."""
 
+CORNER_S = 1e-6
+"""In which the heading turns at a vertex."""
 _UNTIMED = "give every vertex one, or use <None/> as time reference"
 
 
@@ -54,10 +56,23 @@ def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
         begin = scene.t_s if relative else 0.0
         if start_m and relative:
             begin -= scale * float(np.interp(start_m, arc_lengths(line.points), line.times_s))
-        headings = tangents(line.points) if line.headings is None else line.headings
-        return Timed(line.times_s * scale + offset + begin, line.points, headings, (scene.step, scene.dt_s))
+        times, points, headings = line.times_s * scale + offset + begin, line.points, line.headings
+        if headings is None:
+            times, points, headings = _cornered(times, points)
+        return Timed(times, points, headings, (scene.step, scene.dt_s))
 
     return make
+
+
+def _cornered(times_s: Floats, points: Floats) -> tuple[Floats, Floats, Floats]:
+    """Vertices that state no heading: along each piece its own, so every inner vertex stands twice, a moment apart."""
+    ahead = tangents(points)
+    inner = np.arange(1, len(points) - 1)
+    rows = np.column_stack((times_s, points, ahead))
+    before = np.column_stack((times_s[inner] - CORNER_S, points[inner], ahead[inner - 1]))
+    both = np.vstack((rows, before))
+    both = both[np.lexsort((np.arange(len(both)) < len(rows), both[:, 0]))]
+    return both[:, 0], both[:, 1:3], both[:, 3]
 
 
 def _check_times(node: Node) -> None:

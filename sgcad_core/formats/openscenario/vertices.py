@@ -50,6 +50,21 @@ def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
     return rows
 
 
+def settled(move: Trajectory) -> Trajectory:
+    """The motion of whom a blow hardly moves from where it stands: it stays there.
+
+    Of a standstill and so small a motion behind it to the end, esmini keeps the first and the last vertex only, and
+    creeps between them from the start on.
+    """
+    poses = np.column_stack((move.x_m, move.y_m, np.unwrap(move.heading_rad)))
+    end = len(poses) - 1
+    stands = [b for a, b in _standstills(poses) if b < end and move.t_s[b] - move.t_s[a] >= STAND_S]
+    if not stands or _apart(poses[stands[-1] :], poses[stands[-1]]).any():
+        return move
+    rows = np.minimum(np.arange(len(poses)), stands[-1])
+    return move.model_copy(update={name: getattr(move, name)[rows] for name in ("x_m", "y_m", "heading_rad")})
+
+
 @dataclass(frozen=True)
 class _Stretch:
     """Rows from one that is written to another: times (n,) and the origin's poses (n, 3)."""

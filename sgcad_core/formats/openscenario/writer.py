@@ -23,7 +23,7 @@ from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
 from sgcad_core.formats.openscenario.events import EventActor, Handover, event_actors
 from sgcad_core.formats.openscenario.parts import Happening, at_once, at_time, group, number, positions
-from sgcad_core.formats.openscenario.vertices import vertex_rows
+from sgcad_core.formats.openscenario.vertices import settled, vertex_rows
 from sgcad_core.records import ActorInfo, Trajectory
 from sgcad_core.specs import BehaviorSpec
 
@@ -60,7 +60,7 @@ def write_xosc(
     """
     moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
-    told = [_Timed(*pair) for pair in zip(moves, reaches, strict=True)] if handover is None else None
+    told = [_Timed(settled(m), ahead) for m, ahead in zip(moves, reaches, strict=True)] if handover is None else None
     parts = told or event_actors(moves, reaches, handover or Handover())
     with _WRITING:
         VersionBase().setVersion(minor=minor)

@@ -18,6 +18,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.lane_graph import edge_id
@@ -35,7 +36,7 @@ from sgcad_core.roads.road_spec import spec_findings
 from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 
 MPS_PER_MPH = 0.44704
-SPEED_MPH = {"road": 35, "ramp": 45, "driveway": 15, "circle": 20}
+SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, "circle": 20}
 """Where the report states no limit."""
 CIRCLE = "circle"
 """Of a piece of a roundabout, where others tell their kind."""
@@ -89,7 +90,7 @@ def _nodes(spec: RoadSpec) -> str:
         if roads := meeting[node.id]:
             kind = _node_type(node, roads)
             place = etree.SubElement(root, "node", id=node.id, x=_m(node.x_m), y=_m(node.y_m), type=kind)
-            if len(roads) > 2 and sum(road.kind != "driveway" for road in roads) < 3:
+            if len(roads) > 2 and sum(road.kind != DRIVEWAY for road in roads) < 3:
                 place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
             _tell(place, {CONTROL: node.control})
     return to_text(root)
@@ -105,7 +106,7 @@ def _node_type(node: Node, roads: Sequence[Road]) -> str:
 
 
 def _yields(road: Road) -> bool:
-    return road.minor or road.kind == "driveway"
+    return road.minor or road.kind == DRIVEWAY
 
 
 # ------------------------------------------------------------------ edges
@@ -169,7 +170,7 @@ def _tell(element: Element, told: Mapping[str, str]) -> None:
 
 
 def _priority(road: Road) -> int:
-    return 6 if road.circle else 1 if _yields(road) else {"road": 4, "ramp": 2}[road.kind]
+    return 6 if road.circle else 1 if _yields(road) else {"road": 4, RAMP: 2}[road.kind]
 
 
 def _shape(points: Floats) -> str:

@@ -62,6 +62,48 @@ def test_reports_go_where_their_ending_says(place, intake):
     assert files(place, ".inbox/claims") == []
 
 
+def test_what_nobody_reads_is_put_apart_with_the_reason(place, intake):
+    place.write("letter.docx", b"word")
+    place.write("noise", b"?")
+    place.write("half.docx.part", b"wo")
+    assert intake(place).work(by_word, 5, 0) == {"unread": 2, "no_report": 1}
+    assert [Path(p).name for p in files(place, "unread") if not p.endswith("outcome.json")] == ["letter.docx", "noise"]
+    outcome = json.loads(place.read("unread/letter.docx/outcome.json"))
+    assert outcome["status"] == "unread"
+    assert "letter.docx cannot be read (.docx): give .pdf, .txt, .xml, or a folder" in outcome["reason"]
+    assert intake(place).work(by_word, 5, 0) == {"no_report": 1}
+
+
+def test_an_outcome_points_to_its_result(tmp_path):
+    def do(cases, ended):
+        for case in cases:
+            ended(case, {"status": "generated", "reason": "", "missing": [], "config": "template-seed_4"})
+
+    place = Place(str(tmp_path / "inbox"))
+    place.write("a.txt", b"text")
+    Intake(place, Claims(place), tmp_path / "staging", 0, "template.yaml", tmp_path / "runs").work(do, 5, 0)
+    (outcome,) = (tmp_path / "inbox" / "done").glob("*/outcome.json")
+    told = json.loads(outcome.read_text())
+    assert told["result"] == str(tmp_path / "runs" / "template-seed_4" / told["case"])
+
+
+def test_an_empty_inbox_is_watched_and_a_drop_is_taken_in_seconds(tmp_path, intake):
+    place = Place(str(tmp_path / "inbox"))
+    seen = []
+
+    def do(cases, ended):
+        seen.append(time.monotonic())
+        by_word(cases, ended)
+
+    with ThreadPoolExecutor(1) as pool:
+        working = pool.submit(intake(place).work, do, 5, 0, 6.0)
+        time.sleep(1.5)
+        dropped = time.monotonic()
+        place.write("a.txt", b"generated")
+        assert working.result(30) == {"generated": 1}
+    assert seen[0] - dropped < 3
+
+
 def test_the_same_report_twice_is_done_once_whatever_it_is_called(place, intake):
     done = []
 

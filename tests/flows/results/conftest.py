@@ -77,7 +77,14 @@ def write_case(folder, status="generated", net=NET, realised=True, story=STORY, 
         "interaction_intensity_mean": 0.1, "post_encroachment_time_s": None, "average_displacement_error_m": 1.0,
         "final_displacement_error_m": 2.0, "emergency_level": "critical", "collision": True, "collision_speed_mps": 10,
     }  # fmt: skip
-    (folder / "metrics.json").write_text(json.dumps({"paper": figures, "exact": figures | {"emergency_level": "high"}}))
+    exact = figures | {
+        "emergency_level": "high", "ttc_1_s_before_s": 0.9, "drac_1_s_before_mps2": 5.0, "time_exposed_ttc_s": 1.4,
+        "delta_v_worst_mps": 6.0, "fatality_risk": 0.01, "brake_by_s": {"V1": 1.1, "V2": None},
+        "steer_by_s": {"V1": 0.8},
+    }  # fmt: skip
+    driven = {"avoided": 1, "mitigated": 0, "unchanged": 0, "worse": 0, "lost": 0, "failed": 0}
+    drive = {"reference": {"initiator": driven, "responder": driven | {"avoided": 0, "mitigated": 1}}}
+    (folder / "metrics.json").write_text(json.dumps({"paper": figures, "exact": exact, "drive": drive}))
 
 
 @pytest.fixture

@@ -72,3 +72,36 @@ def test_without_a_spec_the_roads_are_read_back_from_the_network(cross: RoadNetw
     text = "V1 was traveling north and V2 was traveling west. V1 struck the right side of V2 with its front."
     bare = cross.model_copy(update={"spec": None, "layout": None})
     assert _write(text, bare).behavior == _write(text, cross).behavior
+
+
+# ------------------------------------------------------------------ doubts
+CORNER = "V1 was northbound. V2 was westbound. The front of V2 made contact with the left front of V1."
+"""V2 comes from the right: only the front of that corner can be touched."""
+
+
+def test_where_the_checks_doubt_a_reading_others_are_tried_and_told(cross: RoadNetwork) -> None:
+    doubted = Rules(try_others=False).write(Context(narrative=CORNER), (), (), _never, 1, cross)
+    scenario = _write(CORNER, cross)
+    said = [note for note in scenario.notes if note.startswith("doubt")]
+    assert doubted.oddity >= 0.5
+    assert scenario.oddity <= doubted.oddity
+    assert len(said) == 1
+    assert "the front of V1 instead of the left: " in said[0]
+
+
+def test_an_undoubted_reading_is_not_varied(cross: RoadNetwork) -> None:
+    notes = _write("V1 was northbound. V2 was westbound. V1's front hit V2's left side.", cross).notes
+    assert not any(note.startswith("doubt") for note in notes)
+
+
+def test_a_told_loss_of_control_is_no_doubt(cross: RoadNetwork) -> None:
+    notes = _write(CORNER + " V1 had lost control on the ice.", cross).notes
+    assert not any(note.startswith("doubt") for note in notes)
+
+
+def test_what_vehicles_strike_later_stands_in_the_scenario(cross: RoadNetwork) -> None:
+    text = "V1 was northbound. V2 was westbound. V1's front hit V2's left side. V1 then struck a utility pole."
+    scenario = _write(text, cross)
+    assert [(a.id, a.type) for a in scenario.actors][2:] == [("O1", "object")]
+    assert scenario.behavior is not None
+    assert [(c.striker, c.struck) for c in scenario.behavior.contacts] == [("V1", "V2"), ("V1", "O1")]

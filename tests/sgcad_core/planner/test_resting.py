@@ -64,7 +64,9 @@ def test_without_a_told_rest_nothing_is_chosen() -> None:
 
 
 def test_what_cannot_be_reached_is_said_with_by_how_much() -> None:
-    made, _ = planned({"V1": CourseTold(rest=RestTold(270.0, "off_road", "W"))})
+    slow = tuple(a.model_copy(update={"speed_mph": 8}) for a in crossing().actors)
+    behavior = crossing().model_copy(update={"actors": slow})
+    made, _ = planned({"V1": CourseTold(rest=RestTold(270.0, "off_road", "W"))}, behavior)
     assert any(note.startswith("V1 comes to rest") for note in made.notes)
 
 
@@ -112,7 +114,7 @@ def test_many_ways_at_once_end_where_each_alone_ends(bend, turning) -> None:
     drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 2.0, bend, turning), 0.01, 4.0
     one = body((1.0, 2.0, 0.3), CAR, 1450.0)
     one.vx, one.vy, one.spin = 11.0, 2.0, 0.8
-    together = run_out(Released(one, 0.0), drag, [run, RunOut(0.0, 6.0)], end, step)[0]
+    together = run_out(Released(one, 0.0), drag, [run, RunOut(0.0, 6.0)], end, step)[-1][0]
     for k in range(round(end / step)):
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
         slow(one, drag, step, max(end - k * step, 0.1), run)

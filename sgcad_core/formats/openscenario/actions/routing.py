@@ -21,17 +21,20 @@ ROUTING.refuses(
     "RandomRouteAction", remark="the ways it draws are nobody's but the simulator's", remedy="assign a route"
 )
 _FOLLOW = "followingMode 'follow' is driven exactly on the path: the standard leaves the steering to the simulator"
+_REMARK = (
+    "followingMode 'follow' is driven exactly on the path, at even accelerations between timed vertices, with a note"
+)
 
 
-@ROUTING.plays("FollowTrajectoryAction", remark="followingMode 'follow' is driven exactly on the path, with a note")
+@ROUTING.plays("FollowTrajectoryAction", remark=_REMARK)
 def _follow(node: Node) -> Begin:
     make = trajectory(node)
     mode = node.find("TrajectoryFollowingMode", "TrajectoryFollowing")
-    if (
-        mode
-        and mode.choice("followingMode" if mode.has("followingMode") else "mode", ("position", "follow")) == "follow"
-    ):
+    word = "followingMode" if mode and mode.has("followingMode") else "mode"
+    follows = mode is not None and mode.choice(word, ("position", "follow")) == "follow"
+    if follows and mode:
         mode.note(_FOLLOW)
+    eases = follows and next(node.element.iter("Polyline"), None) is not None
 
     def begin(scene: Scene, actor: str) -> Running:
         body = scene.body(actor, node)
@@ -40,7 +43,7 @@ def _follow(node: Node) -> Begin:
         body.present, body.at_end = True, False
         if isinstance(made, Course):
             return _untimed(body, made)
-        body.timed = timed = made
+        body.timed = timed = made.eased(abs(body.speed_mps), scene.dt_s) if eases else made
         body.pace = body.next_mps = None
         body.pose, body.speed_mps = body.seated(timed.pose(scene.step)), timed.speed(scene.step)
         return Running(body, ("path", "speed"), lambda scene: scene.t_s >= timed.end_s - 1e-9).claim()

@@ -26,19 +26,19 @@ ON_LINE_MPS = 0.1
 # ------------------------------------------------------------------ distance
 @LONGITUDINAL.plays(
     "LongitudinalDistanceAction",
-    remark="without limits the distance is held exactly, else by a critically damped spring",
+    remark="held exactly without limits, else by a critically damped spring within them and what the entity can do",
 )
 def _distance(node: Node) -> Begin:
     other, freespace = node.text("entityRef"), node.flag("freespace")
     continuous = node.flag("continuous")
     wanted = _wanted(node, other)
-    limits = node.find("DynamicConstraints")
-    up, down = (limits.limit(k) if limits else math.inf for k in ("maxAcceleration", "maxDeceleration"))
-    top = limits.limit("maxSpeed") if limits else math.inf
+    constraints = _constraints(node)
     system = node.choice("coordinateSystem", ("entity", "lane", "road", "trajectory"), "entity")
 
     def begin(scene: Scene, actor: str) -> Running:
         body, state = scene.body(actor, node), {"over": False}
+        limits = constraints(body)
+        spring = _Spring(limits)
         side = _side(node, ahead_of(scene, body, scene.body(other, node), system, freespace, node))
 
         def control(scene: Scene) -> None:
@@ -46,13 +46,15 @@ def _distance(node: Node) -> Begin:
             error = ahead_of(scene, body, lead, system, freespace, node) - side * wanted(scene)
             if not continuous and abs(error) < REACHED_M:
                 state["over"] = True
-            if math.isinf(up) and math.isinf(down):
+            if math.isinf(limits.up) and math.isinf(limits.down):
                 _hold(scene, body, lead, error)
             else:
-                _spring(scene, body, lead, error, (up, down, top))
+                body.next_mps = spring.speed(body.speed_mps, lead.speed_mps, error, scene.dt_s)
 
-        running = Running(body, ("speed",), lambda scene: state["over"], control=control)
-        return running.claim()
+        running = Running(body, ("speed",), lambda scene: state["over"], control=control).claim()
+        if math.isinf(limits.up) and math.isinf(limits.down):  # held exactly from the first moment
+            control(scene)
+        return running
 
     return begin
 
@@ -82,12 +84,46 @@ def _hold(scene: Scene, body: Body, lead: Body, error_m: float) -> None:
     body.speed_mps = body.next_mps = lead.speed_mps
 
 
-def _spring(scene: Scene, body: Body, lead: Body, error_m: float, limits: tuple[float, float, float]) -> None:
-    up, down, top = limits
-    stiffness = STIFFNESS * min(up if error_m < 0 else down, 1e3)
-    wanted = error_m * stiffness - (body.speed_mps - lead.speed_mps) * 2 * math.sqrt(stiffness)
-    speed = body.speed_mps + min(max(wanted, -down), up) * scene.dt_s
-    body.next_mps = min(max(speed, -top), top)
+class _Limits(NamedTuple):
+    """Most acceleration and deceleration (m/s²), their rates (m/s³), speed (m/s)."""
+
+    up: float = math.inf
+    down: float = math.inf
+    up_rate: float = math.inf
+    down_rate: float = math.inf
+    top: float = math.inf
+
+
+def _constraints(node: Node) -> Callable[[Body], _Limits]:
+    """Of the action, and no more than the entity's own performance; none at all without <DynamicConstraints>."""
+    if (told := node.find("DynamicConstraints")) is None:
+        return lambda body: _Limits()
+    names = ("maxAcceleration", "maxDeceleration", "maxAccelerationRate", "maxDecelerationRate", "maxSpeed")
+    up, down, up_rate, down_rate, top = (told.limit(name) for name in names)
+    return lambda body: _Limits(
+        min(up, body.limits.acceleration), min(down, body.limits.deceleration), up_rate, down_rate,
+        min(top, body.limits.speed_mps),
+    )  # fmt: skip
+
+
+class _Spring:
+    """A critically damped spring between two entities; keeps the acceleration, whose rate may be limited."""
+
+    def __init__(self, limits: _Limits) -> None:
+        self._limits, self._acceleration = limits, 0.0
+
+    def speed(self, now_mps: float, lead_mps: float, error_m: float, dt_s: float) -> float:
+        """At the end of the step."""
+        most = self._limits
+        stiffness = STIFFNESS * min(most.up if error_m < 0 else most.down, 1e3)
+        wanted = error_m * stiffness - (now_mps - lead_mps) * 2 * math.sqrt(stiffness)
+        wanted = min(max(wanted, -most.down), most.up)
+        if wanted < 0:
+            wanted = max(wanted, min(self._acceleration, self._acceleration - most.down_rate * dt_s))
+        else:
+            wanted = min(wanted, max(self._acceleration, self._acceleration + most.up_rate * dt_s))
+        self._acceleration = wanted
+        return min(max(now_mps + wanted * dt_s, -most.top), most.top)
 
 
 # ------------------------------------------------------------------ synchronize

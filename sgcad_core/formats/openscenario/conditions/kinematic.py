@@ -75,9 +75,9 @@ def _end_of_road(node: Node) -> OfEntity:
     return _lasting(node, lambda scene, body: body.at_end)
 
 
-@BY_ENTITY.plays("OffroadCondition", remark="by the entity's origin")
+@BY_ENTITY.plays("OffroadCondition", remark="by the entity's origin; every lane but those of type none is road")
 def _offroad(node: Node) -> OfEntity:
-    return _lasting(node, lambda scene, body: not scene.road_map(node).covers(scene.pose(body.name, node)))
+    return _lasting(node, lambda scene, body: not scene.road_map(node).on_road(scene.pose(body.name, node)))
 
 
 @BY_ENTITY.plays("AngleCondition", remark="headings; pitch and roll are 0")

@@ -36,6 +36,10 @@ def _how(node: Node, kind: str) -> tuple[str, str, bool]:
     return node.choice("relativeDistanceType", KINDS, default), system, node.flag("freespace")
 
 
+BESIDE_M = 1e-6
+"""Who is not farther ahead than this is beside."""
+
+
 @BY_ENTITY.plays("ReachPositionCondition")
 def _reach(node: Node) -> OfEntity:
     target, tolerance = position(node.need("Position")), node.number("tolerance")
@@ -52,7 +56,7 @@ def _distance(node: Node) -> OfEntity:
     return lambda scene, name: holds(abs(apart(scene, scene.body(name, node), other(scene), how, node)))
 
 
-@BY_ENTITY.plays("TimeHeadwayCondition", remark="undefined behind the other and at a stand")
+@BY_ENTITY.plays("TimeHeadwayCondition", remark="undefined behind the other, beside it, and at a stand")
 def _headway(node: Node) -> OfEntity:
     holds, other, how = rule(node), _other(node, node), _how(node, "euclidianDistance")
 
@@ -81,11 +85,11 @@ def _time_to_collision(node: Node) -> OfEntity:
 
 
 def _ahead(scene: Scene, body: Body, other: Body | Pose, how: tuple[str, str, bool], node: Node) -> float:
-    """A distance that is negative where the other lies behind."""
+    """A distance that is negative where the other lies behind, or beside."""
     gap = apart(scene, body, other, how, node)
     if how[0] not in STRAIGHT:
         return gap
-    return math.copysign(gap, apart(scene, body, other, ("longitudinal", "entity", False), node))
+    return gap if apart(scene, body, other, ("longitudinal", "entity", False), node) > BESIDE_M else -gap
 
 
 def _closing(body: Body, other: Body | Pose) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.formats.openscenario.vertices import APART_M, vertex_rows
+from sgcad_core.formats.openscenario.vertices import APART_M, settled, vertex_rows
 from tests.sgcad_core.formats.xosc_samples import trajectory
 
 
@@ -78,3 +78,18 @@ def test_the_moment_of_a_blow_is_a_vertex():
         steps = np.concatenate((np.full(before, 0.135), np.full(30, 0.03)))
         x = np.concatenate(([0.0], np.cumsum(steps)))
         assert before in rows_of(x)
+
+
+def test_who_is_hardly_moved_from_where_it_stands_stays_there():
+    """Players would creep to the last vertex from the start on."""
+    x = np.concatenate((np.zeros(60), np.linspace(0.005, 0.06, 12), np.full(30, 0.06)))
+    assert np.ptp(settled(trajectory("V1", x, 0.0)).x_m) == 0.0
+
+
+@pytest.mark.parametrize("x", [
+    np.concatenate((np.zeros(60), np.linspace(0.02, 0.6, 20), np.full(30, 0.6))),  # moved
+    np.concatenate((np.linspace(0, 9, 40), np.full(40, 9.0))),  # comes to rest
+    np.concatenate((np.zeros(8), np.linspace(0.005, 0.06, 12), np.full(30, 0.06))),  # stood for less than a second
+])  # fmt: skip
+def test_all_other_motion_is_as_it_was(x):
+    np.testing.assert_array_equal(settled(trajectory("V1", x, 0.0)).x_m, x)

@@ -178,3 +178,11 @@ def test_figures_are_those_of_the_scorer(tmp_path):
             theirs["intersections"], theirs["components"], theirs["segments"]
         )  # fmt: skip
         assert ours.mean_lanes == pytest.approx(theirs["mean_lanes"])
+
+
+def test_a_graph_that_was_read_is_shared_and_cannot_be_changed():
+    net = compiled("stop").net_xml
+    graph = parse_net(net)
+    assert parse_net(net) is graph
+    with pytest.raises(ValueError, match="read-only"):
+        next(iter(graph.edges.values())).lanes[0].shape[0, 0] = 1.0

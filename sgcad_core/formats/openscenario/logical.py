@@ -1,0 +1,158 @@
+"""A logical scenario: a written timed .xosc with parameters in place of numbers, and files that distribute them.
+
+The scenario's trajectories run at `<actor>_pace`, `<actor>_late_s` later, `<actor>_aside_m` beside their line; boxes
+are `<actor>_length` and `<actor>_width` times as large; the road has `friction`. Behind the contact the file moves on
+as the one that it was made of; give it motion that no contact disturbs, since contacts come at other times.
+OpenSCENARIO 1.2: parameters with constraint groups, expressions `${...}`; ParameterValueDistribution, deterministic
+(listed sets) and stochastic. Knows lxml only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from lxml import etree
+
+from sgcad_core.errors import InvalidOutput
+
+_HEADER = {"revMajor": "1", "revMinor": "2", "date": "2000-01-01T00:00:00+00:00", "author": "SG-CADVLM"}
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+
+
+class Range(NamedTuple):
+    """A parameter of the file: its distribution and limits. `spread` 0: uniform over the limits."""
+
+    name: str
+    nominal: float
+    low: float
+    high: float
+    mean: float
+    spread: float
+
+
+class Meets(NamedTuple):
+    """An actor whose motion has parameters, and when its line's own clock comes to the contact."""
+
+    actor: str
+    own_s: float
+
+
+def logical_xosc(xosc: str, ranges: Sequence[Range], meets: Sequence[Meets], contact_s: float) -> str:
+    """A timed scenario with its parameters. `contact_s`: when the pair meets on the file's clock at nominal values.
+
+    Raises InvalidOutput for a file without timed trajectories.
+    """
+    root = etree.fromstring(xosc.encode("utf-8"))
+    known = {r.name for r in ranges}
+    _declare(root, ranges)
+    for actor, own_s in meets:
+        _move(root, actor, own_s, contact_s, known)
+        _resize(root, actor, known)
+    for road in root.iter("RoadCondition"):
+        if "friction" in known:
+            road.set("frictionScaleFactor", "$friction")
+    return _text(root)
+
+
+def _declare(root: etree._Element, ranges: Sequence[Range]) -> None:
+    holder = root.find("ParameterDeclarations")
+    if holder is None:
+        raise InvalidOutput("the scenario has no ParameterDeclarations: write it anew")
+    for r in ranges:
+        declared = etree.SubElement(
+            holder, "ParameterDeclaration", name=r.name, parameterType="double", value=_number(r.nominal)
+        )
+        group = etree.SubElement(declared, "ConstraintGroup")
+        etree.SubElement(group, "ValueConstraint", rule="greaterOrEqual", value=_number(r.low))
+        etree.SubElement(group, "ValueConstraint", rule="lessOrEqual", value=_number(r.high))
+
+
+def _move(root: etree._Element, actor: str, own_s: float, contact_s: float, known: set[str]) -> None:
+    """Time and place of an actor's trajectory: t' = t / pace + offset with the contact kept where it is."""
+    group = next((g for g in root.iter("ManeuverGroup") if _acts(g, actor)), None)
+    timing = None if group is None else next(group.iter("Timing"), None)
+    if group is None or timing is None:
+        raise InvalidOutput(f"{actor} has no timed trajectory in the scenario: write it in the encoding `timed`")
+    pace = f"${actor}_pace" if f"{actor}_pace" in known else "1"
+    late = f"${actor}_late_s" if f"{actor}_late_s" in known else "0"
+    timing.set("scale", f"${{1 / {pace}}}")
+    timing.set("offset", f"${{{_number(contact_s)} + {late} - {_number(own_s)} / {pace}}}")
+    if f"{actor}_aside_m" in known:
+        places = [*group.iter("WorldPosition"), *_initial(root, actor)]
+        for place in places:
+            _beside(place, f"${actor}_aside_m")
+
+
+def _acts(group: etree._Element, actor: str) -> bool:
+    return any(ref.get("entityRef") == actor for ref in group.iter("EntityRef"))
+
+
+def _initial(root: etree._Element, actor: str) -> list[etree._Element]:
+    private = next((p for p in root.iter("Private") if p.get("entityRef") == actor), None)
+    return [] if private is None else list(private.iter("WorldPosition"))
+
+
+def _beside(place: etree._Element, parameter: str) -> None:
+    heading = float(place.get("h", "0"))
+    x, y = float(place.get("x", "0")), float(place.get("y", "0"))
+    place.set("x", f"${{{_number(x)} + {_number(-math.sin(heading))} * {parameter}}}")
+    place.set("y", f"${{{_number(y)} + {_number(math.cos(heading))} * {parameter}}}")
+
+
+def _resize(root: etree._Element, actor: str, known: set[str]) -> None:
+    thing = next((o for o in root.iter("ScenarioObject") if o.get("name") == actor), None)
+    box = None if thing is None else next(thing.iter("Dimensions"), None)
+    for what in ("length", "width") if box is not None else ():
+        if box is not None and f"{actor}_{what}" in known:
+            box.set(what, f"${{{box.get(what)} * ${actor}_{what}}}")
+
+
+# ------------------------------------------------------------------ distributions
+def deterministic(scenario: str, sets: Sequence[Mapping[str, float]]) -> str:
+    """A file that lists parameter sets."""
+    root, holder = _distribution(scenario)
+    values = etree.SubElement(
+        etree.SubElement(etree.SubElement(holder, "Deterministic"), "DeterministicMultiParameterDistribution"),
+        "ValueSetDistribution",
+    )
+    for one in sets:
+        entry = etree.SubElement(values, "ParameterValueSet")
+        for name, value in one.items():
+            etree.SubElement(entry, "ParameterAssignment", parameterRef=name, value=_number(value))
+    return _text(root)
+
+
+def stochastic(scenario: str, ranges: Sequence[Range], count: int, seed: int) -> str:
+    """A file that says how parameters are drawn (normal ones are cut to their limits by who draws)."""
+    root, holder = _distribution(scenario)
+    drawn = etree.SubElement(holder, "Stochastic", numberOfTestRuns=str(count), randomSeed=str(seed))
+    for r in ranges:
+        entry = etree.SubElement(drawn, "StochasticDistribution", parameterName=r.name)
+        if r.spread > 0:
+            tag, values = "NormalDistribution", {"expectedValue": _number(r.mean), "variance": _number(r.spread**2)}
+        else:
+            tag, values = "UniformDistribution", {}
+        limits = etree.SubElement(etree.SubElement(entry, tag, values), "Range")
+        limits.set("lowerLimit", _number(r.low))
+        limits.set("upperLimit", _number(r.high))
+    return _text(root)
+
+
+def _distribution(scenario: str) -> tuple[etree._Element, etree._Element]:
+    root = etree.Element("OpenSCENARIO", nsmap={"xsi": _XSI})
+    root.set(f"{{{_XSI}}}noNamespaceSchemaLocation", "OpenScenario.xsd")
+    etree.SubElement(root, "FileHeader", {**_HEADER, "description": "family"})
+    holder = etree.SubElement(root, "ParameterValueDistribution")
+    etree.SubElement(holder, "ScenarioFile", filepath=scenario)
+    return root, holder
+
+
+def _number(value: float) -> str:
+    return f"{value:.9g}" if abs(value) >= 1e-9 else "0"
+
+
+def _text(root: etree._Element) -> str:
+    etree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + etree.tostring(root, encoding="unicode") + "\n"

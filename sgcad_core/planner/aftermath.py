@@ -1,0 +1,49 @@
+"""Behind the first contact: the things that wrecks strike, second contacts of the same two, rest as told.
+
+Works on a scene in which everybody else is placed. Knows behaviors, scenes and roads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sgcad_core.planner.casting import pair_of
+from sgcad_core.planner.resting import Rests, leaving
+from sgcad_core.planner.scene import Scene
+from sgcad_core.planner.things import Strike, strike_things
+from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.roads.surface import road_surface
+from sgcad_core.specs import BehaviorSpec, Contact
+from sgcad_core.told_course import Courses, CourseTold
+
+_THINGS = ("object", "pedestrian", "bicycle")
+
+
+def strikes_of(behavior: BehaviorSpec, later: Sequence[Contact]) -> list[Strike]:
+    """The further contacts that are with a thing, or with somebody who stands beside the road, in order."""
+    actors = {a.id: a for a in behavior.actors}
+    found = []
+    for number, contact in enumerate(later):
+        thing = actors.get(contact.struck)
+        if thing is not None and thing.kind in _THINGS:
+            goes_on = any(c.striker == contact.striker for c in later[number + 1 :])
+            found.append(Strike(thing, contact.striker, contact.striker_area, goes_on))
+    return found
+
+
+def run_out(
+    scene: Scene, behavior: BehaviorSpec, later: Sequence[Contact], courses: Courses, graph: LaneGraph
+) -> list[str]:
+    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be."""
+    strikes = strikes_of(behavior, later)
+    told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
+    first = [pair_of(contact) for contact in behavior.contacts[:1]]
+    scene.again = frozenset(pair for contact in later if (pair := pair_of(contact)) in first)
+    if not told and not strikes and not scene.again:
+        return []
+    for strike in strikes:
+        told[strike.by] = leaving(told.get(strike.by, CourseTold()))
+    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes))
+    rests.fit()
+    missed = strike_things(scene, strikes, rests.surface, rests.cost)
+    return [*missed, *rests.missed()]

@@ -1,0 +1,61 @@
+"""The reading that our own checks doubt least is kept, at its price, and what was tried is told."""
+
+from __future__ import annotations
+
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.doubts import doubt, least_doubted
+from sgcad_core.narrative.facts import CrashFacts
+from sgcad_core.narrative.reading import crash_facts
+from sgcad_core.planner import plan
+from sgcad_core.records import Scenario
+from sgcad_core.specs import BehaviorSpec
+from tests.sgcad_core.planner.crash_scenes import network
+from tests.sgcad_core.planner.test_resting import crossing
+
+TEXT = "V1 was eastbound. V2 was southbound. The front of V1 struck the right front of V2."
+GRAPH = network("four_leg")
+
+
+def scenario(oddity: float) -> Scenario:
+    behavior = crossing()
+    planned = plan(behavior, GRAPH)
+    return Scenario(xosc="", actors=(), behavior=behavior, planned=planned.trajectories, oddity=oddity)
+
+
+def other_side(facts: CrashFacts) -> BehaviorSpec:
+    """A behavior that meets in ordinary driving for the corner's other side only."""
+    if facts.contacts[0].struck_area == crash_facts(TEXT).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
+def test_no_doubt_tries_nothing() -> None:
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, other_side, GRAPH, scenario(0.1))
+    assert (least.facts, least.words, least.notes()) == (facts, "", [])
+
+
+def test_the_reading_that_leaves_no_doubt_is_kept() -> None:
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, other_side, GRAPH, scenario(1.5))
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+    assert least.notes() == [f"doubt 1.5 on the first reading; tried {least.words}: 0.0; kept: {least.words}"]
+
+
+def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:
+    def nowhere(facts: CrashFacts) -> BehaviorSpec:
+        raise InvalidOutput("no road")
+
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, nowhere, GRAPH, scenario(1.5))
+    assert least.facts == facts
+    assert least.notes() == ["doubt 1.5 on the first reading; tried no other; kept: the first reading"]
+
+
+def test_a_contact_that_does_not_come_about_is_the_worst_doubt() -> None:
+    met = scenario(0.2)
+    assert met.behavior is not None
+    apart = met.behavior.model_copy(update={"contacts": (
+        met.behavior.contacts[0].model_copy(update={"struck_area": "left"}),)})  # fmt: skip
+    assert doubt(met.behavior, met.planned, 0.2) == 0.0
+    assert doubt(apart, met.planned, 0.2) > doubt(met.behavior, met.planned, 2.0) == 2.0
