@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from sgcad_core.execution.contact import realised
+from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.execution.judgement import Judgement
+from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.limits import beyond
@@ -132,7 +133,23 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
         return "failed", "the scenario was never executed", ()
     if record.scenario and record.scenario.declared and record.execution.contact is None:
         return "exhausted", "scenario: the declared contact does not come about when the scenario runs", ()
+    if _subject_untouched(record):
+        return "exhausted", "scenario: nobody touches the report's subject when the scenario runs", ()
     return "generated", "", ()
+
+
+def _subject_untouched(record: CaseRecord) -> bool:
+    """Whether the report tells a contact of its subject and none comes about; asked where reports number nobody."""
+    crash = record.reading.crash if record.reading else None
+    if crash is None or record.scenario is None or record.execution is None or not crash.unnumbered:
+        return False
+    subject = crash.vehicles[0].id if crash.vehicles else ""
+    if all(subject not in (c.striker, c.struck) for c in crash.contacts):
+        return False
+    sizes = sizes_of(record.scenario)
+    mine = next((t for t in record.execution.trajectories if t.actor == subject), None)
+    others = [t for t in record.execution.trajectories if t.actor != subject]
+    return mine is not None and all(first_contact((mine, other), sizes) is None for other in others)
 
 
 def _network(network: RoadNetwork | None) -> dict[str, Any] | None:

@@ -25,7 +25,12 @@ from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
-ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$")]
+TRAINED = "x-trained"
+"""Mark of a field that has changed since the embedded model was trained: what `trained_schema` has in its place."""
+_TRAINED_ID = {"pattern": "^[VPBTO][0-9]{1,2}$"}
+ActorId = Annotated[
+    str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
+]
 Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
@@ -73,18 +78,19 @@ def added_fields(model: type[Spec]) -> tuple[str, ...]:
 
 
 def trained_schema(model: type[Spec]) -> dict[str, Any]:
-    """The JSON schema of a spec without what was added to it and to the specs in it."""
-    found: dict[str, Any] = _without_added(model.model_json_schema())
+    """The JSON schema of a spec as it was: without what was added to it and to the specs in it."""
+    found: dict[str, Any] = _as_trained(model.model_json_schema())
     return found
 
 
-def _without_added(schema: Any) -> Any:
+def _as_trained(schema: Any) -> Any:
     if isinstance(schema, list):
-        return [_without_added(part) for part in schema]
+        return [_as_trained(part) for part in schema]
     if not isinstance(schema, dict):
         return schema
-    kept = {key: part for key, part in schema.items() if not (isinstance(part, dict) and ADDED in part)}
-    return {key: _without_added(part) for key, part in kept.items()}
+    schema = {**schema, **schema.get(TRAINED, {})}
+    added_since = {key for key, part in schema.items() if isinstance(part, dict) and ADDED in part}
+    return {key: _as_trained(part) for key, part in schema.items() if key not in (TRAINED, *added_since)}
 
 
 # ------------------------------------------------------------------ road, in full
@@ -200,10 +206,16 @@ class RoadLayout(Spec):
 
 
 # ------------------------------------------------------------------ behavior
+_TRAINED_ACTOR = "V<n> as the report numbers it, P pedestrian, B cyclist, T trailer, O object"
+
+
 class Actor(Spec):
     """A road user or object and its pre-crash motion."""
 
-    id: ActorId = Field(description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object")
+    id: ActorId = Field(
+        description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object",
+        json_schema_extra={TRAINED: {**_TRAINED_ID, "description": _TRAINED_ACTOR}},
+    )
     kind: ActorKind
     road: Id = Field(description="road on which it starts")
     direction: Literal["forward", "backward"] = Field(description="forward: from the road's from_node to its to_node")

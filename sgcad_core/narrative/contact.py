@@ -205,7 +205,8 @@ def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str |
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
-    return None, None
+    anything = says.ANY_OBJECT.match(scope) if who.counted else None
+    return (anything["object"].lower(), None) if anything else (None, None)
 
 
 def _the_other(told: Statement, actor: str, who: Roster) -> str | None:

@@ -6,7 +6,7 @@ what it says (relation words, critical events, the sides that touched) and marke
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
@@ -90,6 +90,8 @@ class CrashFacts:
     """Contacts behind the first one with things, and of the same pair once more, in order."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
+    unnumbered: bool = False
+    """Whether the report numbers nobody: V1 is its subject."""
     gap: Gap | None = None
     """Why no crash can be drawn from the text, if so."""
 
@@ -128,11 +130,31 @@ def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[Cont
     return tuple(found.values())
 
 
+def _subject_first(
+    vehicles: tuple[VehicleFacts, ...], contacts: tuple[ContactFacts, ...]
+) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
+    """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
+
+    Who was pushed into the subject by another is then under way, which the report does not say.
+    """
+    mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
+    if mine is None or mine is contacts[0]:
+        return vehicles, contacts
+    pair = {v.id: v for v in vehicles if v.id in (mine.striker, mine.struck)}
+    if all(v.standing for v in pair.values()):
+        pushed = next(v for v in pair.values() if v is not vehicles[0])
+        moving = replace(pushed, maneuver="straight", maneuver_stated=False)
+        vehicles = tuple(moving if v is pushed else v for v in vehicles)
+    return vehicles, (mine, *(c for c in contacts if c is not mine))
+
+
 def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
     """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
     beside = others(draft.blows, draft.who.ids)
     contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
+    if draft.who.counted:
+        vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(
         vehicles,
         beside,
@@ -143,4 +165,5 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         courses=draft.course.courses,
         impacts=tuple(read.impact for read in draft.impacts),
         oriented=bool(settled.stated),
+        unnumbered=draft.who.counted,
     )

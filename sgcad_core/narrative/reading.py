@@ -119,10 +119,12 @@ def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
 
 
 def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
-    """Those who touch nobody, where somebody touches the subject; nobody where that is not told."""
+    """Those who touch nobody, where somebody touches the subject; nobody where that is not told. A subject that is only
+    whoever was described first is no better than the others."""
     met = {v for blow in told for v in (blow.actor, blow.other)}
-    subject = who.ids[0] if who.ids else None
-    return tuple(v for v in who.ids if v not in met) if subject in met and len(met & set(who.ids)) > 1 else ()
+    named = next((v for v in who.vehicles if not v.described or v.id in met), None)
+    subject = named.id if named else None
+    return tuple(v for v in who.ids if v not in met) if subject in met and len(met) > 1 else ()
 
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
@@ -165,4 +167,6 @@ def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashF
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
     alone = len(crash.vehicles) == 1 and not crash.contacts
-    return untold(narrative, (c.stated for c in crash.contacts)) if who.counted or alone else None
+    subject = crash.vehicles[0].id
+    mine = (c.stated and subject in (c.striker, c.struck) for c in crash.contacts)
+    return untold(narrative, mine) if who.counted or alone else None

@@ -80,6 +80,11 @@ class _Phrase:
         return "vehicle" if self.head.endswith(_ANY) and not _is_car(self.head) else kind_of(words, None)[0]
 
     @property
+    def branded(self) -> bool:
+        """Whether a company's name says whose it is: "the Acme vehicle"."""
+        return bool(rule("references.branded").match(self.match["mods"]))
+
+    @property
     def stands(self) -> bool:
         """Whether the words before or behind say that it is parked or stopped."""
         told = any(_STATES.get(m, "").endswith(("stopped", "parked")) for m in self.modifiers)
@@ -124,6 +129,8 @@ class _Cast:
             ordered = [a for a in fitting if a.order == phrase.order]
             return next(iter(ordered), None) or (fitting[0] if fitting and "other" in phrase.modifiers else None)
         subject = self.subject()
+        if subject and self.automated and phrase.branded and phrase.kind == "vehicle":
+            return subject
         return fitting[0] if fitting else subject if subject and _may_be_subject(subject, phrase) else None
 
     def open(self, phrase: _Phrase) -> _Actor | None:

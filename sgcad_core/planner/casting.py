@@ -31,7 +31,13 @@ def course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
 
 
 def facing_other(role: Role, other: Role) -> Role:
-    return replace(role, other_mps=speed_there(other), other_width_m=other.size[1], other_side=other.side)
+    return replace(
+        role,
+        other_mps=speed_there(other),
+        other_width_m=other.size[1],
+        other_side=other.side,
+        other_spins=bool(other.spins),
+    )
 
 
 def seen_s(role: Role, motion: Motion, contact_s: float) -> float:

@@ -41,6 +41,8 @@ class Role:
     other_width_m: float = 1.8
     other_side: Area | None = None
     surface: Surface | None = None
+    other_spins: bool = False
+    """Whether the blow is to turn the other one in a told way."""
     may_skid: bool = False
     """The report tells that somebody lost control."""
     told: CourseTold = field(default_factory=CourseTold)

@@ -92,9 +92,10 @@ def test_an_oblique_unnamed_network_serves_as_well() -> None:
     assert (_actor(found, "V2").road, _actor(found, "V2").direction) == ("third", "backward")
 
 
-def test_all_numbered_vehicles_become_actors_and_a_pole_only_without_a_second_vehicle() -> None:
+def test_all_numbered_vehicles_become_actors_and_what_they_strike_later_too() -> None:
     three = _behavior("V1, V2 and V3 were southbound. V1 struck the rear of V2. V3 drove on. V1 then struck a tree.")
-    assert [a.id for a in three.actors] == ["V1", "V2", "V3"]
+    assert [a.id for a in three.actors] == ["V1", "V2", "V3", "O1"]
+    assert [(c.striker, c.struck) for c in three.contacts] == [("V1", "V2"), ("V1", "O1")]
     alone = _behavior("V1 was southbound and struck a tree.")
     assert [a.id for a in alone.actors] == ["V1", "O1"]
     assert alone.contacts[0].struck == "O1"
