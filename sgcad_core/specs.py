@@ -182,6 +182,7 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 
 class Access(Spec):
