@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from sgcad_core.execution.contact import first_contact, realised
+from sgcad_core.execution.contact import avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
@@ -86,6 +86,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "network": _network(record.network),
         "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
+        "near_crash": _near_crash(record.scenario, record.execution),
         **judged,
         "grounding": _grounding(record.outcomes),
         "sentences": _sentences(record.reading),
@@ -184,6 +185,32 @@ def _collision(scenario: Scenario | None, execution: Execution | None) -> dict[s
         "realised": realised(declared, observed),
         "observed": observed.model_dump() if observed else None,
     }
+
+
+def _near_crash(scenario: Scenario | None, execution: Execution | None) -> dict[str, Any] | None:
+    """What was avoided and how, the clearance that was declared, and the closest approach that came of it."""
+    near = scenario.near_crash if scenario else None
+    if scenario is None or near is None:
+        return None
+    pair = near.conflict.striker, near.conflict.struck
+    closest = closest_approach(execution.trajectories, sizes_of(scenario), pair) if execution else None
+    declared = near.model_dump(mode="json", exclude={"clearance_m"})
+    basis = "default" if near.clearance_m is None else "told"
+    return {
+        "declared": declared | {"clearance_m": near.closest_m, "clearance_basis": basis},
+        "realised": avoided(near, execution.contact if execution else None, closest),
+        "observed": closest.model_dump() if closest else None,
+    }
+
+
+def as_declared(result: Mapping[str, Any]) -> bool | None:
+    """Whether a generated case's contact, or its near crash, came about as declared; None where it declares neither."""
+    if result.get("status") != "generated":
+        return None
+    collision, near = result.get("collision") or {}, result.get("near_crash")
+    if collision.get("declared"):
+        return bool(collision["realised"])
+    return bool(near["realised"]) if near else None
 
 
 def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:

@@ -42,12 +42,19 @@ ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
 Area = Literal["front", "back", "left", "right"]
+EvasiveManeuver = Literal[
+    "none", "braking", "steering", "steering_left", "steering_right", "braking_and_steering",
+    "braking_and_steering_left", "braking_and_steering_right", "accelerating",
+]  # fmt: skip
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
 Surface = Literal["dry", "wet", "snow", "ice"]
 SpeedMph = Annotated[int, Field(ge=0, le=120)]
 SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
 Lanes = Annotated[int, Field(ge=0, le=8)]
+CLEARANCE_M = 0.6
+"""How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
+width. A convention of ours, marked `default` wherever it stands."""
 
 
 ADDED = "x-added"
@@ -175,6 +182,7 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 
 class Access(Spec):
@@ -235,14 +243,40 @@ class Contact(Spec):
     struck_area: Area
 
 
+class Evasion(Spec):
+    """What one of both did so that they would not touch; a side that is left open is the planner's choice."""
+
+    actor: ActorId
+    maneuver: EvasiveManeuver
+
+
+class NearCrash(Spec):
+    """A conflict in which nobody touches: what would have touched, who evaded how, how near they came."""
+
+    conflict: Contact = Field(description="the contact that would have come about without any evasion")
+    evasions: Annotated[tuple[Evasion, ...], Field(max_length=2)] = ()
+    clearance_m: Annotated[float, Field(ge=0.1, le=10)] | None = Field(
+        None, description="between the bodies at the closest, metres; null where it is not told"
+    )
+
+    @property
+    def closest_m(self) -> float:
+        """The declared clearance, as told or the usual one."""
+        return CLEARANCE_M if self.clearance_m is None else self.clearance_m
+
+
 class BehaviorSpec(Spec):
-    """Who moves where and who strikes whom, contacts in order: the first is the first harmful event."""
+    """Who moves where and who strikes whom, contacts in order: the first is the first harmful event.
+
+    Of a near crash there are no contacts: `near_crash` says what was avoided, and how.
+    """
 
     actors: Annotated[tuple[Actor, ...], Field(min_length=1, max_length=12)]
     contacts: Annotated[tuple[Contact, ...], Field(max_length=8)] = ()
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    near_crash: NearCrash | None = added(None, "what was avoided where nobody touches; contacts is then empty")
 
 
 class Refusal(Spec):

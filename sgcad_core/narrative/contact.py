@@ -102,7 +102,8 @@ def _blow(
 ) -> Blow | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
-    if (says.NEAR_MISS.search(before) and not says.TO_HIT.search(before)) or _is_noun(before, m.group(), behind):
+    befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
+    if (says.NEAR_MISS.search(before) and not befell) or _is_noun(before, m.group(), behind):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind

@@ -13,6 +13,7 @@ from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
 from sgcad_core.narrative.gaps import Gap
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
+from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
@@ -88,6 +89,8 @@ class CrashFacts:
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
     """Contacts behind the first one with things, and of the same pair once more, in order."""
+    near_crash: NearFacts | None = None
+    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
     unnumbered: bool = False
@@ -162,8 +165,17 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
+        near_crash=_near(draft) if contacts else None,
         courses=draft.course.courses,
         impacts=tuple(read.impact for read in draft.impacts),
         oriented=bool(settled.stated),
         unnumbered=draft.who.counted,
     )
+
+
+def _near(draft: Draft) -> NearFacts | None:
+    near = draft.near
+    if near is None:
+        return None
+    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    return NearFacts(evasions, near.clearance_m, bool(near.blows))
