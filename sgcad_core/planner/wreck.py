@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
-from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
+from sgcad_core.planner.boxes import Apart, apart, mean, touch_points
 from sgcad_core.planner.ground import Drag, RunOut, slow
 from sgcad_core.planner.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
@@ -99,13 +99,25 @@ class Wreck:
         pairs = self._pairs()
         start = self._start(pairs)
         poses = {m.name: m.script.copy() for m in self.movers}
+        drives = {m.name: _last_move(m.script) for m in self.movers}
+        before = None
         for k in range(start, min(self.count - 1, until or self.count)):
             self._sample(k, pairs)
+            state = [_state(m.body) for m in self.movers]
+            over = state == before and self._rests() and all(m.free or k > drives[m.name] for m in self.movers)
             for m in self.movers:
                 if m.free:
-                    poses[m.name][k + 1] = (m.body.x, m.body.y, m.body.heading)
+                    poses[m.name][k + 1 : None if over else k + 2] = (m.body.x, m.body.y, m.body.heading)
+            if over:
+                break
+            before = state
         seen = sorted([*self.past, *((t, pair) for pair, t in self.touches.items())])
         return poses, [Touch(t, *pair) for t, pair in seen]
+
+    def _rests(self) -> bool:
+        """Whether nothing moves and no touch is so new that time alone would change what it does."""
+        latest = max(self.touches.values(), default=0.0)
+        return self.now - latest > _HELD_S + STEP_S and all(m.body.stands for m in self.movers)
 
     def _pairs(self) -> list[tuple[Mover, Mover]]:
         """All pairs but those that overlap from the start: parts of one thing, or scenery."""
@@ -131,13 +143,14 @@ class Wreck:
                 _follow(m, k)
         near = [pair for pair in pairs if _may_meet(*pair)]
         self.now, end = k * STEP_S, (k + 1) * STEP_S
+        seen = None
         while self.now < end - 1e-9:
-            step = min(self._step(near), end - self.now)
+            step = min(self._step(near, seen or _all_apart(near)), end - self.now)
             for m in self.movers:
                 if not m.fixed:
                     self._advance(m, step)
             self.now += step
-            self._resolve(near, k)
+            seen = self._resolve(near, k)
         self._show(near, k)
 
     def _show(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
@@ -147,13 +160,12 @@ class Wreck:
                 seen = apart(a.body, b.body)
                 _shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
-    def _step(self, near: Sequence[tuple[Mover, Mover]]) -> float:
-        """The longest step after which no pair has sunk deeper than it may."""
+    def _step(self, near: Sequence[tuple[Mover, Mover]], gaps: Sequence[Apart]) -> float:
+        """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if near or self.hitches else STEP_S
-        for a, b in near:
-            gap, normal = apart(a.body, b.body)
+        for (a, b), (gap, normal) in zip(near, gaps, strict=True):
             closing = (a.body.vx - b.body.vx) * normal[0] + (a.body.vy - b.body.vy) * normal[1]
-            closing += abs(a.body.spin) * radius(a.body) + abs(b.body.spin) * radius(b.body)
+            closing += abs(a.body.spin) * a.body.radius + abs(b.body.spin) * b.body.radius
             room = gap + 1.2 * SEEN_M if _key(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
             if closing > 0:
                 longest = min(longest, max(room / closing, _SHORTEST_S))
@@ -170,13 +182,17 @@ class Wreck:
             slow(one, m.drag, step, left, run)
 
     # -------------------------------------------------------------- touches
-    def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
-        touching = [(a, b, seen) for a, b in near if self._touches(a, b, seen := apart(a.body, b.body), sample)]
+    def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> Sequence[Apart] | None:
+        """What all touches do at a moment. How far each pair is apart; None where that was changed."""
+        gaps = _all_apart(near)
+        touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
+        if not touching and not self.hitches:
+            return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = mean(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
-        for _ in range(_ROUNDS if touching or self.hitches else 0):
+        for _ in range(_ROUNDS):
             moved = [
                 collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
                 for (a, b, seen), points in zip(touching, corners, strict=True)
@@ -184,11 +200,13 @@ class Wreck:
             ]
             if not any([*moved, *(self._joined(hitch, pull) for hitch in self.hitches)]):
                 break
+        parted = False
         for (a, b, seen), points in zip(touching, corners, strict=True):
-            self._keep_seen(a, b, seen, mean(points), sample)
-            self._part(a, b, seen)
+            self._keep_seen(a, b, seen, points, sample)
+            parted |= self._part(a, b, seen)
         for hitch in self.hitches:
             self._joined(hitch, draw_together)
+        return None if parted or self.hitches else gaps
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
         """What a hitch does to its two bodies, once both are free."""
@@ -230,23 +248,25 @@ class Wreck:
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
-    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> None:
+    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
         """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
         if self.touches[_key(a, b)] <= sample * STEP_S:
             return
+        at = mean(points)
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         allowed = 0.5 * max(-seen.gap_m, 0.0) / left
         parting = -approach(a.body, b.body, at, seen.normal)
         if parting > allowed:
             hold(a.body, b.body, at, seen.normal, parting - allowed)
 
-    def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
-        """Move two apart that sank into each other: places only, no motion comes of it."""
+    def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
+        """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
         held = self.now - self.touches[_key(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
-            return
+            return False
         by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
         _shift(a, b, seen, by)
+        return True
 
 
 def _shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
@@ -256,6 +276,20 @@ def _shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
         share = sign * by_m * one.inverse_mass / total
         one.x += share * seen.normal[0]
         one.y += share * seen.normal[1]
+
+
+def _all_apart(near: Sequence[tuple[Mover, Mover]]) -> list[Apart]:
+    return [apart(a.body, b.body) for a, b in near]
+
+
+def _state(one: Body) -> tuple[float, float, float, float, float, float]:
+    return one.x, one.y, one.heading, one.vx, one.vy, one.spin
+
+
+def _last_move(script: Floats) -> int:
+    """The last sample that differs from the one before it."""
+    moves = np.flatnonzero((np.diff(script, axis=0) != 0.0).any(axis=1))
+    return int(moves[-1]) + 1 if len(moves) else 0
 
 
 def _key(a: Mover, b: Mover) -> tuple[str, str]:
@@ -273,7 +307,7 @@ def _may_meet(a: Mover, b: Mover) -> bool:
     """Whether two can come into touch within a sample."""
     if not (a.free or b.free or _moves(a) or _moves(b)):
         return False
-    reach = radius(a.body) + radius(b.body) + (a.body.speed + b.body.speed) * STEP_S + 0.5
+    reach = a.body.radius + b.body.radius + (a.body.speed + b.body.speed) * STEP_S + 0.5
     return math.hypot(a.body.x - b.body.x, a.body.y - b.body.y) < reach
 
 
