@@ -116,6 +116,10 @@ def _legend(axes: Axes, view: View) -> None:
     if observed:
         text += f"\n{observed['actor']} {observed['actor_area']} meets {observed['other']} {observed['other_area']}"
         text += f" at {observed['t_s']:.2f} s"
+    near = (view.result.get("near_crash") or {}).get("observed")
+    if near and not observed:
+        text += f"\nnear crash: {near['actor']} and {near['other']} closest {near['clearance_m']:.1f} m"
+        text += f" at {near['t_s']:.1f} s"
     box = {"boxstyle": "round,pad=0.4", "facecolor": "white", "alpha": 0.85, "edgecolor": "none"}
     axes.text(0.02, 0.98, text, transform=axes.transAxes, va="top", fontsize=8.5, bbox=box, parse_math=False)
     half = (axes.get_xlim()[1] - axes.get_xlim()[0]) / 2

@@ -5,7 +5,8 @@
   const canvas = $("view"), ink = canvas.getContext("2d");
   const last = Math.max(data.t_s.length - 1, 0), step = last ? data.t_s[1] - data.t_s[0] : 0.05;
   const contact = data.collision.observed, declared = data.collision.declared;
-  const contactStep = contact ? contact.t_s / step : null;
+  const near = data.near_crash, closest = near && !contact ? near.observed : null;
+  const moment = contact || closest, momentStep = moment ? moment.t_s / step : null, contactStep = contact ? momentStep : null;
   const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d" };
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
   let lit = new Set();                                   // things pointed at: "V1", "road main", "contact"
@@ -204,11 +205,11 @@
     if (playing) { if (now >= last) now = 0; before = performance.now(); requestAnimationFrame(tick); }
     draw();
   }
-  const jump = () => { playing = false; if (contact) go(Math.round(contactStep)); };
+  const jump = () => { playing = false; if (moment) go(Math.round(momentStep)); };
   const followOn = () => { follow = !follow; if (follow) box.scale = Math.max(box.scale, 9); draw(); };
 
   $("play").onclick = toggle; $("fit").onclick = fit; $("hit").onclick = jump; $("follow").onclick = followOn;
-  $("hit").hidden = !contact;
+  $("hit").hidden = !moment; if (closest) $("hit").textContent = "closest approach";
   $("time").max = last; $("time").oninput = (e) => { playing = false; go(Number(e.target.value)); };
   canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); }, { passive: false });
   let hovered = "";
@@ -266,6 +267,10 @@
     verdict.textContent = `${sides(...seen)} at ${contact.t_s.toFixed(2)} s` + (declared ? (data.collision.realised ? " · as declared ✓" : " · not as declared ✗") : "");
     verdict.className = !declared ? "" : data.collision.realised ? "good" : "bad";
     $("mark").style.left = `calc(8px + (100% - 16px) * ${contactStep / Math.max(last, 1)})`;
+  } else if (closest) {
+    verdict.textContent = `near crash: ${closest.actor} and ${closest.other} closest ${closest.clearance_m.toFixed(1)} m at ${closest.t_s.toFixed(1)} s` + (near.realised ? " · as declared ✓" : " · not as declared ✗");
+    verdict.className = near.realised ? "good" : "bad";
+    $("mark").style.left = `calc(8px + (100% - 16px) * ${momentStep / Math.max(last, 1)})`;
   } else {
     verdict.textContent = declared ? "the declared contact did not happen ✗" : "no contact"; verdict.className = declared ? "bad" : "";
     $("mark").hidden = true;
@@ -288,7 +293,15 @@
   row($("collision"), ["declared", declared ? sides(declared.striker, declared.striker_area, declared.struck, declared.struck_area) : "none"]);
   row($("collision"), ["observed", contact ? sides(...seen) : "none"]);
   if (contact) row($("collision"), ["first contact", `${contact.t_s.toFixed(2)} s`]);
-  row($("collision"), ["realised", make("td", data.collision.realised ? "yes" : "no", { className: data.collision.realised ? "yes" : "no" })]);
+  if (near) {
+    const told = near.declared, c = told.conflict;
+    row($("collision"), ["avoided", sides(c.striker, c.striker_area, c.struck, c.struck_area)]);
+    row($("collision"), ["evasion", told.evasions.map((e) => `${e.actor} ${words(e.maneuver)}`).join(", ") || "not told"]);
+    row($("collision"), ["clearance", `${told.clearance_m.toFixed(2)} m (${told.clearance_basis})`]);
+    if (closest) row($("collision"), ["closest approach", `${closest.clearance_m.toFixed(2)} m at ${closest.t_s.toFixed(2)} s`]);
+  }
+  const realised = near ? near.realised : data.collision.realised;
+  row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? "yes" : "no" })]);
   const net = data.network || {};
   for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
   if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);

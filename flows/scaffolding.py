@@ -35,6 +35,7 @@ IMPORTS = {
         "from sgcad_core.records import Context",
         "from sgcad_core.specs import Node, Road, RoadSpec",
     ),
+    "driver": ("import pytest", "from sgcad_core.seat import Seat"),
     "simulator": (
         "from sgcad_core.execution.scenario import compile_scenario",
         "from sgcad_core.formats.sumo.netconvert import compile_network",
@@ -70,7 +71,7 @@ def _files(kind: str, name: str) -> dict[str, str]:
     module = f"sgcad_{name}"
     given = {"name": name, "Class": class_name, "module": module, "kind": kind}
     text = string.Template((TEMPLATES / f"{kind}.txt").read_text(encoding="utf-8")).substitute(given)
-    plugin, test, lines = text.split("\n---\n")
+    plugin, test, lines = text.split("\n---\n")  # a driver stands in no config: `sgcad drive --driver NAME`
     return {
         "pyproject.toml": _project(given),
         f"src/{module}.py": plugin + "\n",
@@ -126,7 +127,7 @@ def _example(kind: str, lines: dict[str, object]) -> str:
     base = yaml.safe_load((settings.CONFIGS / BASE).read_text(encoding="utf-8"))
     if kind == "decoder":
         base = yaml.safe_load((settings.CONFIGS / "mini.yaml").read_text(encoding="utf-8"))
-    return yaml.safe_dump(base | lines, sort_keys=False)
+    return yaml.safe_dump(base | (lines or {}), sort_keys=False)
 
 
 def _readme(given: dict[str, str]) -> str:
@@ -139,4 +140,4 @@ A $kind for SG-CADVLM: `src/$module.py`.
     python -m pytest tests
     sgcad check $name.yaml
     sgcad run report.txt --config $name.yaml
-""").substitute(given)
+""").substitute(given) + (f"    sgcad drive runs --driver {given['name']}\n" if given["kind"] == "driver" else "")

@@ -16,7 +16,7 @@ from flows.chain import Ending
 from flows.store import CaseFolder
 from flows.terminal import escape
 from sgcad_core.narrative.limits import BEYOND
-from sgcad_core.result import STATUSES
+from sgcad_core.result import STATUSES, as_declared
 
 MAX_REASONS = 10
 """Reasons printed at the end; all of them stand in the result.json files."""
@@ -89,10 +89,9 @@ def _table(tally: Tally) -> Table:
 
 
 def _realised(endings: list[Ending]) -> str:
-    """Of the executed cases that declare a contact, how many had it first and where declared."""
-    declared = [e for e in endings if e.result["status"] == "generated" and e.result["collision"]["declared"]]
-    hits = sum(e.result["collision"]["realised"] for e in declared)
-    return f"{hits}/{len(declared)}" if declared else "-"
+    """Of the executed cases that declare a contact or a near crash, in how many it came about so."""
+    declared = [hit for e in endings if (hit := as_declared(e.result)) is not None]
+    return f"{sum(declared)}/{len(declared)}" if declared else "-"
 
 
 def _seconds(endings: list[Ending]) -> str:

@@ -86,6 +86,7 @@ class View:
             "config": self.record.config,
             "status": self.result["status"],
             "collision": {**self.result["collision"], "observed": contact or None},
+            "near_crash": self.result.get("near_crash"),
             "network": self.result["network"],
             "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
             "actors": [_actor(mover) for mover in self.movers],

@@ -21,7 +21,7 @@ from sgcad_core.findings import Finding as Finding
 from sgcad_core.findings import Hold as Hold
 from sgcad_core.findings import Severity as Severity
 from sgcad_core.frozen import Record as Record
-from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, RoadLayout, RoadSpec
+from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, NearCrash, RoadLayout, RoadSpec
 
 Floats = NDArray[np.float64]
 Stage = Literal["road", "scenario"]
@@ -138,6 +138,15 @@ class ObservedContact(Record):
     t_s: float
 
 
+class ClosestApproach(Record):
+    """The least distance between the outlines of two boxes, metres (0 on contact), and the first time of it."""
+
+    actor: str
+    other: str
+    clearance_m: float
+    t_s: float
+
+
 class Scenario(Record):
     """An executable scenario. Exactly one of xosc and routes_xml is written."""
 
@@ -146,6 +155,8 @@ class Scenario(Record):
     actors: tuple[ActorInfo, ...]
     behavior: BehaviorSpec | None = None
     declared: Contact | None = None
+    near_crash: NearCrash | None = None
+    """Of a report in which nobody touches; `declared` is then None."""
     planned: tuple[Trajectory, ...] = Field((), repr=False)
     oddity: float = 0.0
     """How far from ordinary driving the actors must go to meet as declared (`Plan.oddity`)."""

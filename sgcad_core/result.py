@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from sgcad_core.execution.contact import realised
+from sgcad_core.execution.contact import avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.judgement import Judgement
+from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.limits import beyond
@@ -85,6 +86,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "network": _network(record.network),
         "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
+        "near_crash": _near_crash(record.scenario, record.execution),
         **judged,
         "grounding": _grounding(record.outcomes),
         "sentences": _sentences(record.reading),
@@ -132,7 +134,23 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
         return "failed", "the scenario was never executed", ()
     if record.scenario and record.scenario.declared and record.execution.contact is None:
         return "exhausted", "scenario: the declared contact does not come about when the scenario runs", ()
+    if _subject_untouched(record):
+        return "exhausted", "scenario: nobody touches the report's subject when the scenario runs", ()
     return "generated", "", ()
+
+
+def _subject_untouched(record: CaseRecord) -> bool:
+    """Whether the report tells a contact of its subject and none comes about; asked where reports number nobody."""
+    crash = record.reading.crash if record.reading else None
+    if crash is None or record.scenario is None or record.execution is None or not crash.unnumbered:
+        return False
+    subject = crash.vehicles[0].id if crash.vehicles else ""
+    if all(subject not in (c.striker, c.struck) for c in crash.contacts):
+        return False
+    sizes = sizes_of(record.scenario)
+    mine = next((t for t in record.execution.trajectories if t.actor == subject), None)
+    others = [t for t in record.execution.trajectories if t.actor != subject]
+    return mine is not None and all(first_contact((mine, other), sizes) is None for other in others)
 
 
 def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
@@ -167,6 +185,32 @@ def _collision(scenario: Scenario | None, execution: Execution | None) -> dict[s
         "realised": realised(declared, observed),
         "observed": observed.model_dump() if observed else None,
     }
+
+
+def _near_crash(scenario: Scenario | None, execution: Execution | None) -> dict[str, Any] | None:
+    """What was avoided and how, the clearance that was declared, and the closest approach that came of it."""
+    near = scenario.near_crash if scenario else None
+    if scenario is None or near is None:
+        return None
+    pair = near.conflict.striker, near.conflict.struck
+    closest = closest_approach(execution.trajectories, sizes_of(scenario), pair) if execution else None
+    declared = near.model_dump(mode="json", exclude={"clearance_m"})
+    basis = "default" if near.clearance_m is None else "told"
+    return {
+        "declared": declared | {"clearance_m": near.closest_m, "clearance_basis": basis},
+        "realised": avoided(near, execution.contact if execution else None, closest),
+        "observed": closest.model_dump() if closest else None,
+    }
+
+
+def as_declared(result: Mapping[str, Any]) -> bool | None:
+    """Whether a generated case's contact, or its near crash, came about as declared; None where it declares neither."""
+    if result.get("status") != "generated":
+        return None
+    collision, near = result.get("collision") or {}, result.get("near_crash")
+    if collision.get("declared"):
+        return bool(collision["realised"])
+    return bool(near["realised"]) if near else None
 
 
 def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:

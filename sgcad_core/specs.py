@@ -9,23 +9,21 @@ copy rather than compute; everything behind the specs is SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    SerializerFunctionWrapHandler,
-    StringConstraints,
-    model_serializer,
-)
+from pydantic import Field, StringConstraints
 
+from sgcad_core.answers import TRAINED, added
+from sgcad_core.answers import Spec as Spec
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
-ActorId = Annotated[str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$")]
+_TRAINED_ID = {"pattern": "^[VPBTO][0-9]{1,2}$"}
+ActorId = Annotated[
+    str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
+]
 Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
@@ -37,54 +35,19 @@ ActorKind = Literal[
     "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
 ]
 Area = Literal["front", "back", "left", "right"]
+EvasiveManeuver = Literal[
+    "none", "braking", "steering", "steering_left", "steering_right", "braking_and_steering",
+    "braking_and_steering_left", "braking_and_steering_right", "accelerating",
+]  # fmt: skip
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
 Surface = Literal["dry", "wet", "snow", "ice"]
 SpeedMph = Annotated[int, Field(ge=0, le=120)]
 SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
 Lanes = Annotated[int, Field(ge=0, le=8)]
-
-
-ADDED = "x-added"
-"""Mark of a field that came after the embedded model was trained: `trained_schema` is without it."""
-
-
-def added(default: Any, description: str) -> Any:
-    """A field that answers may leave out, of places that not every model knows; old specs stay valid."""
-    return Field(default, description=description, json_schema_extra={ADDED: True})
-
-
-class Spec(BaseModel):
-    """A frozen answer: unknown keys are faults. Fields that were `added` are written only where they say something."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    @model_serializer(mode="wrap")
-    def _written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        fields: dict[str, Any] = handler(self)
-        defaults = {name: type(self).model_fields[name].default for name in added_fields(type(self))}
-        return {name: v for name, v in fields.items() if name not in defaults or getattr(self, name) != defaults[name]}
-
-
-def added_fields(model: type[Spec]) -> tuple[str, ...]:
-    """Names of a spec's fields that came after the embedded model was trained."""
-    marks = {name: field.json_schema_extra for name, field in model.model_fields.items()}
-    return tuple(name for name, extra in marks.items() if isinstance(extra, dict) and ADDED in extra)
-
-
-def trained_schema(model: type[Spec]) -> dict[str, Any]:
-    """The JSON schema of a spec without what was added to it and to the specs in it."""
-    found: dict[str, Any] = _without_added(model.model_json_schema())
-    return found
-
-
-def _without_added(schema: Any) -> Any:
-    if isinstance(schema, list):
-        return [_without_added(part) for part in schema]
-    if not isinstance(schema, dict):
-        return schema
-    kept = {key: part for key, part in schema.items() if not (isinstance(part, dict) and ADDED in part)}
-    return {key: _without_added(part) for key, part in kept.items()}
+CLEARANCE_M = 0.6
+"""How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
+width. A convention of ours, marked `default` wherever it stands."""
 
 
 # ------------------------------------------------------------------ road, in full
@@ -169,6 +132,7 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 
 class Access(Spec):
@@ -199,10 +163,16 @@ class RoadLayout(Spec):
 
 
 # ------------------------------------------------------------------ behavior
+_TRAINED_ACTOR = "V<n> as the report numbers it, P pedestrian, B cyclist, T trailer, O object"
+
+
 class Actor(Spec):
     """A road user or object and its pre-crash motion."""
 
-    id: ActorId = Field(description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object")
+    id: ActorId = Field(
+        description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object",
+        json_schema_extra={TRAINED: {**_TRAINED_ID, "description": _TRAINED_ACTOR}},
+    )
     kind: ActorKind
     road: Id = Field(description="road on which it starts")
     direction: Literal["forward", "backward"] = Field(description="forward: from the road's from_node to its to_node")
@@ -223,6 +193,28 @@ class Contact(Spec):
     struck_area: Area
 
 
+class Evasion(Spec):
+    """What one of both did so that they would not touch; a side that is left open is the planner's choice."""
+
+    actor: ActorId
+    maneuver: EvasiveManeuver
+
+
+class NearCrash(Spec):
+    """A conflict in which nobody touches: what would have touched, who evaded how, how near they came."""
+
+    conflict: Contact = Field(description="the contact that would have come about without any evasion")
+    evasions: Annotated[tuple[Evasion, ...], Field(max_length=2)] = ()
+    clearance_m: Annotated[float, Field(ge=0.1, le=10)] | None = Field(
+        None, description="between the bodies at the closest, metres; null where it is not told"
+    )
+
+    @property
+    def closest_m(self) -> float:
+        """The declared clearance, as told or the usual one."""
+        return CLEARANCE_M if self.clearance_m is None else self.clearance_m
+
+
 class BehaviorSpec(Spec):
     """Who moves where and who strikes whom, contacts in order: the first is the first harmful event."""
 
@@ -231,6 +223,7 @@ class BehaviorSpec(Spec):
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    near_crash: NearCrash | None = added(None, "what was avoided where nobody touches; contacts is then empty")
 
 
 class Refusal(Spec):

@@ -22,6 +22,7 @@ from flows.view import COLORS
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.records import Floats
+from sgcad_core.result import as_declared
 
 THUMB_PX = 240
 EVERY_S = 0.5
@@ -86,7 +87,7 @@ def _arm(ran: Ran, values: Mapping[str, float], page: Path) -> dict[str, Any]:
     return {
         "status": ran.result["status"],
         "why": str(ran.result.get("reason") or "")[:300],
-        "declared": bool(collision["realised"]) if ran.generated and collision.get("declared") else None,
+        "declared": as_declared(ran.result),
         "observed": collision.get("observed"),
         "right": [int(values[key] == want) if key in values else None for key, _, want in VERDICTS],
         "level": (ran.metrics.get("exact") or {}).get("emergency_level"),

@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple
 from flows.results.reading import Ran, Study, made_of
 from sgcad_core.metrics.generation import quality, written_files
 from sgcad_core.metrics.truth import NETWORK_FIELDS, compare
-from sgcad_core.result import STATUSES
+from sgcad_core.result import STATUSES, as_declared
 
 Kind = Literal["share", "mean", "ratio"]
 Better = Literal["low", "high", ""]
@@ -182,9 +182,8 @@ def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
     yield "files_faulty", float(counts.faulty)
     yield "attempts", float(len(seen.attempts))
     yield "first_success", quality([seen]).first_success
-    collision = ran.result.get("collision") or {}
-    if ran.generated and collision.get("declared"):
-        yield "as_declared", float(collision["realised"])
+    if (hit := as_declared(ran.result)) is not None:
+        yield "as_declared", float(hit)
 
 
 def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:

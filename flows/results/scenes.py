@@ -17,6 +17,7 @@ from flows.results.table import Tables
 from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.metrics.truth import compare, truth_figures
 from sgcad_core.narrative.text import sentences
+from sgcad_core.result import as_declared
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -210,17 +211,14 @@ def _verdicts(axes: Axes, label: str, ran: Ran | None, truth: Mapping[str, Any] 
     if ran is None:
         axes.text(0, 0.7, "not done yet", size=8, color="#66707a")
         return
-    lines = [(f"first contact {'' if _realised(ran) else 'not '}as declared", _realised(ran))] if ran.generated else []
+    hit, what = as_declared(ran.result), "near crash" if ran.result.get("near_crash") else "first contact"
+    lines = [(f"{what} {'' if hit else 'not '}as declared", bool(hit))] if ran.generated else []
     if truth is not None:
         marks = compare(truth, made_of(ran.folder, ran.result))
         lines += [(name, marks[key] == 1.0) for key, name in MARKS if key in marks]
     for k, (text, right) in enumerate(lines):
         sign = "✓" if right else "✗"
         axes.text(0, 0.74 - 0.13 * k, f"{sign} {text}", size=8, color=GOOD if right else BAD, parse_math=False)
-
-
-def _realised(ran: Ran) -> bool:
-    return bool((ran.result.get("collision") or {}).get("realised"))
 
 
 def _moments(grid: Sequence[Axes], ran: Ran | None) -> None:

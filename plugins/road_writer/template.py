@@ -44,6 +44,9 @@ class Template(RoadWriter):
     ) -> RoadNetwork:
         """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without
         a crash and on a place that cannot be drawn."""
+        gap = context.reading.crash.gap
+        if gap and gap.roads_too:
+            raise Refused(gap.reason, list(gap.missing))
         return self.network_of(context.narrative, context.reading.roads)
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:

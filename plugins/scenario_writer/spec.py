@@ -16,6 +16,7 @@ from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.narrative.behavior import as_read
 from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.specs import BehaviorSpec, RoadSpec
@@ -29,6 +30,9 @@ class SpecScenario(ScenarioWriter):
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     roads: Literal["described", "layout"] = "described"
     """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+
+    near_crashes: bool = False
+    """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
 
     openscenario: Version = DEFAULT_VERSION
     """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
@@ -50,11 +54,12 @@ class SpecScenario(ScenarioWriter):
         query = Query(
             task=load_prompt(self.prompt, roads=self._shown(network, roads)),
             passages=tuple(passages),
-            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}),
+            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}, places=self.near_crashes),
             attempt=attempt,
         )
-        behavior = parse_answer(ask(context, query).text, BehaviorSpec)
         reading = context.reading
+        behavior = parse_answer(ask(context, query).text, BehaviorSpec)
+        behavior = behavior if self.near_crashes else as_read(behavior, reading.crash)
         return compile_scenario(
             behavior, network, self.openscenario, self.encoding,
             may_skid=reading.lost_control, courses=reading.crash.courses, signals=reading.signals,

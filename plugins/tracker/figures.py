@@ -64,12 +64,14 @@ def numbers(tree: Any) -> dict[str, float]:
 def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
     """Final figures of a case: its status, the collision, the network, seconds, grounding, all metrics."""
     network = {k: v for k, v in (result.get("network") or {}).items() if k != "segments"}
-    collision = result.get("collision") or {}
+    collision, near = result.get("collision") or {}, result.get("near_crash") or {}
     figures = {status: float(result["status"] == status) for status in STATUSES}
     figures |= {
         "collision_declared": float(bool(collision.get("declared"))),
         "collision_observed": float(bool(collision.get("observed"))),
         "collision_realised": float(bool(collision.get("realised"))),
+        "near_crash_declared": float(bool(near)),
+        "near_crash_realised": float(bool(near.get("realised"))),
         "actors": float(len(result.get("actors") or ())),
     }
     parts = {"network": network, "attempts": result.get("attempts"), "seconds": result.get("seconds")}

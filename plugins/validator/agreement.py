@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.contact import first_contact, realised
+from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.findings import Finder
 from sgcad_core.formats.agreement import network_disagreements
@@ -62,16 +62,34 @@ class Agreement(Validator):
             return found
         contact = first_contact(motions, sizes_of(artifact))
         found += _starts(artifact.actors, motions, graph, contact) if graph else []
-        return [*found, *self._contact(artifact.declared, contact)]
+        return [*found, *self._contact(artifact.declared, contact), *self._near_crash(artifact, motions, contact)]
 
     def _contact(self, declared: Contact | None, seen: ObservedContact | None) -> Iterator[Finding]:
         """Nothing where the declared contact is the first; without a declared one any contact is noted."""
-        if declared is None and seen is not None:
+        if declared is None and seen is not None:  # of a near crash `_near_crash` says more
             yield _finding("a contact happens that is not declared", "contacts", _seen(seen), "declare it", "note")
         elif declared is not None and not realised(declared, seen):
             what = f"the first contact is not the declared one ({_declared(declared)})"
             remedy = "change lanes, exit roads, maneuvers or the contact so that these sides can meet first"
             yield _finding(what, "contacts[0]", _seen(seen), remedy, self.unrealised)
+
+    def _near_crash(
+        self, scenario: Scenario, motions: Sequence[Trajectory], seen: ObservedContact | None
+    ) -> Iterator[Finding]:
+        """Nothing where nobody touches and the pair comes as near as declared."""
+        near = scenario.near_crash
+        if near is None:
+            return
+        pair = near.conflict.striker, near.conflict.struck
+        closest = closest_approach(motions, sizes_of(scenario), pair)
+        if seen is not None:
+            remedy = "change the evasion, lanes or maneuvers so that nobody touches anybody"
+            yield _finding("a near crash ends in a contact", "near_crash", _seen(seen), remedy, self.unrealised)
+        elif closest is not None and not avoided(near, seen, closest):
+            what = f"the closest approach is not the declared {near.closest_m:g} m (within {CLEARANCE_TOLERANCE_M:g} m)"
+            value = f"{closest.clearance_m:.2f} m at {closest.t_s:.2f} s"
+            remedy = "change roads, maneuvers, the conflict or the evasion so that the two come into conflict"
+            yield _finding(what, "near_crash.clearance_m", value, remedy, self.unrealised)
 
 
 # ------------------------------------------------------------------ actors
@@ -93,6 +111,7 @@ def _contact_actors(scenario: Scenario) -> list[Finding]:
     names = [a.id for a in scenario.actors]
     contacts = scenario.behavior.contacts if scenario.behavior else ()
     every = [scenario.declared, *contacts] if scenario.declared else list(contacts)
+    every += [scenario.near_crash.conflict] if scenario.near_crash else []
     missing = {n for c in every if c for n in (c.striker, c.struck) if n not in names}
     return [
         _finding("a declared contact names no actor", "contacts", name, f"one of {', '.join(names)}")

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import ClassVar, Literal
 
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
+from plugins.validator._near_crash import near_crash_findings
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
@@ -60,7 +61,7 @@ class BehaviorNarrative(Validator):
             found += [*_headings(behavior, facts, spec, ways), *_following(behavior, facts, spec, ways)]
             found += _exits(behavior, facts, spec, ways)
         found += _maneuvers(behavior, facts, spec, self.maneuvers)
-        return [*found, *_contact(behavior, facts, self.areas)]
+        return [*found, *_contact(behavior, facts, self.areas), *near_crash_findings(behavior, facts)]
 
 
 # ------------------------------------------------------------------ vehicles
@@ -224,8 +225,8 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
 
 
 def _stated_contact(facts: CrashFacts) -> ContactFacts | None:
-    """The first contact that the text tells."""
-    return next((c for c in facts.contacts if c.stated), None)
+    """The first contact that the text tells; of a near crash none."""
+    return None if facts.near_crash else next((c for c in facts.contacts if c.stated), None)
 
 
 def _cornered(said: Contact, told: ContactFacts) -> bool:

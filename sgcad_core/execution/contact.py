@@ -1,4 +1,4 @@
-"""The first contact in an execution: exact box overlap over all pairs of actors.
+"""The first contact in an execution (exact box overlap over all pairs of actors), and how near two come without one.
 
 Knows trajectories and sizes; not who was meant to strike whom.
 """
@@ -11,12 +11,15 @@ from typing import cast
 
 import numpy as np
 
+from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
-from sgcad_core.records import ObservedContact, Trajectory
-from sgcad_core.specs import Area, Contact
+from sgcad_core.records import ClosestApproach, ObservedContact, Trajectory
+from sgcad_core.specs import Area, Contact, NearCrash
 
 STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""
+CLEARANCE_TOLERANCE_M = 0.05
+"""A near crash is as declared if its closest approach is off by no more."""
 
 
 def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
@@ -41,6 +44,29 @@ def realised(declared: Contact | None, observed: ObservedContact | None) -> bool
         return False
     seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
     return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+
+
+def closest_approach(
+    trajectories: Sequence[Trajectory], sizes: Mapping[str, Size], pair: tuple[str, str]
+) -> ClosestApproach | None:
+    """How near two actors come over the whole execution; None unless both are in it."""
+    found = {t.actor: t for t in trajectories}
+    if not set(pair) <= set(found):
+        return None
+    a, b = (found[name] for name in pair)
+    n = min(len(a.t_s), len(b.t_s))
+    apart = box_distances(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
+    k = int(apart.argmin())
+    return ClosestApproach(
+        actor=a.actor, other=b.actor, clearance_m=round(float(apart[k]), 3), t_s=round(float(a.t_s[k]), 6)
+    )
+
+
+def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestApproach | None) -> bool:
+    """Whether a near crash is as declared: nobody touches anybody, and the pair comes as near as it says."""
+    if contact is not None or closest is None:
+        return False
+    return abs(closest.clearance_m - near.closest_m) <= CLEARANCE_TOLERANCE_M
 
 
 def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:

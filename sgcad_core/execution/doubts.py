@@ -22,8 +22,8 @@ from sgcad_core.specs import BehaviorSpec, size_m
 
 ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
-_UNMET, _OVER = 4.0, 1.0
-MOST = 5
+_UNMET, _OVER = 10.0, 1.0
+MOST = 4
 """Other readings that are planned."""
 
 
@@ -76,7 +76,9 @@ def least_doubted(
 ) -> Least:
     """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned.
 
-    Where the text leaves a side open, one that is doubted less will do.
+    What the text tells gives way only where the declared contact does not come about at all: on the development reports
+    a corner's other side and other headings resolved three doubts of seven, and each time the codes had it as it was
+    first read. What would resolve a doubt is told all the same.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     if most <= 0.0:
@@ -88,9 +90,10 @@ def least_doubted(
         if left is None:
             continue
         tried.append(Tried(other.words, left))
-        if (left < ODD_FROM or other.open) and left + other.price < best[0]:
+        gives_way = other.open or most >= _UNMET
+        if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
-        if left <= 0.0:
+        if left <= 0.0 and gives_way:
             break
     return Least(best[1], best[2], tuple(tried))
 

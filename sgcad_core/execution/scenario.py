@@ -19,7 +19,7 @@ from sgcad_core.formats.openscenario.writer import (
 )
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
-from sgcad_core.records import ActorInfo, Hold, RoadNetwork, Scenario
+from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.specs import BehaviorSpec, size_m
 from sgcad_core.told_course import NOTHING_TOLD, Courses
 
@@ -61,6 +61,7 @@ def compile_scenario(
         actors=actors,
         behavior=behavior,
         declared=behavior.contacts[0] if behavior.contacts else None,
+        near_crash=None if behavior.contacts else behavior.near_crash,
         planned=planned.trajectories,
         oddity=planned.oddity,
         notes=(*planned.notes, *times.notes),
@@ -99,8 +100,30 @@ def _check_ids(behavior: BehaviorSpec) -> None:
                     "an actor cannot strike itself", f"contacts[{i}]", contact.striker, known, holds=_another(i, ids)
                 )
             )
+    findings += _near_crash(behavior, ids, known)
     if findings:
         raise InvalidOutput("; ".join(f.line() for f in findings), findings)
+
+
+def _near_crash(behavior: BehaviorSpec, ids: list[str], known: str) -> list[Finding]:
+    """What is wrong with a near crash: contacts beside it, unknown actors, one actor in conflict with itself."""
+    near = behavior.near_crash
+    if near is None:
+        return []
+    named = [("conflict.striker", near.conflict.striker), ("conflict.struck", near.conflict.struck)]
+    named += [(f"evasions[{i}].actor", evasion.actor) for i, evasion in enumerate(near.evasions)]
+    found = [
+        _finding("no such actor", f"near_crash.{where}", name, known, holds=_in_place(name, ids))
+        for where, name in named
+        if name not in ids
+    ]
+    if near.conflict.striker == near.conflict.struck:
+        what = "an actor cannot be in conflict with itself"
+        found.append(_finding(what, "near_crash.conflict", near.conflict.striker, known))
+    if behavior.contacts:
+        remedy = "a crash has contacts and no near crash; where nobody touches, leave contacts empty"
+        found.append(_finding("contacts are declared as well", "near_crash", len(behavior.contacts), remedy))
+    return found
 
 
 def _next(place: int, ids: list[str]) -> tuple[Hold, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Box, Floats, corners, overlap
+from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, corners, corners_of, local_points, overlap
 
 
 def distance_to(line: Floats, points: Floats) -> Floats:
@@ -23,6 +23,22 @@ def box_distance(first: Box, second: Box) -> float:
         return 0.0
     one, two = corners(first), corners(second)
     return float(min(distance_to(_ring(one), two).min(), distance_to(_ring(two), one).min()))
+
+
+def box_distances(first: Floats, first_size: Size, second: Floats, second_size: Size) -> Floats:
+    """(n,) distance of two boxes in (n, 3) poses, row by row; 0 where they touch. Convex outlines meet at a corner."""
+    apart = np.minimum(
+        _corner_distances(first, corners_of(second, second_size), first_size),
+        _corner_distances(second, corners_of(first, first_size), second_size),
+    )
+    return np.where(box_gaps(first, first_size, second, second_size) <= 0, 0.0, apart)
+
+
+def _corner_distances(poses: Floats, points: Floats, size: Size) -> Floats:
+    """Least distance of (n, k, 2) points from one box in (n, 3) poses."""
+    beyond = np.maximum(np.abs(local_points(poses, points)) - np.array(size) / 2, 0.0)
+    nearest: Floats = np.hypot(beyond[..., 0], beyond[..., 1]).min(axis=1)
+    return nearest
 
 
 def _ring(points: Floats) -> Floats:

@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.records import Floats
 
@@ -43,27 +44,12 @@ def center_distance(first: Track, second: Track) -> Floats:
 
 def box_distance(first: Track, second: Track) -> Floats:
     """Distance between the two boxes' outlines, metres; 0 where they overlap."""
-    apart = np.minimum(_corner_distance(first, second), _corner_distance(second, first))
-    return np.where(overlaps(first, second), 0.0, apart)
+    return box_distances(first.pose, first.size, second.pose, second.size)
 
 
 def overlaps(first: Track, second: Track) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Whether the boxes share a point, one value an instance."""
     return box_gaps(first.pose, first.size, second.pose, second.size) <= 0
-
-
-def _corner_distance(first: Track, second: Track) -> Floats:
-    """Least distance of the first box's corners from the second box; convex outlines meet at a corner."""
-    along = np.array([1, 1, -1, -1]) * first.size[0] / 2
-    across = np.array([1, -1, -1, 1]) * first.size[1] / 2
-    c, s = np.cos(first.pose[:, 2:]), np.sin(first.pose[:, 2:])
-    x = first.pose[:, :1] + along * c - across * s - second.pose[:, :1]
-    y = first.pose[:, 1:2] + along * s + across * c - second.pose[:, 1:2]
-    c, s = np.cos(second.pose[:, 2:]), np.sin(second.pose[:, 2:])
-    beyond = np.maximum(np.abs(x * c + y * s) - second.size[0] / 2, 0)
-    beside = np.maximum(np.abs(-x * s + y * c) - second.size[1] / 2, 0)
-    nearest: Floats = np.hypot(beyond, beside).min(axis=1)
-    return nearest
 
 
 # ------------------------------------------------------------------ time to collision
@@ -96,6 +82,19 @@ def time_to_collision(first: Track, second: Track) -> Floats:
     leave = np.where(still, np.where(inside, np.inf, -np.inf), times[1]).min(axis=0)
     meets = (enter <= leave) & (leave >= 0)
     return np.where(meets, np.maximum(enter, 0.0), np.inf)
+
+
+def required_deceleration(first: Track, second: Track) -> Floats:
+    """Deceleration rate to avoid the crash (DRAC), m/s^2: what one of both needs at once so that they do not touch.
+
+    Closing speed^2 / (2 * way to the contact), which is closing speed / (2 * TTC); 0 off a collision course, infinite
+    on overlap. Two-dimensional form, along the relative velocity, of J. Archer, Indicators for Traffic Safety
+    Assessment and Prediction, 2005, ch. 2 (there of one who follows another).
+    """
+    ttc = time_to_collision(first, second)
+    closing = np.hypot(*(first.velocity - second.velocity).T)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.isfinite(ttc), np.where(ttc > 0, closing / (2 * ttc), np.inf), 0.0)
 
 
 # ------------------------------------------------------------------ post-encroachment time

@@ -77,6 +77,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
     collision = any(conflict.overlaps(a, b).any() for a, b in pairs)
     ttc = _least([conflict.time_to_collision(a, b).min() for a, b in pairs])
     pet = _soonest([conflict.post_encroachment_time(a, b) for a, b in pairs])
+    needed = [conflict.required_deceleration(a, b)[: _first_overlap(a, b)] for a, b in pairs]
     distance = _least([conflict.box_distance(a, b).min() for a, b in pairs])
     errors = displacement.windowed_velocity_error(motion[ego], limits.prediction_horizon_s)
     score = criticality.emergency_score(collision, ttc, pet.seconds, distance, limits)
@@ -86,6 +87,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
         "time_to_collision_s": ttc,
         "time_to_collision_reason": "measured" if ttc is not None else "never on a collision course",
         "post_encroachment_time_s": pet.seconds, "post_encroachment_time_reason": pet.reason,
+        "required_deceleration_mps2": _most(needed),
         "minimum_distance_m": distance,
         "average_displacement_error_m": errors[0] if errors else None,
         "final_displacement_error_m": errors[1] if errors else None,
@@ -110,6 +112,18 @@ def _impact_speed(pairs: list[tuple[Track, Track]]) -> float | None:
         if hit.size and (first is None or a.t_s[hit[0]] < first[0]):
             first = float(a.t_s[hit[0]]), float(np.hypot(*(_arriving(a, int(hit[0])) - _arriving(b, int(hit[0])))))
     return first[1] if first else None
+
+
+def _first_overlap(a: Track, b: Track) -> int | None:
+    """The instance of the first overlap; None where there is none."""
+    hit = np.flatnonzero(conflict.overlaps(a, b))
+    return int(hit[0]) if hit.size else None
+
+
+def _most(values: list[Floats]) -> float | None:
+    """The largest of all; None without any."""
+    tops = [float(v.max()) for v in values if v.size]
+    return _finite(max(tops)) if tops else None
 
 
 def _arriving(track: Track, k: int) -> Floats:

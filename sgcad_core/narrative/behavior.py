@@ -7,17 +7,21 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
+from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
+from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.roadside import with_roadside
-from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, RoadSpec
+from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, Maneuver, NearCrash, RoadSpec
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
 """Length of what such a vehicle tows, hitch included, metres."""
 _LONGEST_M = 30.0
 _FROM_STOP_MPH = 12
 """After 7 m at 2 m/s^2."""
+_SHIFTS: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
+"""From a ramp these are merges: the lane that one changes to is that of the road."""
 _MOST_ACTORS, _MOST_CONTACTS = 12, 8
 
 
@@ -33,19 +37,42 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     contacts = [c for c in facts.contacts if all(x in {a.id for a in actors} for x in (c.striker, c.struck))]
     if not contacts:
         actors, contacts = _with_others(actors, facts)
-    met = [_contact(c) for c in contacts[:_MOST_CONTACTS]]
+    near = _near_crash(facts, contacts)
+    met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
     cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(
         actors=cast, contacts=blows,
-        light=facts.light, weather=facts.weather, surface=facts.surface,
+        light=facts.light, weather=facts.weather, surface=facts.surface, near_crash=near,
     )  # fmt: skip
+
+
+def _near_crash(facts: CrashFacts, contacts: list[ContactFacts]) -> NearCrash | None:
+    """Of a report in which nobody touches: the contact that was avoided, and how."""
+    near = facts.near_crash
+    return None if near is None or not contacts else near_crash_of(near, _contact(contacts[0]))
+
+
+def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
+    """An answered behavior whose first contact did not come about, where the text tells a near crash; else as it is."""
+    near = facts.near_crash
+    if near is None or not near.stated or not behavior.contacts:
+        return behavior
+    return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
+
+
+def near_crash_of(near: NearFacts, conflict: Contact) -> NearCrash:
+    """A told near crash on a conflict."""
+    pair = (conflict.striker, conflict.struck)
+    evasions = tuple(Evasion(actor=who, maneuver=how) for who, how in near.evasions if who in pair)
+    return NearCrash(conflict=conflict, evasions=evasions, clearance_m=near.clearance_m)
 
 
 def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Actor:
     place = placed[v.id]
     return Actor(
         id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
-        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None, maneuver=v.maneuver,
+        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None,
+        maneuver="merge" if place.way.road.kind == RAMP and v.maneuver in _SHIFTS else v.maneuver,
         speed_mph=_speed_mph(v), length_m=_length(v),
     )  # fmt: skip
 

@@ -169,4 +169,5 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
 
 def _acts(behind: str) -> bool:
     """Whether a verb follows a mention, at once or behind words that say where the vehicle is."""
-    return bool(_VERB.match(behind) or _VERB.match(rule("clauses.located").sub("", behind)))
+    located = (rule("clauses.located"), rule("near_events.located"))
+    return bool(_VERB.match(behind)) or any(_VERB.match(place.sub("", behind)) for place in located)

@@ -102,7 +102,8 @@ def _blow(
 ) -> Blow | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
-    if (says.NEAR_MISS.search(before) and not says.TO_HIT.search(before)) or _is_noun(before, m.group(), behind):
+    befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
+    if (says.NEAR_MISS.search(before) and not befell) or _is_noun(before, m.group(), behind):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
@@ -205,7 +206,8 @@ def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str |
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
-    return None, None
+    anything = says.ANY_OBJECT.match(scope) if who.counted else None
+    return (anything["object"].lower(), None) if anything else (None, None)
 
 
 def _the_other(told: Statement, actor: str, who: Roster) -> str | None:

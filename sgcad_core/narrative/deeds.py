@@ -33,7 +33,8 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         motion.deeds.append(
             Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
         )
-    for deed in of_role("deed"):
+    told_now = of_role("deed_now") if motion.ordered else ()
+    for deed in (*of_role("deed"), *told_now):
         for m in deed.finditer(text):
             before = text[max(0, m.start() - 60) : m.start()]
             hoped = motion.ordered and deed.yields["deed"] in _HOPED and _LATER.search(before)

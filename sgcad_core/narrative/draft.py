@@ -8,6 +8,7 @@ from typing import NamedTuple, get_args
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.course import CoursesRead, ImpactRead
 from sgcad_core.narrative.motion import Cue, Motion
+from sgcad_core.narrative.near_crash import NearMiss
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area, Compass, Maneuver
@@ -34,6 +35,8 @@ class Draft:
     blows: tuple[Blow, ...]
     course: CoursesRead = field(default_factory=CoursesRead)
     impacts: tuple[ImpactRead, ...] = ()
+    near: NearMiss | None = None
+    """Of a report that tells no contact: `blows` are then those that did not come about."""
 
 
 AREAS: tuple[Area, ...] = get_args(Area)

@@ -6,13 +6,14 @@ what it says (relation words, critical events, the sides that touched) and marke
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
 from sgcad_core.narrative.gaps import Gap
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
+from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
@@ -88,8 +89,12 @@ class CrashFacts:
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
     """Contacts behind the first one with things, and of the same pair once more, in order."""
+    near_crash: NearFacts | None = None
+    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
+    unnumbered: bool = False
+    """Whether the report numbers nobody: V1 is its subject."""
     gap: Gap | None = None
     """Why no crash can be drawn from the text, if so."""
 
@@ -128,11 +133,31 @@ def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[Cont
     return tuple(found.values())
 
 
+def _subject_first(
+    vehicles: tuple[VehicleFacts, ...], contacts: tuple[ContactFacts, ...]
+) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
+    """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
+
+    Who was pushed into the subject by another is then under way, which the report does not say.
+    """
+    mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
+    if mine is None or mine is contacts[0]:
+        return vehicles, contacts
+    pair = {v.id: v for v in vehicles if v.id in (mine.striker, mine.struck)}
+    if all(v.standing for v in pair.values()):
+        pushed = next(v for v in pair.values() if v is not vehicles[0])
+        moving = replace(pushed, maneuver="straight", maneuver_stated=False)
+        vehicles = tuple(moving if v is pushed else v for v in vehicles)
+    return vehicles, (mine, *(c for c in contacts if c is not mine))
+
+
 def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
     """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
     beside = others(draft.blows, draft.who.ids)
     contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
+    if draft.who.counted:
+        vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(
         vehicles,
         beside,
@@ -140,7 +165,17 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
+        near_crash=_near(draft) if contacts else None,
         courses=draft.course.courses,
         impacts=tuple(read.impact for read in draft.impacts),
         oriented=bool(settled.stated),
+        unnumbered=draft.who.counted,
     )
+
+
+def _near(draft: Draft) -> NearFacts | None:
+    near = draft.near
+    if near is None:
+        return None
+    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    return NearFacts(evasions, near.clearance_m, bool(near.blows))

@@ -23,6 +23,8 @@ class Gap(NamedTuple):
 
     reason: str
     missing: tuple[str, ...]
+    roads_too: bool = False
+    """Whether the text does not even tell of roads."""
 
 
 _NO_CRASH = Gap("the narrative tells no crash", ("a crash: who touched whom or what",))
@@ -33,7 +35,7 @@ def foreign(text: str) -> Gap | None:
     words = rule("gaps.word").findall(text)
     if len(words) < _FEWEST_WORDS or len(rule("gaps.english").findall(text)) >= _ENGLISH * len(words):
         return None
-    return Gap("the narrative is not in English", ("an English narrative",))
+    return Gap("the narrative is not in English", ("an English narrative",), True)
 
 
 def several(text: str) -> Gap | None:
@@ -42,7 +44,7 @@ def several(text: str) -> Gap | None:
     if len(numbers) < 2:
         return None
     listed = ", ".join(list(numbers)[:4])
-    return Gap(f"the file holds {len(numbers)} reports ({listed})", ("one report a file: split it",))
+    return Gap(f"the file holds {len(numbers)} reports ({listed})", ("one report a file: split it",), True)
 
 
 def _blacked_out(sentences: Sequence[Sentence]) -> bool:
@@ -54,21 +56,21 @@ def _blacked_out(sentences: Sequence[Sentence]) -> bool:
 def without_actors(text: str, sentences: Sequence[Sentence]) -> Gap:
     """Why a text names no vehicle."""
     if _blacked_out(sentences):
-        return Gap("the account of the crash is blacked out", ("an account that is not redacted",))
+        return Gap("the account of the crash is blacked out", ("an account that is not redacted",), True)
     if sentences and all(s.role == "formal" for s in sentences):
         what = "the text gives no account of the crash, only what the report says of itself"
-        return Gap(what, ("what happened, in the narrative",))
+        return Gap(what, ("what happened, in the narrative",), True)
     if sentences and not rule("gaps.crash_word").search(text):
         return _NO_CRASH
     return Gap("the narrative names no vehicle", ("which vehicles were involved", "how they traveled"))
 
 
 def untold(text: str, met: Iterable[bool]) -> Gap | None:
-    """Whether no contact is told, where the vehicles have no numbers; `met`: of each contact, whether it is told."""
+    """Whether no contact of the subject is told; `met`: of each contact, whether it is told and the subject's."""
     known = tuple(met)
     if any(known):
         return None
     if not rule("gaps.crash_word").search(text):
         return _NO_CRASH
-    return Gap("the narrative's crash cannot be read: nobody is told to touch anybody or anything",
+    return Gap("the narrative's crash cannot be read: no contact of the report's subject is told",
                ("who struck whom or what", "with which sides"))  # fmt: skip

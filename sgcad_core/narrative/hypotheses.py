@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.draft import AREAS
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.specs import Maneuver
 
@@ -25,11 +26,8 @@ class Hypothesis(NamedTuple):
     facts: CrashFacts
     words: str
     price: float
-
-    @property
-    def open(self) -> bool:
-        """Whether the text allows it as well as the first reading."""
-        return self.price <= _CORNER
+    open: bool = False
+    """Whether the text is silent on what differs, so that nothing told gives way."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
@@ -52,14 +50,16 @@ def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
             if side != now:
                 other = replace(first, **{f"{role}_area": side})
                 words = f"the {side} of {getattr(first, role)} instead of the {now}"
-                yield Hypothesis(_with_first(facts, other), words, price)
+                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS))
 
 
 def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
     """A maneuver that is inferred gives way to driving straight on, a lane to any lane."""
     for v in pair:
         if not v.maneuver_stated and v.maneuver != "straight":
-            yield _changed(facts, replace(v, maneuver="straight"), f"{v.id} drives straight on", _GUESSED)
+            yield _changed(facts, replace(v, maneuver="straight"), f"{v.id} drives straight on", _GUESSED)._replace(
+                open=True
+            )
         if v.lane is not None or v.lane_word is not None:
             yield _changed(facts, replace(v, lane=None, lane_word=None), f"{v.id} in any lane", _LANE)
 
@@ -88,7 +88,7 @@ def _swapped(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
         return
     other = replace(first, striker=first.struck, struck=first.striker)
     words = f"{other.striker} strikes {other.struck}, not the other way round"
-    yield Hypothesis(_with_first(facts, other), words, _SWAP)
+    yield Hypothesis(_with_first(facts, other), words, _SWAP, not first.stated)
 
 
 def _with_first(facts: CrashFacts, first: ContactFacts) -> CrashFacts:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
@@ -29,11 +30,21 @@ def settle(draft: Draft) -> Settled:
         _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(draft, out, v)))
         if motion.speeds_mph:
             out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
+    _still_moving(draft, out, pairs)
     _mend_headings(draft, out, pairs)
     _complete_headings(draft, out, pairs)
     out.exits = {v: e for v in draft.who.ids if (e := _exit(draft.motions[v], out, v)) is not None}
     out.contacts = join_contacts(draft, out, pairs)
     return out
+
+
+def _still_moving(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
+    """In a near crash one who comes to a stop is seen to slow; only who stood all the time stands."""
+    pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(draft.who.ids[:2])
+    for v in sorted(pair) if draft.near else ():
+        cue = out.sources.get(f"{v} maneuver")
+        if out.maneuvers[v] == "stopped" and cue and rule("near_events.came_to_stop").match(cue.words):
+            out.maneuvers[v] = "slowing"
 
 
 def _stated_headings(draft: Draft, out: Settled) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from sgcad_core.language import rule
 from sgcad_core.narrative.motion import Deed, Motion
 from sgcad_core.specs import Area, Maneuver
 
@@ -49,6 +50,7 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
 
 
 _STANDING = ("stopped", "parked")
+_CHANGES: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
 _MOVING = (
     "moved_on",
     "came_on",
@@ -73,7 +75,11 @@ def _last_state(motion: Motion) -> Decision | None:
         return Decision("parked" if last.kind == "parked" else _stands(states), deed=last)
     if last.kind in ("backing", "u_turn"):
         return Decision("backing" if last.kind == "backing" else "u_turn", deed=last)
-    stood = [d.when for d in states if d.kind in (*_STANDING, "backing")]
+    stood = sorted(d.when for d in states if d.kind in _STANDING)
+    back = [d for d in states if d.kind == "backing" and (not stood or d.when > stood[-1])]
+    if back and not any(d.when > back[-1].when and rule("deeds.forward").search(d.words) for d in states):
+        return Decision("backing", deed=back[-1])
+    stood = sorted([*stood, *(d.when for d in back)])
     since = [d for d in acts if not stood or d.when > stood[-1]]
     return _moving_since(motion, since)
 
@@ -90,7 +96,7 @@ def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
     turns = [d for d in since if d.kind in _TURNS]
     if turns:
         return _as_told(turns[-1])
-    for kind in _PLAIN:
+    for kind in dict.fromkeys((*_CHANGES, *_PLAIN)):
         if deed := next((d for d in since if d.kind == kind), None):
             return Decision(kind, deed=deed)
     wants = [d for d in motion.deeds if d.kind.startswith("want_turn_") and d.weight >= 3]

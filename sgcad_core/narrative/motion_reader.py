@@ -14,9 +14,10 @@ from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
 from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.references import PARTS
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
-from sgcad_core.narrative.vehicles import Roster
+from sgcad_core.narrative.vehicles import Identity, Roster
 
 _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
                           "rest": 2}  # fmt: skip
@@ -33,6 +34,8 @@ def motions(
 ) -> dict[str, Motion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
     found = {v: Motion(ordered=who.counted) for v in who.ids}
+    for identity in who.vehicles if who.counted else ():
+        _read_part(found[identity.id], identity, who)
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
     impact = struck_at if who.counted and struck_at is not None else impact
     for segment in cut:
@@ -54,6 +57,14 @@ def motions(
         if t.role in ("codes", "factors"):
             read_code(found, t, who)
     return found
+
+
+def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
+    """Where a vehicle drives beside the subject, as its first description says: "the lead vehicle"."""
+    words = " ".join(cue.words for cue in identity.described).lower().split()
+    part = next((PARTS[word] for word in words if word in PARTS), None)
+    if part and identity.id != who.ids[0]:
+        motion.kin.append((4, "opposite" if part == "opposite" else "same", who.ids[0], part))
 
 
 def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:

@@ -22,7 +22,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
 from sgcad_core.narrative.contact import Blow, blows
-from sgcad_core.narrative.course import courses_told, cut_by_deeds
+from sgcad_core.narrative.course import CoursesRead, courses_told, cut_by_deeds
 from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
@@ -32,11 +32,13 @@ from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.later_impacts import later_impacts, with_props
 from sgcad_core.narrative.motion_reader import motions
+from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses, tells_hit
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
 from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.road_provenance import road_provenance
 from sgcad_core.narrative.roads import RoadFacts, roads_of
 from sgcad_core.narrative.signal_states import SignalState, SignalTold, signal_states
+from sgcad_core.narrative.study import tells_study
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
@@ -69,7 +71,7 @@ def read(narrative: str | Traced) -> Reading:
     even = normalise(text)
     found = sentences(even)
     named = mentions(found, not numbers_somebody(even.text))
-    return infer(text.text, found, named, events(found, named, clauses(named)))
+    return infer(text.text, found, named, events(found, named, clauses(named), of_study=tells_study(even.text)))
 
 
 def crash_facts(narrative: str) -> CrashFacts:
@@ -112,17 +114,19 @@ def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
     """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
     who = roster((s.text for s in found), counted)
     told = tell(found, who)
-    if counted and (gone := bystanders(blows(told, who), who)):
+    if counted and (gone := bystanders(blows(told, who) or near_misses(told, who), who)):
         who = who.without(gone)
         told = tell(found, who)
     return Mentions(who, told)
 
 
 def bystanders(told: tuple[Blow, ...], who: Roster) -> tuple[str, ...]:
-    """Those who touch nobody, where somebody touches the subject; nobody where that is not told."""
+    """Those who touch nobody, where somebody touches the subject; nobody where that is not told. A subject that is only
+    whoever was described first is no better than the others."""
     met = {v for blow in told for v in (blow.actor, blow.other)}
-    subject = who.ids[0] if who.ids else None
-    return tuple(v for v in who.ids if v not in met) if subject in met and len(met & set(who.ids)) > 1 else ()
+    named = next((v for v in who.vehicles if not v.described or v.id in met), None)
+    subject = named.id if named else None
+    return tuple(v for v in who.ids if v not in met) if subject in met and len(met) > 1 else ()
 
 
 def clauses(named: Mentions) -> tuple[Segment, ...]:
@@ -130,15 +134,18 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
     return segments(named.statements, named.who)
 
 
-def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...]) -> Events:
-    """Motions, contacts, conditions."""
+def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...], *, of_study: bool = False) -> Events:
+    """Motions, contacts (of a near crash those that did not come about), conditions."""
     who, struck = named.who, blows(named.statements, named.who)
-    deeds = cut_by_deeds(named.statements, who)
-    course = courses_told(named.statements, deeds, who)
-    impacts = with_props(later_impacts(named.statements, deeds, who, struck), course)
+    near = None if struck else near_miss(named.statements, cut, who, of_study=of_study)
+    hits = near.blows if near else struck
     subject = who.ids[0] if who.ids else None
-    met = (b.number for b in struck if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
-    draft = Draft(who, motions(named.statements, cut, who, next(met, None)), struck, course, impacts)
+    met = (b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
+    moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, next(met, None))
+    deeds = cut_by_deeds(named.statements, who)
+    course = CoursesRead() if near else courses_told(named.statements, deeds, who)
+    impacts = () if near else with_props(later_impacts(named.statements, deeds, who, struck), course)
+    draft = Draft(who, moved, hits, course, impacts, near)
     return Events(draft, conditions(found), signal_states(cut))
 
 
@@ -154,15 +161,19 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     facts = (*crash_provenance(telling, as_read), *lights, *roles, *course, *road_provenance(telling, roads))
     states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
-    crash = replace(roads.crash, gap=_gap(narrative, found, named.who, roads.crash))
+    crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
     lost = bool(_LOST.search(narrative))
     return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts)
 
 
-def _gap(narrative: str, found: tuple[Sentence, ...], who: Roster, crash: CrashFacts) -> Gap | None:
+def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
     """What keeps the text from being drawn."""
     gap = foreign(narrative) or several(narrative)
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
+    if crash.near_crash or (tells_study(narrative) and not any(map(tells_hit, named.statements))):
+        return None
     alone = len(crash.vehicles) == 1 and not crash.contacts
-    return untold(narrative, (c.stated for c in crash.contacts)) if who.counted or alone else None
+    subject = crash.vehicles[0].id
+    mine = (c.stated and subject in (c.striker, c.struck) for c in crash.contacts)
+    return untold(narrative, mine) if named.who.counted or alone else None

@@ -18,6 +18,9 @@ from sgcad_core.narrative.traced import Traced, joined
 _PHRASE = rule("references.phrase")
 _STATES: dict[str, str] = values("state")
 _ORDERS: dict[str, int] = values("order")
+_PART_OF = {"which was ahead": "ahead", "which was behind": "behind", "which was oncoming": "opposite"}
+PARTS: dict[str, str] = values("beside_part") | {w: _PART_OF[s] for w, s in _STATES.items() if s in _PART_OF}
+"""Words that tell where beside the subject a vehicle is: "the lead car" is ahead of it."""
 _USERS: dict[str, str] = values("road_user")
 _MOST = 8
 """Actors of a report that numbers nobody; further ones stay as they are written."""
@@ -40,6 +43,8 @@ class _Actor:
     announced: bool = False
     at: int = 0
     """Where it was named last."""
+    part: str | None = None
+    """Where it is said to be beside the subject: ahead, behind, opposite, beside."""
     stands: bool = False
     """Whether it is told to be parked or stopped."""
 
@@ -71,6 +76,11 @@ class _Phrase:
         return next((_ORDERS[m] for m in self.modifiers if m in _ORDERS), None)
 
     @property
+    def part(self) -> str | None:
+        """Where beside the subject: "the lead car" is ahead of it."""
+        return next((PARTS[m] for m in self.match.group().lower().split() if m in PARTS), None)
+
+    @property
     def kind(self) -> str:
         """Kind of road user; "vehicle" where the head may be any."""
         user = self.match["user"]
@@ -78,6 +88,11 @@ class _Phrase:
             return _USERS[user.lower()]
         words = self.match.group().lower()
         return "vehicle" if self.head.endswith(_ANY) and not _is_car(self.head) else kind_of(words, None)[0]
+
+    @property
+    def branded(self) -> bool:
+        """Whether a company's name says whose it is: "the Acme vehicle"."""
+        return bool(rule("references.branded").match(self.match["mods"]))
 
     @property
     def stands(self) -> bool:
@@ -117,6 +132,7 @@ class _Cast:
     def meant(self, phrase: _Phrase) -> _Actor | None:
         """Whom a definite phrase means: the last one that its words fit, best fit first; None: nobody so far."""
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
+        others = [a for a in others if phrase.part in (None, a.part)] or [a for a in others if not a.part]
         fitting = [a for a in others if phrase.head in a.heads] or [a for a in others if _fits(a, phrase)]
         if phrase.stands and (standing := [a for a in fitting if a.stands]):
             fitting = standing
@@ -124,6 +140,8 @@ class _Cast:
             ordered = [a for a in fitting if a.order == phrase.order]
             return next(iter(ordered), None) or (fitting[0] if fitting and "other" in phrase.modifiers else None)
         subject = self.subject()
+        if subject and self.automated and phrase.branded and phrase.kind == "vehicle":
+            return subject
         return fitting[0] if fitting else subject if subject and _may_be_subject(subject, phrase) else None
 
     def open(self, phrase: _Phrase) -> _Actor | None:
@@ -143,7 +161,7 @@ def _fits(actor: _Actor, phrase: _Phrase) -> bool:
 
 def _may_be_subject(subject: _Actor, phrase: _Phrase) -> bool:
     """Whether "the vehicle" or "the shuttle" is the report's own."""
-    if rule("references.elsewhere").match(phrase.match.string, phrase.match.end()):
+    if phrase.part or rule("references.elsewhere").match(phrase.match.string, phrase.match.end()):
         return False
     return phrase.kind == "vehicle" or any(head.endswith(phrase.head) for head in subject.heads)
 
@@ -210,6 +228,7 @@ class _Numbering:
         actor.stands = actor.stands or phrase.stands
         actor.announced = actor.announced and self.announcing
         actor.heads.add(phrase.head)
+        actor.part = actor.part or phrase.part
         return self._written(phrase, actor, known is None)
 
     def _is_nobody(self, phrase: _Phrase) -> bool:

@@ -13,6 +13,8 @@ _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 
 
 def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]:
+    if not pairs and draft.who.counted and draft.blows:
+        return []  # the report tells what was touched, and it is no vehicle
     if not pairs and len(draft.who.ids) >= 2:
         a, b = draft.who.ids[:2]
         return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
@@ -84,7 +86,6 @@ def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area 
             and mine.count("/") == 1
             and yours in ("front", None)
             and out.maneuvers[me] not in ("stopped", "parked")
-            and not draft.who.counted
         )
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
     return areas[blow.actor], areas[blow.other]

@@ -93,9 +93,13 @@ class Roster:
         text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
-        text = rule("vehicles.repeated_number").sub(r"\1", text)
+        text = rule("vehicles.repeated_number").sub(self._once, text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
         return rule("common.space").sub(" ", text).strip()
+
+    def _once(self, match: re.Match[str]) -> str:
+        """A number that stands twice; "behind V2, V2 began" of our own numbers are two mentions."""
+        return match.group() if self.counted and "," in match.group() else match.group(1)
 
     @cached_property
     def _named(self) -> re.Pattern[str] | None:

@@ -5,7 +5,7 @@ Works on a scene in which everybody else is placed. Knows behaviors, scenes and 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from sgcad_core.planner.casting import pair_of
 from sgcad_core.planner.resting import Rests, leaving
@@ -46,4 +46,13 @@ def run_out(
     rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes))
     rests.fit()
     missed = strike_things(scene, strikes, rests.surface, rests.cost)
-    return [*missed, *rests.missed()]
+    return [*missed, *rests.missed(), *_rollovers(told)]
+
+
+def _rollovers(told: Courses) -> Iterator[str]:
+    """Endings that a plan view cannot show."""
+    for name, course in told.items():
+        attitude = course.rest.attitude
+        if course.rolls or attitude not in (None, "wheels"):
+            end = {"roof": " onto its roof", "left": " onto its left side", "right": " onto its right side"}
+            yield f"{name} rolls over{end.get(attitude or '', '')}, as told: its box stays flat"

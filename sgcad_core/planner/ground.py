@@ -68,7 +68,8 @@ def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None =
             one.vx = one.vy = 0.0
         else:
             ahead, left = way * along * more * step, drag.across * side * (more if run is None else 1.0) * step
-            left = math.copysign(min(abs(left), abs(across) * speed), left)
+            if run:
+                left = math.copysign(min(abs(left), abs(across) * speed), left)
             one.vx -= ahead * c - left * s
             one.vy -= ahead * s + left * c
             if run and speed > _STEERS_MPS:

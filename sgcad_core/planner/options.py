@@ -71,6 +71,8 @@ class Option:
     pacing: Pacing
     twist: Twist
     extra_cost: float = 0.0
+    dodge: Drift | None = None
+    """A swerve on top of its line, away from a conflict."""
 
     @property
     def cost(self) -> float:
@@ -160,6 +162,8 @@ def driving(option: Option) -> Motion:
     role, place = option.role, option.role.place.station_m
     drift, pace = option.drift, _pace(role, option)
     line = _steered(_line_of(role.course.path, drift, place), option, pace)
+    if option.dodge is not None:
+        line = line.moved(_profile(line.s_m, option.dodge))
     line, path, drivable = _boxed(role, line)
     time, station = drive(line, pace, place, (path, role.course.path))
     drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
@@ -281,8 +285,8 @@ def _pace(role: Role, option: Option) -> Pace:
     if pacing.from_stop and role.course.turn is not None:
         starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
     elif pacing.from_stop:
-        starts = min(line_m(role), role.place.station_m - 6.0)
-    hard = told or bool(option.drift.note or option.twist.note)
+        starts = line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
+    hard = told or bool(option.drift.note or option.twist.note or option.dodge)
     pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
     if role.actor.maneuver == "slowing" or role.told.brakes:

@@ -8,7 +8,7 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from sgcad_core.planner.course import Course
 from sgcad_core.planner.motion import LEAD_S, STEP_S, gentle_mps2
 from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
+from sgcad_core.planner.parting import parted
 from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
 from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import AFTER_S, Scene
@@ -27,7 +28,7 @@ from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.planner.walkers import crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.specs import Actor, BehaviorSpec, Contact, NearCrash, size_m
 from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
 _FURTHER_S = 3.0
@@ -83,11 +84,10 @@ def plan(
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
     cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
-    contacts = cast.usable_contacts()
-    first = contacts[0] if contacts else None
-    scene = cast.encounter(first) if first else None
-    if scene is None:
-        scene = Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
+    contacts = cast.usable(behavior.contacts)
+    near = behavior.near_crash
+    scene = cast.encounter(contacts[0]) if contacts else cast.near_crash(near) if near else None
+    scene = scene or Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
     for contact in contacts[1:]:
         cast.later(scene, contact)
     cast.rest(scene)
@@ -95,9 +95,8 @@ def plan(
     cast.notes += run_out(scene, behavior, contacts[1:], courses, graph)
     observed = scene.first_contact()
     realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
-    order = tuple(a.id for a in behavior.actors)
     return Plan(
-        trajectories=scene.trajectories(order), contact=observed,
+        trajectories=scene.trajectories(tuple(a.id for a in behavior.actors)), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
     )  # fmt: skip
 
@@ -125,10 +124,10 @@ class _Cast:
         """What is struck on the way to rest: placed when that way is known."""
         return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.behavior.contacts[1:]))
 
-    def usable_contacts(self) -> list[Contact]:
-        """Declared contacts between two different actors of the behavior."""
-        found = []
-        for c in self.behavior.contacts:
+    def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
+        """Contacts between two different actors of the behavior."""
+        found: list[Contact] = []
+        for c in contacts:
             known = c.striker in self.actors and c.struck in self.actors and c.striker != c.struck
             if known and self.tractors.get(c.striker) != c.struck and self.tractors.get(c.struck) != c.striker:
                 found.append(c)
@@ -139,6 +138,24 @@ class _Cast:
     # -------------------------------------------------------------- the first contact
     def encounter(self, contact: Contact) -> Scene | None:
         """The scene with the declared pair in contact; None where they cannot be brought together."""
+        found = self._conflict(contact)
+        return None if found is None else self._staged(found)
+
+    def near_crash(self, near: NearCrash) -> Scene | None:
+        """The scene of a conflict with its evasion; None where the two cannot be brought near, or not be parted."""
+        found, notes = parted(self._course_of(near.conflict) if self.usable((near.conflict,)) else None, near)
+        self.notes += notes
+        return self._staged(found) if found else None
+
+    def _course_of(self, conflict: Contact) -> Encounter | None:
+        """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
+        a, b = self._roles(conflict)
+        ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
+        sides = (conflict.striker_area, conflict.struck_area)
+        return search(ordinary, sides) or search(ordinary, None) or self._conflict(conflict)
+
+    def _conflict(self, contact: Contact) -> Encounter | None:
+        """How the declared pair comes to touch; None where they cannot be brought together."""
         a, b = self._roles(contact)
         wanted = (contact.striker_area, contact.struck_area)
         found = search(self._stages(a, b), wanted)
@@ -147,7 +164,7 @@ class _Cast:
         if found is None:
             found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
             self.notes.append(cannot(contact, found))
-        return None if found is None else self._staged(found)
+        return found
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
         """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
@@ -167,29 +184,17 @@ class _Cast:
             a = self._set_rolling(a, b)
         places = self._places(a, b)
         pair = [
-            Role(
-                actor,
-                self.courses[actor.id],
-                size_m(actor),
-                place,
-                side,
-                surface=self.behavior.surface,
-                may_skid=self.may_skid,
-                told=self.told.get(actor.id, CourseTold()),
-            )
+            Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()))
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
-        ]
+        ]  # fmt: skip
         first, second = pair
-        return (
-            facing_other(first, second),
-            facing_other(second, first),
-        )
+        return facing_other(first, second), facing_other(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
         self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
-        rolling = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
-        self.actors[mover.id] = rolling
+        self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
         return self.actors[a.id]
 
     def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:

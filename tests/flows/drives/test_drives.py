@@ -166,3 +166,18 @@ def test_a_drive_takes_less_than_half_a_second(case):
     told = drive_folders([case], Order((driver_entry("idm"),), pages=False), 1)
     assert np.median([t["seconds"] for t in told]) < 0.5
     assert math.isfinite(told[0]["seconds"])
+
+
+def test_cases_may_be_driven_side_by_side_with_the_same_results(tmp_path):
+    for k in range(3):
+        written(tmp_path / "runs" / f"case-{k}", crossing(own=8.0 + 4 * k))
+    order = Order((driver_entry("aeb"),), pages=False, fresh=True)
+    folders = case_folders([tmp_path])
+    alone, together = (drive_folders(folders, order, jobs) for jobs in (1, 2))
+    assert [{**t, "seconds": 0} for t in alone] == [{**t, "seconds": 0} for t in together]
+
+
+def test_copies_that_a_tracker_keeps_are_not_driven(tmp_path):
+    written(tmp_path / "runs" / "kit" / "case-1")
+    written(tmp_path / "runs" / "mlflow-artifacts" / "1" / "run" / "artifacts")
+    assert [f.name for f in case_folders([tmp_path / "runs"])] == ["case-1"]

@@ -56,6 +56,19 @@ def test_a_text_without_vehicle_or_road_is_refused(text: str) -> None:
     assert refusal.value.missing
 
 
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("El coche circulaba por la avenida y fue golpeado por otro que venía en sentido contrario.", "not in English"),
+        ("Case 1: V1 hit V2 on a two-lane road.\nCase 2: V1 hit a tree.", "holds 2 reports"),
+        ("Acme is filing this report under Standing General Order 7 about a vehicle.", "no account of the crash"),
+    ],
+)
+def test_a_text_that_is_no_report_is_refused_before_a_road_is_drawn(text: str, reason: str) -> None:
+    with pytest.raises(Refused, match=reason):
+        write(text)
+
+
 STORY = """
 V1 V2 traveling north eastbound west a two-lane three-lane road intersection T-intersection driveway ramp freeway
 stop sign left turned one-way divided median in each direction two lanes of struck . , from onto curve to the

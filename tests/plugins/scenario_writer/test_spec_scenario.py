@@ -59,8 +59,30 @@ def test_only_roads_of_the_network_can_be_answered():
     answer = model.asked[0][1].answer_schema["anyOf"][0]
     actor = answer["properties"]["actors"]["items"]
     assert actor["properties"]["road"]["enum"] == ["N", "E", "S", "W"]
-    assert set(answer["required"]) == set(CROSSING.model_fields)
+    assert set(answer["required"]) == set(CROSSING.model_fields) - {"near_crash"}
     assert "null" in json.dumps(actor["properties"]["exit_road"])
+
+
+NEAR = {
+    "conflict": CROSSING.contacts[0].model_dump(), "clearance_m": 1.0,
+    "evasions": [{"actor": CROSSING.contacts[0].striker, "maneuver": "braking"}],
+}  # fmt: skip
+
+
+def test_a_model_that_knows_near_crashes_is_asked_for_them():
+    model = Model({**GOOD, "contacts": [], "near_crash": NEAR})
+    scenario = write(model, near_crashes=True)
+    asked = model.asked[0][1].answer_schema["anyOf"][0]
+    assert set(asked["required"]) == set(CROSSING.model_fields)
+    assert "braking_and_steering_left" in json.dumps(asked["properties"]["near_crash"])
+    assert (scenario.declared, scenario.near_crash.closest_m) == (None, 1.0)
+
+
+def test_of_a_model_that_does_not_know_near_crashes_the_first_contact_is_the_one_that_was_avoided():
+    told = Context(narrative="V1 turned left in front of V2. V2 braked to avoid hitting V1.")
+    scenario = SpecScenario().write(told, PASSAGES, (), Model(GOOD), 1, crossroads())
+    assert scenario.declared is None
+    assert scenario.near_crash.conflict == CROSSING.contacts[0]
 
 
 def test_without_spec_the_roads_are_read_from_the_network():

@@ -10,7 +10,7 @@ from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml, to_text
 from sgcad_core.records import CrashReport, Evidence, RoadNetwork, Scenario
-from sgcad_core.specs import Contact
+from sgcad_core.specs import Contact, Evasion, NearCrash
 from tests.sgcad_core.formats.xosc_samples import CROSSING, bent_road, crossroads
 
 REPORT = CrashReport(case="a", narrative="")
@@ -128,3 +128,29 @@ def test_a_scenario_file_that_says_otherwise_than_the_plan_is_judged_by_its_boxe
     small = [a.model_copy(update={"length_m": 1.0}) for a in scenario.actors]
     other = scenario.model_copy(update={"xosc": write_xosc(small, scenario.planned, None)})
     assert len(lines(other)) == 3
+
+
+@pytest.fixture(scope="module")
+def near_crash():
+    conflict = CROSSING.contacts[0]
+    near = NearCrash(conflict=conflict, evasions=(Evasion(actor=conflict.striker, maneuver="braking"),))
+    return compile_scenario(CROSSING.model_copy(update={"contacts": (), "near_crash": near}), crossroads())
+
+
+def test_a_near_crash_passes_where_nobody_touches_and_the_pair_comes_as_near_as_declared(near_crash):
+    assert near_crash.declared is None
+    assert [line for line in lines(near_crash) if "near_crash" in line] == []
+
+
+def test_a_near_crash_that_ends_in_a_contact_or_keeps_too_far_apart_is_asked_again(near_crash, scenario):
+    far = near_crash.near_crash.model_copy(update={"clearance_m": 3.0})
+    (said,) = lines(near_crash.model_copy(update={"near_crash": far}))
+    assert "the closest approach is not the declared 3 m (within 0.05 m) at near_crash.clearance_m" in said
+    hit = scenario.model_copy(update={"declared": None, "near_crash": near_crash.near_crash})
+    assert any("a near crash ends in a contact" in line for line in lines(hit))
+
+
+def test_a_near_crash_needs_its_actors(near_crash):
+    ghost = Contact(striker="V9", struck="V1", striker_area="front", struck_area="left")
+    near = near_crash.near_crash.model_copy(update={"conflict": ghost})
+    assert "found V9" in lines(near_crash.model_copy(update={"near_crash": near}))[0]

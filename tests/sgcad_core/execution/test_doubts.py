@@ -29,17 +29,41 @@ def other_side(facts: CrashFacts) -> BehaviorSpec:
     return crossing()
 
 
+def other_open_side(facts: CrashFacts) -> BehaviorSpec:
+    """The same for sides that nobody tells."""
+    if facts.contacts[0].struck_area == crash_facts(OPEN).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
 def test_no_doubt_tries_nothing() -> None:
     facts = crash_facts(TEXT)
     least = least_doubted(facts, other_side, GRAPH, scenario(0.1))
     assert (least.facts, least.words, least.notes()) == (facts, "", [])
 
 
-def test_the_reading_that_leaves_no_doubt_is_kept() -> None:
+def test_a_told_corner_gives_way_only_where_nothing_comes_about() -> None:
     facts = crash_facts(TEXT)
     least = least_doubted(facts, other_side, GRAPH, scenario(1.5))
+    assert least.facts == facts
+    assert "instead of" in least.notes()[0]
+    assert least.notes()[0].endswith("kept: the first reading")
+    met = scenario(0.0)
+    assert met.behavior is not None
+    wrong = met.behavior.contacts[0].model_copy(update={"struck_area": "left"})
+    unmet = met.model_copy(update={"behavior": met.behavior.model_copy(update={"contacts": (wrong,)})})
+    least = least_doubted(facts, other_side, GRAPH, unmet)
     assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
-    assert least.notes() == [f"doubt 1.5 on the first reading; tried {least.words}: 0.0; kept: {least.words}"]
+
+
+OPEN = "V1 was eastbound. V2 was southbound. V1 struck V2."
+
+
+def test_the_reading_that_leaves_no_doubt_is_kept() -> None:
+    facts = crash_facts(OPEN)
+    least = least_doubted(facts, other_open_side, GRAPH, scenario(1.5))
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+    assert least.notes()[0].endswith(f"{least.words}: 0.0; kept: {least.words}")
 
 
 def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:

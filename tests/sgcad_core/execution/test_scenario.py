@@ -9,7 +9,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.player import play
 from sgcad_core.records import Hold, RoadNetwork
-from sgcad_core.specs import BehaviorSpec, Contact
+from sgcad_core.specs import BehaviorSpec, Contact, Evasion, NearCrash
 from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
 
 
@@ -35,7 +35,16 @@ def contact(striker, struck):
     return Contact(striker=striker, struck=struck, striker_area="front", struck_area="left")
 
 
+def near(striker, struck, *evading):
+    evasions = tuple(Evasion(actor=name, maneuver="braking") for name in evading)
+    return {"contacts": (), "near_crash": NearCrash(conflict=contact(striker, struck), evasions=evasions)}
+
+
 @pytest.mark.parametrize(("change", "where", "value"), [
+    (near("V1", "V3"), "near_crash.conflict.struck", "V3"),
+    (near("V1", "V2", "V1", "V7"), "near_crash.evasions[1].actor", "V7"),
+    (near("V1", "V1"), "near_crash.conflict", "V1"),
+    (near("V1", "V2") | {"contacts": CROSSING.contacts[:1]}, "near_crash", "1"),
     ({"contacts": (contact("V1", "V3"),)}, "contacts[0].struck", "V3"),
     ({"contacts": (*CROSSING.contacts, contact("O1", "V1"))}, "contacts[1].striker", "O1"),
     ({"contacts": (contact("V1", "V1"),)}, "contacts[0]", "V1"),

@@ -46,6 +46,19 @@ def test_time_to_collision_is_when_the_boxes_first_touch(a, b):
         assert not any(touching(t) for t in np.linspace(0, max(ttc - 1e-3, 0), 200) if t < ttc - 1e-6)
 
 
+@pytest.mark.parametrize(("gap_m", "own", "other"), [(20.0, 15.0, 5.0), (8.0, 10.0, 0.0), (30.0, 20.0, -10.0)])
+def test_required_deceleration_is_closing_speed_squared_over_twice_the_gap(gap_m, own, other):
+    first = drive(0, 0, 0, own)
+    second = straight(gap_m + 4.5, 0, 0, other, 0, (4.5, 1.8), 8.0)
+    needed = float(conflict.required_deceleration(first, second)[0])
+    assert needed == pytest.approx((own - other) ** 2 / (2 * gap_m))
+
+
+def test_off_a_collision_course_no_deceleration_is_required():
+    assert not conflict.required_deceleration(drive(0, 0, 0, 10), drive(20, 5, 0, 5)).any()
+    assert np.isinf(conflict.required_deceleration(drive(0, 0, 0, 10), drive(1, 0, 0, 5))[0])
+
+
 @settings(max_examples=100, deadline=None)
 @given(tracks, tracks)
 def test_every_measure_is_the_same_from_both_sides(a, b):

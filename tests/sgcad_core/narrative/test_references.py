@@ -111,6 +111,41 @@ def test_what_cannot_be_read_is_refused_by_name(text: str, reason: str) -> None:
     assert refused.value.missing
 
 
+def test_a_first_mention_that_touches_nobody_is_no_subject() -> None:
+    facts = crash_facts("A car passed by. A van struck the rear of a stopped bus.")
+    assert [(v.id, v.kind) for v in facts.vehicles] == [("V1", "van"), ("V2", "bus")]
+
+
+def test_a_crash_of_others_beside_the_subject_is_refused() -> None:
+    gap = crash_facts("The test vehicle was parked. A van struck the rear of a stopped bus.").gap
+    assert gap is not None
+    assert "subject" in gap.reason
+
+
+def test_the_contact_of_the_subject_comes_before_those_of_others() -> None:
+    facts = crash_facts(
+        "The Acme AV was at a red light. A van stopped behind the Acme AV. A bus struck the rear of the van, and "
+        "the front of the van then made contact with the rear of the stopped Acme AV."
+    )
+    assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1"), ("V3", "V2")]
+    assert [v.maneuver for v in facts.vehicles][:2] == ["stopped", "straight"]
+
+
+def test_an_opened_door_is_a_side_of_its_vehicle() -> None:
+    contact = crash_facts(
+        "The Acme AV was parked. A van passed as a rider in the Acme AV opened the rear left door and the door made "
+        "contact with the right side of the van."
+    ).contacts[0]
+    areas = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+    assert areas == {"V1": "left", "V2": "right"}
+
+
+def test_a_thing_without_a_name_of_its_own_is_hit() -> None:
+    facts = crash_facts("The Acme AV was northbound when its front made contact with a hanging chain.")
+    assert [(c.striker, c.struck) for c in facts.contacts] == [("V1", "O1")]
+    assert facts.others[0].word == "chain"
+
+
 def test_a_car_that_hit_another_car_is_not_alone() -> None:
     facts = crash_facts("A car hit another car. Nobody was hurt.")
     assert [v.id for v in facts.vehicles] == ["V1", "V2"]

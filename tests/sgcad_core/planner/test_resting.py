@@ -70,6 +70,11 @@ def test_what_cannot_be_reached_is_said_with_by_how_much() -> None:
     assert any(note.startswith("V1 comes to rest") for note in made.notes)
 
 
+def test_a_rollover_is_told_since_a_plan_view_cannot_show_it() -> None:
+    made, _ = planned({"V2": CourseTold(rolls=True, rest=RestTold(attitude="roof"))})
+    assert "V2 rolls over onto its roof, as told: its box stays flat" in made.notes
+
+
 def test_two_plans_of_a_told_rest_are_the_same() -> None:
     told = {"V2": CourseTold(rest=RestTold(180.0, "off_road"))}
     first, second = planned(told)[0], planned(told)[0]

@@ -1,0 +1,137 @@
+"""The ways in which wrecks may run out from one blow, and the choice among them.
+
+All ways of a vehicle are told at once (`ground.run_out`); whoever chooses learns from whole simulations how far they
+end elsewhere. Knows bodies and costs; no report and no roads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, Size, box_gaps
+from sgcad_core.planner.ground import RunOut
+
+_BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
+"""Of the friction: from rolling on with bent wheels to four locked ones."""
+_BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
+"""Down to a turning circle of 13 m."""
+_TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
+"""Resistance to turning: rolling tires give less than locked ones."""
+_EACH_BEND = 3
+"""Of the ways of each of two that meet again so many are looked at, for each steering."""
+_PARTED_M = 0.06
+MISSED = 1.5
+"""Cost of a told second contact that does not come about."""
+UNUSUAL = 0.02
+
+
+class Choice(NamedTuple):
+    """Friction, restitution, and how each vehicle runs out."""
+
+    friction: float
+    restitution: float
+    runs: Mapping[str, RunOut]
+
+
+@dataclass
+class VehicleWays:
+    """All ways in which one vehicle may run out from one blow, where each would end, and what that costs."""
+
+    runs: Sequence[RunOut]
+    ways: Floats
+    """(m, n, 3) poses of each way, a coarse step apart."""
+    odd: Floats
+    judge: Callable[[Floats], Floats]
+    size: Size
+    off: Floats = field(default_factory=lambda: np.zeros(3))
+    """How far the whole simulation ended from where the way alone would, at the last try."""
+
+    @property
+    def ends(self) -> Floats:
+        """(n, 3) poses at rest."""
+        last: Floats = self.ways[-1]
+        return last
+
+    def costs(self) -> Floats:
+        """(n,) of each way, as far as is known from the last try."""
+        return self.judge(self.ends + self.off) + self.odd
+
+
+@dataclass
+class BlowWays:
+    """One choice of friction and restitution with its vehicles' ways."""
+
+    friction: float
+    restitution: float
+    again: bool = False
+    """Whether the two meet once more."""
+    vehicles: dict[str, VehicleWays] = field(default_factory=dict)
+    tried: set[tuple[int, ...]] = field(default_factory=set)
+    known: tuple[int, ...] | None = None
+    """What `best` found, until more is learned."""
+
+    def best(self) -> tuple[int, ...]:
+        """The most promising way of each vehicle that was not tried; () where none is left."""
+        if self.known is None:
+            each = [v.costs() for v in self.vehicles.values()]
+            meets = self.again and len(each) == 2
+            self.known = self._meeting(each[0], each[1]) if meets else tuple(int(np.argmin(costs)) for costs in each)
+        return () if self.known in self.tried else self.known
+
+    def _meeting(self, first: Floats, second: Floats) -> tuple[int, ...]:
+        """The cheapest pair of ways that part and meet again, among the best of each."""
+        a, b = self.vehicles.values()
+        mine, theirs = (_various(v.runs, costs) for v, costs in ((a, first), (b, second)))
+        pairs = [(int(i), int(j)) for i in mine for j in theirs if (int(i), int(j)) not in self.tried]
+        if not pairs:
+            return ()
+        i, j = np.array(pairs).T
+        steps = len(a.ways)
+        gaps = box_gaps(a.ways[:, i].reshape(-1, 3), a.size, b.ways[:, j].reshape(-1, 3), b.size).reshape(steps, -1)
+        apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
+        meets = (apart & (gaps <= 0.0)).any(axis=0)
+        best = int(np.argmin(first[i] + second[j] + MISSED * ~meets))
+        return pairs[best]
+
+    def predicted(self) -> float:
+        """What the most promising ways cost."""
+        return sum(float(v.costs()[k]) for v, k in zip(self.vehicles.values(), self.best(), strict=True))
+
+    def choice(self) -> Choice:
+        """The most promising ways, noted as tried."""
+        best = self.best()
+        self.tried.add(best)
+        runs = {name: v.runs[i] for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
+        return Choice(self.friction, self.restitution, runs)
+
+    def learn(self, choice: Choice, ends: Mapping[str, Floats]) -> None:
+        """Take in where the vehicles came to rest in the whole simulation of a choice."""
+        for name, v in self.vehicles.items():
+            v.off = ends[name] - v.ends[v.runs.index(choice.runs[name])]
+        self.known = None
+
+
+def _various(runs: Sequence[RunOut], costs: Floats) -> list[int]:
+    """The cheapest ways of each steering."""
+    by_bend: dict[float, list[int]] = {}
+    for i in np.argsort(costs, kind="stable"):
+        by_bend.setdefault(runs[int(i)].bend_per_m, []).append(int(i))
+    return [i for same in by_bend.values() for i in same[:_EACH_BEND]]
+
+
+def all_runs(from_s: float, grip_mps2: float) -> list[RunOut]:
+    """All ways of running out."""
+    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING)
+    return [RunOut(from_s, share * grip_mps2, bend, turning) for share, bend, turning in ways]
+
+
+def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
+    """A little for every departure from braking straight: of two that do as well the plainer one is taken."""
+    return UNUSUAL * np.array(
+        [abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 for r in runs]
+    )
