@@ -17,8 +17,9 @@ from sgcad_core.planner.ground import Drag, RunOut
 from sgcad_core.planner.hitch import Hitch, hitched
 from sgcad_core.planner.impact import FRICTION, RESTITUTION, body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
+from sgcad_core.planner.movers import Mover, Touch
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.wreck import Mover, Touch, Wreck
+from sgcad_core.planner.wreck import Wreck
 from sgcad_core.records import ObservedContact, Trajectory
 from sgcad_core.specs import ActorKind, Area, Surface
 

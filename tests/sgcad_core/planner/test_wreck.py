@@ -15,7 +15,8 @@ from sgcad_core.planner.boxes import apart, mean, touch_points
 from sgcad_core.planner.ground import Drag, slow
 from sgcad_core.planner.hitch import hitched
 from sgcad_core.planner.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
-from sgcad_core.planner.wreck import Mover, Wreck
+from sgcad_core.planner.movers import Mover
+from sgcad_core.planner.wreck import Wreck
 
 CAR = (4.7, 1.8)
 DRAG = Drag(4.5, 7.0)
