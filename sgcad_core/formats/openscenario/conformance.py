@@ -132,7 +132,8 @@ DIFFERENCES: dict[str, str] = {
     "An entity off all roads, without a map": "esmini stops it when its trajectory ends; ours goes straight on at its "
     "speed",
     "Superelevation": "motion is plane in ours: on a banked bend a lane lies up to some metres beside esmini's",
-    "Lanes that slant or widen": "ours counts the distance along the lane's line, esmini along the reference line",
+    "Lanes that slant or widen": "ours counts the distance along the lane's line, esmini along the reference line; "
+    "where a lane narrows to nothing, ours stays on its line and esmini takes the lane beside it at once",
 }
 """Where our player and esmini part on public files, by element, and what the standard says of it."""
 
