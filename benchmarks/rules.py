@@ -25,6 +25,7 @@ sys.path.insert(0, str(ROOT))
 from mini.evaluate import Answer, fields, source, tally  # noqa: E402
 from mini.feed import HELD_OUT_BASE  # noqa: E402
 from mini.generator.report import Report, make_report  # noqa: E402
+from sgcad_core.errors import Refused  # noqa: E402
 from sgcad_core.narrative.behavior import behavior_of_facts  # noqa: E402
 from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts  # noqa: E402
 from sgcad_core.narrative.reading import road_facts  # noqa: E402
@@ -34,6 +35,8 @@ from sgcad_core.specs import Compass  # noqa: E402
 DEFAULTS = Defaults(lanes_each_way=1, speed_limit_mph=35)
 NOISE = 0.6
 """Share of the usual sentences that tell nothing of the scene, as in mini's own figures."""
+NOTHING: dict[str, Any] = {"actors": [], "contacts": [], "light": None, "weather": None, "surface": None}
+"""The behavior of a report that is refused."""
 _POINTS: tuple[Compass, ...] = tuple(COMPASS)
 _SHARED = {"through_right": "through", "left_through": "through"}
 _ROAD_FIELDS = ("junction", "legs", "lanes", "median", "control", "turns", "curve", "speed_limit")
@@ -48,10 +51,13 @@ def report_of(seed: int, held_out: bool) -> Report:
 
 
 def answer_of(report: Report) -> Answer:
-    """What the rules make of a report, in the form of the model's answers."""
+    """What the rules make of a report, in the form of the model's answers; nobody and nothing where they refuse it."""
     facts = road_facts(report.narrative)
     layout = layout_of_facts(facts, DEFAULTS)
-    behavior = behavior_of_facts(facts.crash, road_spec(layout)).model_dump(mode="json")
+    try:
+        behavior = behavior_of_facts(facts.crash, road_spec(layout)).model_dump(mode="json")
+    except Refused:
+        behavior = dict(NOTHING)
     headings = {v.id: v.heading for v in facts.crash.vehicles}
     speeds = {actor["id"]: actor["speed_mph"] for actor in (report.behavior or {}).get("actors", ())}
     for actor in behavior["actors"]:
@@ -118,6 +124,8 @@ def main() -> None:
         return
     for name, (share, count) in sorted(tally(reports, answers).get("text", {}).items()):
         sys.stdout.write(f"{name:15s} {share:.3f}  n={count}\n")
+    refused = sum(not behavior["actors"] for _, behavior in answers)
+    sys.stdout.write(f"refused, which counts as unread: {refused} of {len(answers)}\n")
     sys.stdout.write(f"processor time of the rules a report: {1000 * spent:.0f} ms\n")
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-JunctionKind = Literal["none", "roundabout", "t", "four_leg", "driveway", "ramp"]
+JunctionKind = Literal["none", "roundabout", "parking_lot", "t", "four_leg", "driveway", "ramp"]
 RoadKind = Literal["road", "driveway", "ramp"]
 Maneuver = Literal[
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
@@ -20,6 +20,7 @@ Maneuver = Literal[
 T: Final = "t"
 FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
+PARKING_LOT: Final = "parking_lot"
 DRIVEWAY: Final = "driveway"
 RAMP: Final = "ramp"
 """Names of junctions and roads for code that treats one of them apart; no other module spells them (a test looks)."""
@@ -47,10 +48,16 @@ class Junction:
         """Whether two roads cross, so that no leg is a stem."""
         return self.legs == 4
 
+    @property
+    def meets(self) -> bool:
+        """Whether it has a leg that one of two roads may lack: a stem, or both legs of the crossing road."""
+        return self.legs > 2 and self.stem != RAMP
+
 
 JUNCTIONS: tuple[Junction, ...] = (
     Junction("none", "a road without a junction", 2, 0, "plain"),
     Junction("roundabout", "a roundabout", 4, 1, "", rule="junction.roundabout", round=True),
+    Junction("parking_lot", "a parking lot", 2, 0, "", stem="driveway", rule="junction.parking_lot"),
     Junction("four_leg", "a four-leg intersection", 4, 1, "four", rule="junction.four"),
     Junction("t", "a T-intersection", 3, 1, "t", rule="junction.t"),
     Junction("driveway", "a driveway", 3, 1, "driveway", stem="driveway"),

@@ -121,6 +121,9 @@ def _answer(record: CaseRecord, stage: str) -> Generation | None:
     return attempt.generation if attempt else None
 
 
+_GENERATED: tuple[Status, str, Sequence[str]] = ("generated", "", ())
+
+
 def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
     if record.failure:
         return "failed", record.failure, ()
@@ -134,9 +137,12 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
         return "failed", "the scenario was never executed", ()
     if record.scenario and record.scenario.declared and record.execution.contact is None:
         return "exhausted", "scenario: the declared contact does not come about when the scenario runs", ()
+    if record.scenario and record.scenario.near_crash:
+        touched = record.execution.contact is not None
+        return ("exhausted", "scenario: in a near crash somebody touches when it runs", ()) if touched else _GENERATED
     if _subject_untouched(record):
         return "exhausted", "scenario: nobody touches the report's subject when the scenario runs", ()
-    return "generated", "", ()
+    return _GENERATED
 
 
 def _subject_untouched(record: CaseRecord) -> bool:

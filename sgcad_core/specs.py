@@ -9,24 +9,17 @@ copy rather than compute; everything behind the specs is SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    SerializerFunctionWrapHandler,
-    StringConstraints,
-    model_serializer,
-)
+from pydantic import Field, StringConstraints
 
+from sgcad_core.answers import TRAINED, added
+from sgcad_core.answers import Spec as Spec
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
-TRAINED = "x-trained"
-"""Mark of a field that has changed since the embedded model was trained: what `trained_schema` has in its place."""
 _TRAINED_ID = {"pattern": "^[VPBTO][0-9]{1,2}$"}
 ActorId = Annotated[
     str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
@@ -55,49 +48,6 @@ Lanes = Annotated[int, Field(ge=0, le=8)]
 CLEARANCE_M = 0.6
 """How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
 width. A convention of ours, marked `default` wherever it stands."""
-
-
-ADDED = "x-added"
-"""Mark of a field that came after the embedded model was trained: `trained_schema` is without it."""
-
-
-def added(default: Any, description: str) -> Any:
-    """A field that answers may leave out, of places that not every model knows; old specs stay valid."""
-    return Field(default, description=description, json_schema_extra={ADDED: True})
-
-
-class Spec(BaseModel):
-    """A frozen answer: unknown keys are faults. Fields that were `added` are written only where they say something."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    @model_serializer(mode="wrap")
-    def _written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        fields: dict[str, Any] = handler(self)
-        defaults = {name: type(self).model_fields[name].default for name in added_fields(type(self))}
-        return {name: v for name, v in fields.items() if name not in defaults or getattr(self, name) != defaults[name]}
-
-
-def added_fields(model: type[Spec]) -> tuple[str, ...]:
-    """Names of a spec's fields that came after the embedded model was trained."""
-    marks = {name: field.json_schema_extra for name, field in model.model_fields.items()}
-    return tuple(name for name, extra in marks.items() if isinstance(extra, dict) and ADDED in extra)
-
-
-def trained_schema(model: type[Spec]) -> dict[str, Any]:
-    """The JSON schema of a spec as it was: without what was added to it and to the specs in it."""
-    found: dict[str, Any] = _as_trained(model.model_json_schema())
-    return found
-
-
-def _as_trained(schema: Any) -> Any:
-    if isinstance(schema, list):
-        return [_as_trained(part) for part in schema]
-    if not isinstance(schema, dict):
-        return schema
-    schema = {**schema, **schema.get(TRAINED, {})}
-    added_since = {key for key, part in schema.items() if isinstance(part, dict) and ADDED in part}
-    return {key: _as_trained(part) for key, part in schema.items() if key not in (TRAINED, *added_since)}
 
 
 # ------------------------------------------------------------------ road, in full
@@ -182,6 +132,7 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 
 class Access(Spec):
@@ -265,10 +216,7 @@ class NearCrash(Spec):
 
 
 class BehaviorSpec(Spec):
-    """Who moves where and who strikes whom, contacts in order: the first is the first harmful event.
-
-    Of a near crash there are no contacts: `near_crash` says what was avoided, and how.
-    """
+    """Who moves where and who strikes whom, contacts in order: the first is the first harmful event."""
 
     actors: Annotated[tuple[Actor, ...], Field(min_length=1, max_length=12)]
     contacts: Annotated[tuple[Contact, ...], Field(max_length=8)] = ()

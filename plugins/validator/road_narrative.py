@@ -17,7 +17,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind, unsupported_kind
+from sgcad_core.kinds import DRIVEWAY, junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
@@ -87,7 +87,7 @@ class RoadNarrative(Validator):
         Where only the sides that touched tell a leg, that is a doubt.
         """
         drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
-        if facts.junction.kind in ("none", RAMP):
+        if not junction_kind(facts.junction.kind).meets:
             return
         if not drawn:
             yield from self._nowhere_to_turn(facts, junctions, pictured)
@@ -247,7 +247,7 @@ def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:
     """Whether the text says that traffic goes both ways, of a street at a junction: both its carriageways are drawn."""
     lanes = road.lanes
     told = lanes.one_way is False or lanes.each_way or len(lanes.toward) == 2
-    crossing = road.kind == "road" and facts.junction.kind not in ("none", RAMP)
+    crossing = road.kind == "road" and junction_kind(facts.junction.kind).meets
     return bool(told and road.axis and crossing) and not lanes.divided and not lanes.one_way
 
 

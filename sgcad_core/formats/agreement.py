@@ -14,7 +14,8 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
 from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
-TOLERANCE_M = 0.5
+TOLERANCE_M, BESIDE_TOLERANCE_M = 0.5, 1.0
+"""Of lanes for cars, and of what lies beside them: outer lanes of a bend are cut farthest from where the road ends."""
 UNEVEN_M = 8.0
 """SUMO cuts the lanes of a road one by one, OpenDRIVE all at one station: the connecting road covers the rest."""
 MAX_EDGES = 12
@@ -56,6 +57,6 @@ def _lane_apart(edge: Edge, lane: Lane, center: Floats) -> Iterator[Finding]:
     probes = resample(lane.shape, np.linspace(0.0, arc_lengths(lane.shape)[-1], 5))
     away = float(distance_to(prolonged(center, UNEVEN_M), probes).max())
     backwards = bool((lane.shape[-1] - lane.shape[0]) @ (center[-1] - center[0]) < 0)
-    if away > TOLERANCE_M or backwards:
+    if away > (BESIDE_TOLERANCE_M if lane.type else TOLERANCE_M) or backwards:
         said = "runs the other way" if backwards else f"{away:.2f} m apart"
         yield _finding(f"lane {lane.index} of edge {edge.id!r} lies elsewhere in the .xodr", value=said)

@@ -61,7 +61,8 @@ class _Back(NamedTuple):
 
     def key(self, link: Connection) -> tuple[str, int, str, int]:
         """A connection of the first network as the second counts its lanes."""
-        starts, ends = (_outside(self.graph.edges[edge]) for edge in (link.from_edge, link.to_edge))
+        starts = _outside(self.graph.edges[link.from_edge], link.from_lane)
+        ends = _outside(self.graph.edges[link.to_edge], link.to_lane)
         counted = replace(link, from_lane=link.from_lane - starts, to_lane=link.to_lane - ends)
         return _key(counted, self.names)
 
@@ -71,9 +72,9 @@ class _Back(NamedTuple):
         return all(self.graph.edges[edge].lanes[lane].type not in LEFT_OUT for edge, lane in places)
 
 
-def _outside(edge: Edge) -> int:
-    """How many lanes at the right are left out."""
-    return sum(lane.type in LEFT_OUT for lane in edge.lanes)
+def _outside(edge: Edge, index: int) -> int:
+    """How many lanes right of a lane are left out."""
+    return sum(lane.type in LEFT_OUT for lane in edge.lanes[:index])
 
 
 def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[Difference]:

@@ -80,7 +80,8 @@ class _Assignment:
     def _heading_cost(self, v: VehicleFacts, way: Way) -> float:
         if v.heading is None or not self.facts.oriented:
             return 0.0
-        off = min(apart(way.heading_rad, angle_of(v.heading)), apart(way.start_rad, angle_of(v.heading)) + 0.2)
+        along = self._flow_rad(way), way.heading_rad
+        off = min(*(apart(h, angle_of(v.heading)) for h in along), apart(way.start_rad, angle_of(v.heading)) + 0.2)
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
@@ -90,8 +91,13 @@ class _Assignment:
         if (way.road.kind == DRIVEWAY) != from_access:
             cost += 1.5 if way.road.kind == DRIVEWAY else 0.6
         if (way.road.kind == RAMP) != from_ramp:
-            cost += 0.8 if way.road.kind == RAMP else 0.4
+            cost += 0.8
         return cost
+
+    def _flow_rad(self, way: Way) -> float:
+        """Where a way heads; who is on a ramp is said to head as the road does that it joins."""
+        onward = exits(way, self.ways) if way.road.kind == RAMP else ()
+        return min(onward, key=lambda w: abs(turn_of(way, w))).heading_rad if onward else way.heading_rad
 
     def _place_cost(self, way: Way) -> float:
         """Approaches to a junction are where crashes are told from; on a plain road, the ways to its middle."""
@@ -135,11 +141,12 @@ class _Assignment:
         cost = 0.0
         if a.heading and b.heading:
             wanted = angle_of(b.heading) - angle_of(a.heading)
-            cost += 3.0 * abs(wrapped(other.heading_rad - one.heading_rad - wanted)) / _QUARTER
+            cost += 3.0 * abs(wrapped(self._flow_rad(other) - self._flow_rad(one) - wanted)) / _QUARTER
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
             cost += 1.2
-        if not same and apart(one.heading_rad, other.heading_rad) < math.radians(30):
+        merge = RAMP in (one.road.kind, other.road.kind)
+        if not same and not merge and apart(one.heading_rad, other.heading_rad) < math.radians(30):
             cost += 0.8
         return cost
 

@@ -7,18 +7,21 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
+from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
 from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.roadside import with_roadside
-from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, NearCrash, RoadSpec
+from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, Maneuver, NearCrash, RoadSpec
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
 """Length of what such a vehicle tows, hitch included, metres."""
 _LONGEST_M = 30.0
 _FROM_STOP_MPH = 12
 """After 7 m at 2 m/s^2."""
+_SHIFTS: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
+"""From a ramp these are merges: the lane that one changes to is that of the road."""
 _MOST_ACTORS, _MOST_CONTACTS = 12, 8
 
 
@@ -68,7 +71,8 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
     place = placed[v.id]
     return Actor(
         id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
-        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None, maneuver=v.maneuver,
+        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None,
+        maneuver="merge" if place.way.road.kind == RAMP and v.maneuver in _SHIFTS else v.maneuver,
         speed_mph=_speed_mph(v), length_m=_length(v),
     )  # fmt: skip
 

@@ -29,7 +29,8 @@ class JunctionFacts:
     """`stem`: bearing of the leg that ends here (T), of the driveway or of the ramp. `stopped`: bearings of the
     legs with a stop or yield sign. `stated`: the text names the kind (else it follows from the motion). `stem_stated`:
     the text says by compass where the stem lies. `unsupported`: kinds of places at which the crash happened and which
-    cannot be drawn. `circle_lanes`: of a roundabout, as told."""
+    cannot be drawn. `circle_lanes`: of a roundabout, as told.
+    `skew_deg`: how far the crossing road is told to miss the right angle; `offset`: its legs do not face each other."""
 
     kind: JunctionKind = "none"
     stem: Compass | None = None
@@ -39,6 +40,8 @@ class JunctionFacts:
     stem_stated: bool = False
     unsupported: tuple[str, ...] = ()
     circle_lanes: int | None = None
+    skew_deg: int = 0
+    offset: bool = False
     notes: tuple[str, ...] = field(default=())
     where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
@@ -48,6 +51,9 @@ _NUMBERED = rule("common.vehicle_begins")
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
 _NO_JUNCTION = rule("junction.no_junction")
+_SKEWED, _OFFSET = rule("junction.skewed"), rule("junction.offset")
+_SKEW_DEG, _MOST_SKEW_DEG = 30, 40
+"""Where no angle is told: AASHTO calls 60 degrees the least that a junction should have."""
 CIRCLE_LANES = rule("junction.roundabout_lanes")
 _CIRCLE_LANE = rule("junction.roundabout_lane")
 
@@ -62,18 +68,24 @@ def junction_of(
         return JunctionFacts(stated=stated)
     control, control_at = control_of(told)
     record = junction_kind(kind)
+    if record.legs == 2:
+        return JunctionFacts(kind, stated=stated, where=_where(kind=_named(story)[1]))
     where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
     halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()
     if record.crossing:
         around = _circle_lanes(story) if record.round else None
-        return JunctionFacts(kind, None, control, halted, stated, circle_lanes=around, where=where)
+        offset = any(_OFFSET.search(t.text) for t in story)
+        more = (around, _skew_deg(story), offset)
+        return JunctionFacts(kind, None, control, halted, stated, False, (), *more, where=where)
     lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
     said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
     said = None if said and _contradicted(said, vehicles) else said
     stem = said or _stem(kind, story, vehicles, roads, halted, lead)
     where |= _where(stem=stem_at if said else None)
-    return JunctionFacts(kind, stem, control, (stem,) if stem and signed else (), stated, said is not None, where=where)
+    halted = (stem,) if stem and signed else ()
+    skew = _skew_deg(story)
+    return JunctionFacts(kind, stem, control, halted, stated, said is not None, skew_deg=skew, where=where)
 
 
 def _where(**cues: Cue | None) -> dict[str, Cue]:
@@ -116,6 +128,14 @@ def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], 
         plain = _JUNCTION.search(text)
         some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
     return "some" if some else "none", some
+
+
+def _skew_deg(story: Sequence[Statement]) -> int:
+    """By how much the crossing road misses the right angle; 0 where the story tells of none."""
+    match = next((m for t in story if (m := _SKEWED.search(t.text))), None)
+    if match is None:
+        return 0
+    return min(abs(90 - int(match["angle"])), _MOST_SKEW_DEG) if match["angle"] else _SKEW_DEG
 
 
 def _circle_lanes(story: Sequence[Statement]) -> int | None:

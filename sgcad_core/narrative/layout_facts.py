@@ -9,12 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, JOINING, RAMP, T, junction_kind
+from sgcad_core.kinds import DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
 from sgcad_core.narrative.carriageway import Carriageway, Way, carriageway
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
+from sgcad_core.narrative.layout_places import circle_lanes, offset, parking_lot, skewed, with_edges
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
@@ -23,8 +24,6 @@ from sgcad_core.specs import Compass, Leg, Median, RoadKind, RoadLayout, Turn
 _RIGHT: tuple[Turn, ...] = ("right",)
 _THROUGH: tuple[Turn, ...] = ("through",)
 _LEFT: tuple[Turn, ...] = ("left",)
-MOST_AROUND = 2
-"""Lanes of a roundabout; wider ones are rare and signed out by exits."""
 OPPOSITE: dict[str, Literal["left", "right"]] = {"left": "right", "right": "left"}
 
 
@@ -50,22 +49,15 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        found = self._roads_alone()
-        return found.model_copy(update={"legs": tuple(self._with_edges(leg, found.legs) for leg in found.legs)})
-
-    def _with_edges(self, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
-        """A leg with what the story tells of its edges; a crosswalk leads over all legs, on a plain road once."""
-        if leg.kind != "road" or self.facts.junction.kind == RAMP:
-            return leg
-        walked = self.facts.crosswalk and (len(legs) > 2 or leg is legs[0])
-        sides = self.facts.beside if not self.facts.crosswalk else (*self.facts.beside, "sidewalk")
-        return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
+        return with_edges(self.facts, self._roads_alone())
 
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()
         junction = self.facts.junction
         if junction.kind == "none":
             return RoadLayout(legs=self._plain(main))
+        if junction.kind == PARKING_LOT:
+            return parking_lot(self.facts, main.axis or "N")
         if junction.kind == RAMP:
             return RoadLayout(legs=self._merge(main))
         if junction.kind == DRIVEWAY:
@@ -73,14 +65,11 @@ class _Builder:
         stem = self._stem(main) if junction.kind == T else None
         if stem and axis_of(stem) == main.axis and cross.axis != main.axis:
             main, cross = cross, main
-        legs = self._through(main, stem) + self._crossing(cross, main, stem)
-        return RoadLayout(legs=legs, circle_lanes=self._circle_lanes(legs))
-
-    def _circle_lanes(self, legs: tuple[Leg, ...]) -> int:
-        """Lanes around, told or as many as the widest entry has; none but in a roundabout."""
-        if not junction_kind(self.facts.junction.kind).round:
-            return 0
-        return self.facts.junction.circle_lanes or min(max(leg.lanes_in for leg in legs), MOST_AROUND)
+        crossing = tuple(skewed(self.facts, leg) for leg in self._crossing(cross, main, stem))
+        if junction.offset and len(crossing) == 2:
+            return offset(self._through(main, crossing[0].bearing), *crossing)
+        legs = self._through(main, stem) + crossing
+        return RoadLayout(legs=legs, circle_lanes=circle_lanes(self.facts, legs))
 
     # -------------------------------------------------------------- roads
     def _two_roads(self) -> tuple[RoadFact, RoadFact]:
@@ -146,10 +135,13 @@ class _Builder:
         return (*self._through(main, stem), drive)
 
     def _merge(self, main: RoadFact) -> tuple[Leg, ...]:
-        """A one-lane ramp that joins from behind on the right, or where its vehicle comes from."""
+        """A one-lane ramp that joins from behind on the right, or where its vehicle comes from, or leaves ahead."""
         flow = self._main_flow(main)
         ramp = next((r for r in self.facts.roads if r.kind == RAMP), None)
         count = (ramp.lanes.total or 1) if ramp else 1
+        if self.facts.leaves:
+            off = Leg(bearing=turned(flow, 45), lanes_in=0, lanes_out=count, kind=RAMP)
+            return (*self._through(main, off.bearing), off)
         at = self.facts.junction.stem
         if at is None or axis_of(at) == main.axis or between(flow, at) not in (135, 225):
             at = turned(flow, 135)

@@ -68,6 +68,8 @@ class RoadFacts:
     crosswalk: bool = False
     """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
     urban: bool = False
+    leaves: bool = False
+    """Whether the ramp that is told leads off the road, not onto it."""
 
     @property
     def streets(self) -> tuple[RoadFact, ...]:
@@ -92,7 +94,8 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban)
+    leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, leaves)
 
 
 def _somebody_walks(crash: CrashFacts) -> bool:
@@ -121,6 +124,7 @@ _MERGE_LANE = rule("roads.merge_lane")
 _RURAL = rule("roads.rural")
 _URBAN = rule("roads.urban")
 _CROSSWALK = rule("roads.crosswalk")
+_EXIT_RAMP, _ENTRANCE_RAMP = rule("roads.exit_ramp"), rule("roads.entrance_ramp")
 _PLACE = rule("roads.place")
 
 

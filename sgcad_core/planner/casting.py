@@ -11,16 +11,19 @@ from dataclasses import replace
 from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import Motion
 from sgcad_core.planner.role import Role, speed_there, usual_speed
+from sgcad_core.planner.stalls import out_of_stall
 from sgcad_core.planner.walkers import at_the_edge
 from sgcad_core.records import ObservedContact
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Actor, Area, Contact
+from sgcad_core.specs import Actor, Area, Contact, size_m
 
 _SPEED_SHOWS_S = 0.3
 
 
 def course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
     course = find_course(graph, actor, gentle)
+    if actor.maneuver == "backing" and course.stalls:
+        return out_of_stall(course, size_m(actor)[0])
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
         return course.reversed()
     keeps_right = actor.kind == "bicycle" and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")

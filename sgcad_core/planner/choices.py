@@ -49,7 +49,9 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     Not `fine`: without those that differ by less than a metre.
     """
     if role.actor.maneuver in _LANE_CHANGES:
-        return _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        joins = role.actor.maneuver == "merge" and any(p.is_junction for p in role.course.passages)
+        changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
     if wanted is not None:
         shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
@@ -201,6 +203,8 @@ def _from_beside(role: Role) -> list[Drift]:
 def pacings(role: Role) -> list[Pacing]:
     if role.actor.kind == "pedestrian":
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
     told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
     found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
     found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]

@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
@@ -67,6 +69,8 @@ class Course:
     """Stations at which crosswalks lead over the way."""
     beside_m: Mapping[str, float] = field(default_factory=dict)
     """To the middle of what lies beside the road (biking, parking, shoulder, sidewalk), right of the own lane."""
+    stalls: bool = False
+    """Whether one parks square to the way: an aisle of a parking lot."""
     astray: bool = False
     """Whether the way that was asked for does not exist: another was taken, or one off the road."""
 
@@ -218,7 +222,8 @@ def _measured(
         path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
         lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
         limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, crosswalks=_crosswalks(graph, path),
-        beside_m=_beside(graph, route.ways[route.start], right), astray=route.astray,
+        beside_m=_beside(graph, route.ways[route.start], right),
+        stalls=_has_stalls(graph, route.ways[route.start]), astray=route.astray,
     )  # fmt: skip
 
 
@@ -229,6 +234,11 @@ def _crosswalks(graph: LaneGraph, path: Path) -> tuple[float, ...]:
         if away.min() < _OVER_M:
             found.append(float(path.s_m[int(away.argmin())]))
     return tuple(sorted(found))
+
+
+def _has_stalls(graph: LaneGraph, way: Way) -> bool:
+    edge = graph.edges.get(way.id)
+    return edge is not None and edge.parameters.get(KIND) == DRIVEWAY and any(x.type == "parking" for x in edge.lanes)
 
 
 def _beside(graph: LaneGraph, way: Way, right_m: float) -> dict[str, float]:

@@ -285,7 +285,7 @@ def _pace(role: Role, option: Option) -> Pace:
     if pacing.from_stop and role.course.turn is not None:
         starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
     elif pacing.from_stop:
-        starts = min(line_m(role), role.place.station_m - 6.0)
+        starts = line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
     hard = told or bool(option.drift.note or option.twist.note or option.dodge)
     pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed

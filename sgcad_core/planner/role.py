@@ -18,6 +18,8 @@ from sgcad_core.specs import Actor, Area, Surface
 from sgcad_core.told_course import CourseTold
 
 MPH = 0.44704
+IN_STALL_M = -1.0
+"""Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
 """Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
 _STEEP_DEG = 60.0
@@ -174,6 +176,8 @@ def facing(side: Area) -> float:
 
 
 def line_m(role: Role) -> float:
-    """Where it would stand at the last stop line before the meeting place."""
+    """Where it would stand at the last stop line before the meeting place; in its stall where it backs out of one."""
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
     return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2

@@ -25,7 +25,9 @@ def stand_offs(role: Role) -> list[Drift]:
 
 
 def askew(role: Role) -> list[Twist]:
-    """Straight in its lane, a little turned, or turned to the other one."""
+    """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
+    if role.course.stalls and role.actor.maneuver == "parked":
+        return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
     return [Twist(0.0), *small, *aiming(role)]
 

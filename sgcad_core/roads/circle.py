@@ -17,7 +17,7 @@ RADIUS_M = {1: 18.0, 2: 26.0}
 """Of the middle of the circulating lanes."""
 SPLITTER_M = 8.0
 """Between entry and exit of a leg at the rim: the base of its splitter island."""
-BETWEEN_M = 12.0
+BETWEEN_M = 13.0
 """Least length of the rim between the lanes of two legs: a car and its gap to both."""
 LONGEST_RAD = math.radians(100)
 """A longer piece of the rim is cut by a node of its own."""

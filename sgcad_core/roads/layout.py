@@ -15,7 +15,7 @@ from typing import get_args
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
-from sgcad_core.roads.road_geometry import BESIDE_M, LANE_M, MEDIAN_M
+from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m, is_aisle
 from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -25,6 +25,8 @@ LEG_M = 240.0
 """Length of a leg: 8 s at 65 mph, so that every approach begins on the road."""
 ARC_M = 120.0
 """A curved leg bends over this length from the hub; beyond, it runs straight."""
+_LONGEST_M = {RAMP: ARC_M, "aisle": 80.0}
+"""Legs that are shorter than others: a long ramp would meet the road that it joins, and aisles are no longer."""
 ACCESS_M = 45.0
 ACCESS_ROAD_M = 80.0
 BEYOND_JOINT_M = 60.0
@@ -48,12 +50,12 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     A leg with an access far out is longer. A roundabout has a circle of nodes in place of the hub.
     """
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
-    mouths = [Mouth(leg.bearing, _angle(leg.bearing), _width(leg), "sidewalk" in leg.beside) for leg in legs]
+    mouths = [Mouth(leg.bearing, _angle(leg), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
     nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
-        length_m = min(leg_m, ARC_M) if leg.kind == RAMP else leg_m  # a long ramp would meet the road that it joins
+        length_m = min(leg_m, _LONGEST_M.get("aisle" if is_aisle(leg) else leg.kind, leg_m))
         drawn = _LegDrawing(leg, _path(leg, legs, rim), _clearance(leg, legs, rim), _crowd(layout, leg), length_m, rim)
         leg_nodes, leg_roads = drawn.draw(accesses)
         nodes += leg_nodes
@@ -115,8 +117,9 @@ def _node(name: str, place: tuple[float, float], control: NodeControl = "none") 
     return Node(id=name, x_m=round(place[0], 2), y_m=round(place[1], 2), control=control)
 
 
-def _angle(bearing: Compass) -> float:
-    return math.radians(90 - 45 * COMPASS.index(bearing))
+def _angle(leg: Leg) -> float:
+    """Where a leg lies, radians counter-clockwise from east."""
+    return math.radians(90 - 45 * COMPASS.index(leg.bearing) - leg.skew_deg)
 
 
 def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
@@ -126,17 +129,17 @@ def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:
     """
     bend = {"none": 0.0, "left": -1 / RADIUS_M, "right": 1 / RADIUS_M}[leg.curve]
     if rim:
-        return _Path(_angle(leg.bearing), bend, rim.radius_m)
-    return _Path(_ramp_angle(leg, legs) if leg.kind == RAMP else _angle(leg.bearing), bend)
+        return _Path(_angle(leg), bend, rim.radius_m)
+    return _Path(_ramp_angle(leg, legs) if leg.kind == RAMP else _angle(leg), bend)
 
 
 def _ramp_angle(leg: Leg, legs: Sequence[Leg]) -> float:
     """A ramp leans to the road that it joins where that lies within 45 degrees."""
-    own = _angle(leg.bearing)
+    own = _angle(leg)
     for other in legs:
-        gap = (_angle(other.bearing) - own + math.pi) % (2 * math.pi) - math.pi
+        gap = (_angle(other) - own + math.pi) % (2 * math.pi) - math.pi
         if other.kind != RAMP and 0.1 < abs(gap) < math.radians(50):
-            return _angle(other.bearing) - math.copysign(RAMP_ANGLE, gap)
+            return _angle(other) - math.copysign(RAMP_ANGLE, gap)
     return own
 
 
@@ -150,7 +153,7 @@ def _clearance(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> float:
 def _width(leg: Leg) -> float:
     """Lanes and median of a leg, metres."""
     lanes = (leg.lanes_in + leg.lanes_out + leg.center_turn_lane) * LANE_M + MEDIAN_M[leg.median]
-    return lanes + sum(BESIDE_M[what] for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
+    return lanes + sum(beside_m(leg, what) for what in leg.beside) * ((leg.lanes_in > 0) + (leg.lanes_out > 0))
 
 
 def _crowd(layout: RoadLayout, leg: Leg) -> float:

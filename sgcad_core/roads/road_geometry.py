@@ -15,7 +15,8 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.specs import Beside, Node, Road, RoadSpec
+from sgcad_core.roads.ramps import joined
+from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec
 
 Direction = Literal["forward", "backward"]
 
@@ -28,6 +29,10 @@ MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier":
 """Gap between the directions. Grass medians are often wider; beyond this a junction no longer looks like one."""
 BESIDE_M: Mapping[Beside, float] = {"bike_lane": 1.5, "parking": 2.4, "shoulder": 2.4, "sidewalk": 1.8}
 """Usual widths (AASHTO 2018: 5, 8, 8 and 6 ft)."""
+STALL_M = 5.5
+"""Depth of the stalls along an aisle of a parking lot (18 ft): one parks square to it."""
+AISLE_LANE_M = 3.6
+"""Half of an aisle between square stalls (24 ft)."""
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
@@ -104,7 +109,19 @@ def lane_width_m(road: Road) -> float:
     """Lane width in metres."""
     if road.circle:
         return CIRCLE_LANE_M
+    if is_aisle(road):
+        return AISLE_LANE_M
     return DRIVEWAY_LANE_M if road.kind == DRIVEWAY else LANE_M
+
+
+def is_aisle(road: Road | Leg) -> bool:
+    """Whether it is an aisle of a parking lot: a driveway with room to park beside it."""
+    return road.kind == DRIVEWAY and "parking" in road.beside
+
+
+def beside_m(road: Road | Leg, what: Beside) -> float:
+    """Width of what lies beside the lanes, metres."""
+    return STALL_M if what == "parking" and is_aisle(road) else BESIDE_M[what]
 
 
 def beside(road: Road) -> tuple[Beside, ...]:
@@ -126,7 +143,20 @@ def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequen
     there = meeting[road.from_node], meeting[road.to_node]
     opens = _opens(road, there[0]), _opens(road, there[1])
     gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
-    return Roadway(road, smooth(points), median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+    line = smooth(points) + _beside_road(road, nodes, meeting)
+    return Roadway(road, line, median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+
+
+def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
+    """How far a ramp lies to the right of a line through its nodes, so that it meets its road's outer lane: (2,)."""
+    way = joined(road, nodes, meeting)
+    if way is None:
+        return np.zeros(2)
+    both, width = two_way(way.road), lane_width_m(way.road)
+    inner = (median_gap_m(way.road) + has_center_lane(way.road) * width) / 2 if both else -way.lanes * width / 2
+    right = np.array([way.travel[1], -way.travel[0]])
+    found: Floats = right * (inner + (way.lanes - 0.5) * width)
+    return found
 
 
 def _opens(road: Road, meeting: Sequence[Road]) -> bool:

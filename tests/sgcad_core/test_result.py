@@ -1,6 +1,7 @@
 """result.json: statuses, collision, figures of the network."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from sgcad_core.execution.contact import realised
+from sgcad_core.narrative.reading import read
 from sgcad_core.records import (
     ActorInfo,
     Attempt,
@@ -132,6 +134,16 @@ def test_a_near_crash_is_realised_where_nobody_touches_and_both_come_as_near_as_
     near = result_of(passing(apart_m, observed, clearance_m))["near_crash"]
     assert near["realised"] is realised
     assert near["declared"]["clearance_basis"] == ("told" if clearance_m else "default")
+
+
+@pytest.mark.parametrize(("observed", "status"), [(None, "generated"), (contact(), "exhausted")])
+def test_a_subject_that_nobody_touches_is_right_in_a_near_crash_alone(observed, status):
+    text = "The subject vehicle was traveling north when a car turned left in front of it. The subject nearly hit it."
+    record = replace(passing(0.6, observed), reading=read(text))
+    assert result_of(record)["status"] == status
+    hit = read("A passenger car struck the Waymo AV in the rear. The Waymo AV was stopped.")
+    crash = replace(record, reading=hit, outcomes={**record.outcomes, "scenario": executed().outcomes["scenario"]})
+    assert result_of(replace(crash, execution=passing(0.6).execution))["status"] == "exhausted"
 
 
 def test_what_was_not_generated_or_declares_nothing_is_neither_right_nor_wrong():

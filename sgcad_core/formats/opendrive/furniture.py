@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.formats.opendrive.crosswalks import Crosswalk
+from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Crosswalk, Stall
 from sgcad_core.formats.opendrive.elements import add, number
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
-from sgcad_core.formats.opendrive.streets import Street
 from sgcad_core.formats.xml import Element
 
 STOP_LINE = "stopLine"
 
 
 def add_objects(
-    road: Element, street: Street, stop_lines: Sequence[StopLine], crosswalks: Sequence[Crosswalk] = ()
+    road: Element, stop_lines: Sequence[StopLine], crosswalks: Sequence[Crosswalk], stalls: Sequence[Stall]
 ) -> None:
-    """Stop lines and crosswalks; no <objects> where there are none."""
-    if not stop_lines and not crosswalks:
+    """Stop lines, crosswalks and parking spaces; no <objects> where there are none."""
+    if not stop_lines and not crosswalks and not stalls:
         return
     objects = add(road, "objects")
     for line in stop_lines:
@@ -32,6 +31,13 @@ def add_objects(
 
     for walk in crosswalks:
         _add_crosswalk(objects, walk)
+    for stall in stalls:
+        made = add(objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none")
+        _place(made, stall.s_m, stall.t_m, 0.0)
+        sizes = ("hdg", stall.hdg_rad), ("length", stall.length_m), ("width", STALL_WIDTH_M), ("height", 0.0)
+        for name, value in sizes:
+            made.set(name, number(value))
+        add(made, "parkingSpace", access="all")
 
 
 def _add_crosswalk(objects: Element, walk: Crosswalk) -> None:

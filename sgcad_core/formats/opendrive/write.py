@@ -6,13 +6,14 @@ Everything is taken from the .net.xml, so that both files describe one thing. Me
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import count
 
 import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.opendrive.areas import crosswalks_of, stalls_of
 from sgcad_core.formats.opendrive.connecting import Connector, way
-from sgcad_core.formats.opendrive.crosswalks import crosswalks_of
 from sgcad_core.formats.opendrive.elements import (
     add,
     add_connector_lanes,
@@ -71,7 +72,9 @@ class _Document:
         crossed = dict.fromkeys(graph.edges[c.from_edge].to_node for c in links)
         self.junctions = {node: str(i) for i, node in enumerate(crossed, 1)}
         self.control = control_of(graph, roads)
-        self.crosswalks = crosswalks_of(graph, roads, first_id=len(self.control.stop_lines) + 1)
+        ids = map(str, count(len(self.control.stop_lines) + 1))
+        self.crosswalks = crosswalks_of(graph, roads, ids)
+        self.stalls = {street.id: tuple(stalls_of(street, ids)) for street in roads}
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -125,7 +128,8 @@ class _Document:
         add_pieces(add(road, "planView"), street.line)
         add_street_lanes(add(road, "lanes"), street)
         lines = [line for line in self.control.stop_lines if line.road == street.id]
-        add_objects(road, street, lines, [walk for walk in self.crosswalks if walk.road == street.id])
+        walks = [walk for walk in self.crosswalks if walk.road == street.id]
+        add_objects(road, lines, walks, self.stalls[street.id])
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:

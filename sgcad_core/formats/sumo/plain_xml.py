@@ -23,10 +23,10 @@ from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.lane_graph import edge_id
 from sgcad_core.roads.road_geometry import (
-    BESIDE_M,
     Direction,
     Roadway,
     beside,
+    beside_m,
     has_center_lane,
     lane_width_m,
     lanes,
@@ -154,7 +154,7 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     edge.set("shape", _shape(way.left_border(direction)))
     for index, what in enumerate(outer):
         use = BESIDE[what]
-        lane = etree.SubElement(edge, "lane", index=str(index), width=f"{BESIDE_M[what]:g}", type=use.type)
+        lane = etree.SubElement(edge, "lane", index=str(index), width=f"{beside_m(road, what):g}", type=use.type)
         lane.set("allow", use.allow)
     for index in range(len(outer), count) if "sidewalk" in outer else ():
         etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)

@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.geometry.distances import distance_to
+from sgcad_core.geometry.plane import arc_lengths
 from sgcad_core.roads.layout import COMPASS, LEG_M, road_spec
-from sgcad_core.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
+from sgcad_core.specs import Access, Compass, Leg, Median, Node, Road, RoadLayout, RoadSpec
 
 
 def leg(bearing: str, lanes_in: int = 1, lanes_out: int = 1, **more: object) -> Leg:
@@ -164,3 +166,21 @@ def test_every_layout_compiles_to_one_network_with_its_lanes(chosen: list[Leg]) 
     for x in both:
         assert len(graph.edges[x.bearing].car_lanes) == x.lanes_in
         assert len(graph.edges[f"-{x.bearing}"].car_lanes) == x.lanes_out
+
+
+@pytest.mark.parametrize("own", ["N", "NE", "E"])
+@pytest.mark.parametrize(("lanes", "median"), [(1, "none"), (2, "grass"), (3, "grass"), (3, "barrier")])
+@pytest.mark.parametrize("leaves", [False, True])
+def test_a_ramp_meets_the_outer_lane_of_its_road(own: Compass, lanes: int, median: Median, leaves: bool) -> None:
+    back = COMPASS[(COMPASS.index(own) + 4) % 8]
+    side = COMPASS[(COMPASS.index(own) + (5 if leaves else -1)) % 8]
+    legs = [Leg(bearing=at, lanes_in=lanes, lanes_out=lanes, median=median) for at in (own, back)]
+    ramp = Leg(bearing=side, lanes_in=int(not leaves), lanes_out=int(leaves), kind="ramp")
+    spec = road_spec(RoadLayout(legs=(*legs, ramp)))
+    graph = parse_net(compile_network(plain_xml(spec), spec).net_xml or "")
+    ends = (own, f"-{side}") if leaves else (side, f"-{back}")
+    link = next(c for c in graph.connections if (c.from_edge, c.to_edge) == ends)
+    outer = graph.edges[own if leaves else f"-{back}"].lanes[0].shape
+    at_road = link.via_shape[0 if leaves else -1]
+    assert float(distance_to(outer, at_road[None])[0]) < 0.05
+    assert 5.0 < float(arc_lengths(link.via_shape)[-1]) < 30.0, "it joins beside the lane, not across the road"

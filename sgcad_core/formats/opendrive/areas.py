@@ -1,18 +1,22 @@
-"""Crosswalks of a map: the areas of SUMO's crossings, told by the streets that they lead over. Metres; no XML."""
+"""Areas on the ground: crosswalks, which are SUMO's crossings, and the stalls along aisles. Metres; no XML."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.formats.opendrive.reference import pose_at
 from sgcad_core.formats.opendrive.streets import Street
+from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.plane import Floats, parallel_polyline
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.lane_graph import LaneGraph
+
+STALL_WIDTH_M = 2.7
+"""Of a parking space (9 ft)."""
 
 
 class Crosswalk(NamedTuple):
@@ -27,10 +31,32 @@ class Crosswalk(NamedTuple):
     corners: Floats
 
 
-def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], first_id: int) -> tuple[Crosswalk, ...]:
-    """All crosswalks, ids counted from `first_id`."""
-    ids = map(str, count(first_id))
+def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
+    """All crosswalks, with the next ids."""
     return tuple(walk for street in roads for walk in _over(street, graph, ids))
+
+
+class Stall(NamedTuple):
+    """A parking space square to an aisle; ids are those of objects. `hdg_rad`: into the stall, from the road's."""
+
+    id: str
+    s_m: float
+    t_m: float
+    hdg_rad: float
+    length_m: float
+
+
+def stalls_of(street: Street, ids: Iterator[str]) -> Iterator[Stall]:
+    """The stalls along an aisle of a parking lot; none along other roads."""
+    if street.forward.parameters.get(KIND) != DRIVEWAY:
+        return
+    for strip in (*street.right, *street.left):
+        if strip.type == "parking":
+            side = 1.0 if strip.id > 0 else -1.0
+            for i in range(int(street.length_m / STALL_WIDTH_M)):
+                s_m = (i + 0.5) * STALL_WIDTH_M
+                t_m = (street.border_t(strip, s_m) + street.border_t(strip, s_m, inner=True)) / 2
+                yield Stall(next(ids), s_m, t_m, side * math.pi / 2, strip.width_at(s_m))
 
 
 def _over(street: Street, graph: LaneGraph, ids: Iterator[str]) -> Iterator[Crosswalk]:

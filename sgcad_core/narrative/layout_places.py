@@ -1,0 +1,63 @@
+"""What a story tells of places, put into a layout: edges of roads, crosswalks, roundabouts, skew and offset.
+
+Knows no geometry and no file format.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
+from sgcad_core.narrative.compass import between, turned
+from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.roads import RoadFacts
+from sgcad_core.specs import Access, Compass, Leg, RoadLayout
+
+OFFSET_M = 35.0
+"""Between the two T junctions of an offset crossing: reports tell that it is offset, seldom by how much."""
+MOST_AROUND = 2
+"""Lanes of a roundabout; wider ones are rare and signed out by exits."""
+
+
+def with_edges(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
+    """The layout with what the story tells of its roads' edges."""
+    return layout.model_copy(update={"legs": tuple(_edged(facts, leg, layout.legs) for leg in layout.legs)})
+
+
+def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
+    """A road's leg with its edges; a crosswalk leads over all legs, on a plain road once."""
+    if leg.kind != "road" or facts.junction.kind == RAMP:
+        return leg
+    walked = facts.crosswalk and (len(legs) > 2 or leg is legs[0])
+    sides = (*facts.beside, "sidewalk") if facts.crosswalk else facts.beside
+    return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
+
+
+def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
+    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both."""
+    told = [v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "backing"]
+    axes = (axis, *dict.fromkeys(axis_of(heading) for heading in told if axis_of(heading) != axis))[:2]
+    ends = [end for way in axes for end in (turned(way, 180), way)]
+    return RoadLayout(
+        legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind=DRIVEWAY, beside=("parking",)) for end in ends)
+    )
+
+
+def circle_lanes(facts: RoadFacts, legs: tuple[Leg, ...]) -> int:
+    """Lanes around, told or as many as the widest entry has; none but in a roundabout."""
+    if not junction_kind(facts.junction.kind).round:
+        return 0
+    return facts.junction.circle_lanes or min(max(leg.lanes_in for leg in legs), MOST_AROUND)
+
+
+def skewed(facts: RoadFacts, leg: Leg) -> Leg:
+    """A leg of the crossing road as far off its bearing as the story tells."""
+    return leg.model_copy(update={"skew_deg": facts.junction.skew_deg}) if leg.kind == "road" else leg
+
+
+def offset(through: tuple[Leg, ...], near: Leg, far: Leg) -> RoadLayout:
+    """Two T junctions in place of a crossing: the far leg of the cross road joins one leg of the through road."""
+    on = through[0].bearing
+    access = Access(
+        leg=on, side="left" if between(on, far.bearing) == 90 else "right", distance_m=OFFSET_M, kind="road",
+        lanes_in=far.lanes_in, lanes_out=far.lanes_out, control="none" if far.control == "flashing" else far.control,
+    )  # fmt: skip
+    return RoadLayout(legs=(*through, near), accesses=(access,))

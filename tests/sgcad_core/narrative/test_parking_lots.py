@@ -1,0 +1,100 @@
+"""Parking lots: aisles with stalls in both files, cars parked square to them, and the way out of a stall."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from lxml import etree
+
+from plugins.road_writer.template import Template
+from plugins.scenario_writer.rules import Rules
+from plugins.validator.sumo_load import SumoLoad
+from plugins.validator.topology import Topology
+from sgcad_core.formats.agreement import network_disagreements
+from sgcad_core.formats.opendrive.check import xodr_findings
+from sgcad_core.formats.round_trip import differences
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.reading import road_facts
+from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+
+PARKED = (
+    "V1 was traveling north in a parking lot. V2 was parked in a parking space in the parking lot. The front of V1 "
+    "struck the back of V2."
+)
+BACKS = (
+    "V1 was traveling north through a parking lot. V2 was backing out of a parking space. The back of V2 struck the "
+    "right side of V1."
+)
+CROSS = (
+    "The crash occurred in a parking lot. V1 was traveling eastbound in an aisle. V2 was traveling northbound in the "
+    "parking lot. The front of V1 struck the left side of V2."
+)
+LEAVES = (
+    "V1 was northbound on a two-lane street. V2 was exiting a parking lot on the east side, turning left. The front of "
+    "V1 struck the left side of V2."
+)
+
+
+def written(text: str) -> tuple[RoadNetwork, Scenario]:
+    context = Context(narrative=text)
+    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
+    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("text", "legs"), [(PARKED, 2), (BACKS, 2), (CROSS, 4)])
+def test_a_crash_inside_a_parking_lot_gets_its_aisles(text: str, legs: int) -> None:
+    layout = layout_of_facts(road_facts(text))
+    assert len(layout.legs) == legs
+    assert {(leg.kind, leg.beside) for leg in layout.legs} == {("driveway", ("parking",))}
+
+
+def test_who_comes_out_of_a_parking_lot_crashes_on_the_street() -> None:
+    facts = road_facts(LEAVES)
+    assert facts.junction.kind == "driveway"
+    assert all("parking" not in leg.beside for leg in layout_of_facts(facts).legs)
+
+
+@pytest.mark.parametrize("text", [PARKED, BACKS, CROSS])
+def test_aisles_pass_what_roads_pass(text: str) -> None:
+    net, _ = written(text)
+    assert net.net_xml
+    assert net.xodr
+    evidence = Evidence(report=CrashReport(case="c", narrative=""))
+    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
+    assert xodr_findings(net.xodr) == []
+    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
+    assert differences(net.net_xml, net.xodr, "sgcad") == []
+
+
+def test_stalls_lie_square_to_the_aisle_and_do_not_overlap() -> None:
+    net, _ = written(PARKED)
+    root = etree.fromstring((net.xodr or "").encode())
+    stalls = root.findall("road/objects/object[@type='parkingSpace']")
+    assert len(stalls) == 4 * 29  # on both sides of two legs of 80 m
+    for stall in stalls:
+        assert abs(float(stall.get("hdg"))) == pytest.approx(math.pi / 2)
+        assert (float(stall.get("width")), float(stall.get("length"))) == (2.7, 5.5)
+        assert abs(float(stall.get("t"))) == pytest.approx(3.6 + 5.5 / 2)
+    places = sorted(float(stall.get("s")) for stall in stalls[:29])
+    assert min(b - a for a, b in pairwise(places)) == pytest.approx(2.7)
+
+
+def test_a_parked_car_stands_square_to_the_aisle_in_a_stall() -> None:
+    net, made = written(PARKED)
+    parked = next(t for t in made.planned if t.actor == "V2")
+    assert math.sin(parked.heading_rad[0]) == pytest.approx(0.0, abs=1e-6)
+    assert parked.x_m[0] == pytest.approx(3.6 + 5.5 / 2, abs=0.05)
+    assert made.declared is not None
+    assert net.layout is None
+
+
+def test_one_who_backs_out_stands_in_his_stall_first_and_strikes_with_his_back() -> None:
+    _, made = written(BACKS)
+    backing = next(t for t in made.planned if t.actor == "V2")
+    assert made.oddity < 0.5
+    assert backing.speed_mps[0] == 0.0
+    assert math.cos(backing.heading_rad[0]) == pytest.approx(1.0, abs=0.05)  # nose east, away from the aisle
+    nose, tail = (backing.x_m[0] + side * 2.35 for side in (1, -1))
+    assert 3.6 < tail < nose < 9.2, "it stands in its stall"
+    assert not [note for note in made.notes if "cannot" in note]
