@@ -46,13 +46,19 @@ def box_gaps(first: Floats, first_size: Size, second: Floats, second_size: Size)
     Poses are (n, 3) of x, y, heading; sizes are length and width. Negative: they overlap (the
     separating-axis theorem is exact for the sign; a positive value is a lower bound of the distance).
     """
-    axes = np.stack([first[:, 2], first[:, 2] + np.pi / 2, second[:, 2], second[:, 2] + np.pi / 2])
-    cos, sin = np.cos(axes), np.sin(axes)
-    delta = second[:, :2] - first[:, :2]
-    gap = np.abs(delta[:, 0] * cos + delta[:, 1] * sin)
-    for heading, (length, width) in ((first[:, 2], first_size), (second[:, 2], second_size)):
-        gap -= np.abs(length / 2 * np.cos(heading - axes)) + np.abs(width / 2 * np.sin(heading - axes))
-    best: Floats = gap.max(axis=0)
+    dx, dy = second[:, 0] - first[:, 0], second[:, 1] - first[:, 1]
+    ca, sa, cb, sb = np.cos(first[:, 2]), np.sin(first[:, 2]), np.cos(second[:, 2]), np.sin(second[:, 2])
+    along, across = np.abs(ca * cb + sa * sb), np.abs(ca * sb - sa * cb)
+    (al, aw), (bl, bw) = ((length / 2, width / 2) for length, width in (first_size, second_size))
+    over_first = np.maximum(
+        np.abs(dx * ca + dy * sa) - al - bl * along - bw * across,
+        np.abs(dy * ca - dx * sa) - aw - bl * across - bw * along,
+    )
+    over_second = np.maximum(
+        np.abs(dx * cb + dy * sb) - bl - al * along - aw * across,
+        np.abs(dy * cb - dx * sb) - bw - al * across - aw * along,
+    )
+    best: Floats = np.maximum(over_first, over_second)
     return best
 
 

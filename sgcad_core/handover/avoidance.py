@@ -8,6 +8,9 @@ Steering is a constant lateral acceleration until a lane's width aside (left or 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
@@ -18,10 +21,15 @@ from sgcad_core.seat import STEP_S, Way
 LOOK_BACK_S = 6.0
 GRAIN_S = 0.01
 """Between two looks whether boxes touch: at 0.05 s crossing corners can miss each other by 0.5 m."""
+_GRAINS = round(STEP_S / GRAIN_S)
 AFTER_S = 6.0
 """Behind the scripted contact: whoever has not met by then has avoided."""
 ASIDE_M = 3.5
+BEFORE_S = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0)
+"""Onsets, before the contact, for which the least deceleration is asked."""
 _BISECTIONS = 12
+_GLANCE = 8
+"""Every so many looks are taken first."""
 _STEER_SHARE = 0.7
 """Of the friction that a driver uses for moving aside; the rest is left for the recovery."""
 
@@ -42,8 +50,11 @@ class Avoidance(Record):
     full_braking_mps2: float
 
 
-def avoidance(staging: Staging) -> Avoidance | None:
-    """What could have been done against the ego's scripted contact; None where it has none."""
+def avoidance(staging: Staging, before_s: Sequence[float] = BEFORE_S) -> Avoidance | None:
+    """What could have been done against the ego's scripted contact; None where it has none.
+
+    `before_s`: for which onsets the least deceleration is asked, seconds before the contact.
+    """
     if staging.contact is None:
         return None
     others = _others(staging)
@@ -51,13 +62,13 @@ def avoidance(staging: Staging) -> Avoidance | None:
     onsets = np.arange(staging.contact_s, max(staging.contact_s - LOOK_BACK_S, -1e-9), -STEP_S)
     brake = next((t for t in onsets if _clear(staging, others, _braked(staging.way, t, full))), None)
     steer = _steered_by(staging, others, onsets)
-    asked = [f"{b:g}" for b in (0.5, 1.0, 1.5, 2.0, 3.0, 4.0) if b <= staging.contact_s]
+    asked = [b for b in before_s if b <= staging.contact_s]
     return Avoidance(
         brake_by_s=None if brake is None else round(staging.contact_s - float(brake), 3),
         brake_by_m=None if brake is None else round(_left_m(staging, float(brake)), 3),
         steer_by_s=steer and round(staging.contact_s - steer[0], 3),
         steer_to=steer and steer[1],
-        required_mps2={b: _required(staging, others, staging.contact_s - float(b)) for b in asked},
+        required_mps2={f"{b:g}": _required(staging, others, staging.contact_s - b) for b in asked},
         full_braking_mps2=full,
     )
 
@@ -88,10 +99,12 @@ def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats
     for name, theirs in others.items():
         rows = theirs[start : start + len(mine)]
         own = mine[: len(rows)]
-        reach = (np.hypot(*size[staging.ego]) + np.hypot(*size[name])) / 2
-        near = np.hypot(own[:, 0] - rows[:, 0], own[:, 1] - rows[:, 1]) <= reach
-        if near.any() and (box_gaps(own[near], size[staging.ego], rows[near], size[name]) <= 0).any():
-            return False
+        reach = (math.hypot(*size[staging.ego]) + math.hypot(*size[name])) / 2
+        dx, dy = own[:, 0] - rows[:, 0], own[:, 1] - rows[:, 1]
+        near = np.flatnonzero(dx * dx + dy * dy <= reach * reach)
+        for some in (near[::_GLANCE], near):  # most answers fail, and a few looks tell
+            if len(some) and (box_gaps(own[some], size[staging.ego], rows[some], size[name]) <= 0).any():
+                return False
     return True
 
 
@@ -122,39 +135,53 @@ def _required(staging: Staging, others: dict[str, Floats], onset_s: float) -> fl
 # ------------------------------------------------------------------ steering
 def _steered_by(staging: Staging, others: dict[str, Floats], onsets: Floats) -> tuple[float, str] | None:
     """The last onset, and the side, of moving aside that avoids the contact."""
-    for t in onsets:
+    aside = _Aside(staging, float(onsets[0]), len(onsets))
+    for number, t in enumerate(onsets):
         for side, name in ((1.0, "left"), (-1.0, "right")):
-            if _clear(staging, others, _aside(staging, float(t), side)):
+            if _clear(staging, others, aside.poses(number, side)):
                 return float(t), name
     return None
 
 
-def _aside(staging: Staging, onset_s: float, side: float) -> tuple[int, Floats]:
-    """An ego that moves aside at an onset: half the way with the lateral acceleration, half against it."""
-    way, k = staging.way, round(onset_s / GRAIN_S)
-    ran = np.arange(0.0, AFTER_S + LOOK_BACK_S, GRAIN_S)
-    poses = way.poses_at(np.interp(onset_s + ran, way.t_s, way.s_m))
-    lateral = _STEER_SHARE * staging.script.friction_mps2
-    half_s = float(np.sqrt(ASIDE_M / lateral))
-    first = np.minimum(ran, half_s)
-    second = np.clip(ran - half_s, 0.0, half_s)
-    moved = lateral * first**2 / 2 + lateral * half_s * second - lateral * second**2 / 2
-    rate = lateral * (first - second)
-    speed = max(way.speed_at(onset_s), 1.0)
-    course = _course(poses)
-    moved_poses = poses.copy()
-    moved_poses[:, 0] -= side * moved * np.sin(course)
-    moved_poses[:, 1] += side * moved * np.cos(course)
-    moved_poses[:, 2] += side * np.arctan2(rate, speed)
-    return k, moved_poses
+class _Aside:
+    """An ego that moves aside at an onset: half the way with the lateral acceleration, half against it.
+
+    Onsets are STEP_S apart, so that one table of the way, GRAIN_S apart, serves them all.
+    """
+
+    def __init__(self, staging: Staging, last_s: float, count: int) -> None:
+        self.way, self.last_s = staging.way, last_s
+        self.before = count * _GRAINS
+        """Row of the table at the last onset."""
+        times = last_s + GRAIN_S * np.arange(-self.before, round(AFTER_S / GRAIN_S) + _GRAINS)
+        self.table = self.way.poses_at(np.interp(times, self.way.t_s, self.way.s_m))
+        course = _course(self.table)
+        self.left = np.column_stack((-np.sin(course), np.cos(course)))
+        ran = GRAIN_S * np.arange(len(times))
+        lateral = _STEER_SHARE * staging.script.friction_mps2
+        half_s = math.sqrt(ASIDE_M / lateral)
+        first, second = np.minimum(ran, half_s), np.clip(ran - half_s, 0.0, half_s)
+        self.moved = lateral * first**2 / 2 + lateral * half_s * second - lateral * second**2 / 2
+        self.rate = lateral * (first - second)
+
+    def poses(self, number: int, side: float) -> tuple[int, Floats]:
+        """First sample, and poses from there on, of who moves to a side (1 left, -1 right) at an onset."""
+        onset_s = self.last_s - number * STEP_S
+        poses = self.table[self.before - number * _GRAINS :].copy()
+        moved, rate = side * self.moved[: len(poses)], side * self.rate[: len(poses)]
+        poses[:, :2] += moved[:, None] * self.left[-len(poses) :]
+        poses[:, 2] += np.arctan2(rate, max(self.way.speed_at(onset_s), 1.0))
+        return round(onset_s / GRAIN_S), poses
 
 
 def _course(poses: Floats) -> Floats:
+    """(n,) direction in which a box moves; of one that stands that of its last motion, before any its heading."""
     step = np.diff(poses[:, :2], axis=0)
     moving = np.hypot(*step.T) > 1e-6
     if not moving.any():
         course: Floats = poses[:, 2]
         return course
     angle = np.arctan2(step[:, 1], step[:, 0])
-    known = np.maximum.accumulate(np.where(moving, np.arange(len(step)), 0))
-    return np.append(angle[known], angle[known][-1])
+    known = np.maximum.accumulate(np.where(moving, np.arange(len(step)), -1))
+    found = np.where(known < 0, poses[:-1, 2], angle[known])
+    return np.append(found, found[-1])

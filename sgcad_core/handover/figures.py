@@ -12,6 +12,9 @@ from sgcad_core.handover.script import DRIVEN, Script, staged
 from sgcad_core.handover.severity import severity
 from sgcad_core.records import ObservedContact
 
+_ASKED_S = 2.0
+"""How long before the contact the least deceleration is asked: `required_2_s_before_mps2`."""
+
 
 def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str, Any]:
     """Delta-v, energy, risk, and the last moments to brake and to move aside; empty without a contact."""
@@ -27,8 +30,8 @@ def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str
         "brake_by_s": {}, "brake_by_m": {}, "steer_by_s": {}, "required_2_s_before_mps2": {},
     }  # fmt: skip
     for name in (contact.actor, contact.other):
-        if script.info(name).type in DRIVEN and (could := avoidance(staged(script, name))) is not None:
+        if script.info(name).type in DRIVEN and (could := avoidance(staged(script, name), (_ASKED_S,))) is not None:
             figures["brake_by_s"][name], figures["brake_by_m"][name] = could.brake_by_s, could.brake_by_m
             figures["steer_by_s"][name] = could.steer_by_s
-            figures["required_2_s_before_mps2"][name] = could.required_mps2.get("2")
+            figures["required_2_s_before_mps2"][name] = could.required_mps2.get(f"{_ASKED_S:g}")
     return figures

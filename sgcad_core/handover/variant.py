@@ -20,9 +20,10 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.ground import Drag
 from sgcad_core.planner.hitch import hitched
 from sgcad_core.planner.impact import body, mass_kg
+from sgcad_core.planner.movers import Mover
 from sgcad_core.planner.scene import AFTER_S, BRAKED_MPS2, THROWN_MPS2
 from sgcad_core.planner.towing import coupling_m
-from sgcad_core.planner.wreck import Mover, Wreck
+from sgcad_core.planner.wreck import Wreck
 from sgcad_core.records import ActorInfo, Trajectory
 from sgcad_core.seat import STEP_S, Way
 from sgcad_core.specs import ActorKind

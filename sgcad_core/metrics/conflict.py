@@ -104,19 +104,20 @@ def _presence(track: Track, origin: Floats, shape: tuple[int, int]) -> tuple[Flo
     left = np.full(shape, -np.inf)
     half = np.array(track.size) / 2
     reach = float(np.hypot(*half))
-    for t, (x, y, heading) in zip(track.t_s, track.pose, strict=True):
-        low = np.maximum(((np.array([x, y]) - reach - origin) // CELL_M).astype(int), 0)
-        high = np.minimum(((np.array([x, y]) + reach - origin) // CELL_M).astype(int) + 1, shape)
-        if (high <= low).any():
-            continue
-        i, j = (np.arange(low[k], high[k]) for k in (0, 1))
-        dx = origin[0] + (i[:, None] + 0.5) * CELL_M - x
-        dy = origin[1] + (j[None, :] + 0.5) * CELL_M - y
-        c, s = np.cos(heading), np.sin(heading)
-        covered = (np.abs(dx * c + dy * s) <= half[0]) & (np.abs(-dx * s + dy * c) <= half[1])
-        window = (slice(low[0], high[0]), slice(low[1], high[1]))
-        entered[window] = np.where(covered, np.minimum(entered[window], t), entered[window])
-        left[window] = np.where(covered, np.maximum(left[window], t), left[window])
+    place = track.pose[:, :2]
+    lows = np.maximum(((place - reach - origin) // CELL_M).astype(int), 0)
+    highs = np.minimum(((place + reach - origin) // CELL_M).astype(int) + 1, shape)
+    east, north = (origin[k] + (np.arange(shape[k]) + 0.5) * CELL_M for k in (0, 1))
+    cos, sin = np.cos(track.pose[:, 2]), np.sin(track.pose[:, 2])
+    for k in np.flatnonzero((highs > lows).all(axis=1)):
+        window = slice(lows[k, 0], highs[k, 0]), slice(lows[k, 1], highs[k, 1])
+        dx, dy = east[window[0]] - place[k, 0], north[window[1]] - place[k, 1]
+        c, s, t = cos[k], sin[k], track.t_s[k]
+        covered = np.abs((dx * c)[:, None] + dy * s) <= half[0]
+        covered &= np.abs((-dx * s)[:, None] + dy * c) <= half[1]
+        first = entered[window]
+        first[covered & (first > t)] = t
+        left[window][covered] = t  # times rise
     return entered, left
 
 

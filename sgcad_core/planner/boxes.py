@@ -34,34 +34,46 @@ def apart(a: Body, b: Body) -> Apart:
         (dx * cb + dy * sb, bl + al * along + aw * across, cb, sb),
         (dy * cb - dx * sb, bw + al * across + aw * along, -sb, cb),
     )
-    way, reach, x, y = max(rows, key=lambda row: abs(row[0]) - row[1])
-    sign = 1.0 if way >= 0 else -1.0
-    return Apart(abs(way) - reach, (sign * x, sign * y))
+    gap, best = -math.inf, rows[0]
+    for row in rows:  # the first of the widest; max() with a key takes three times as long
+        if (wide := abs(row[0]) - row[1]) > gap:
+            gap, best = wide, row
+    way, _, x, y = best
+    return Apart(gap, (x, y) if way >= 0 else (-x, -y))
 
 
 def touch_points(a: Body, b: Body) -> list[Point]:
     """The corners of either box in (or within centimetres of) the other; the point midway where there are none."""
-    points = [p for one, other in ((a, b), (b, a)) for p in _corners(one) if _holds(other, p)]
+    one, two = _frame(a), _frame(b)
+    points = [*_held(one, two), *_held(two, one)]
     return points or [((a.x + b.x) / 2, (a.y + b.y) / 2)]
 
 
 def mean(points: list[Point]) -> Point:
     """The center of some points."""
-    return sum(p[0] for p in points) / len(points), sum(p[1] for p in points) / len(points)
+    if len(points) == 1:
+        return points[0]
+    return sum([p[0] for p in points]) / len(points), sum([p[1] for p in points]) / len(points)
 
 
-def radius(a: Body) -> float:
-    """From the center to a corner."""
-    return math.hypot(*a.size) / 2
+_Frame = tuple[float, float, float, float, float, float]
+"""Center, cosine and sine of the heading, half length and half width of a box."""
 
 
-def _corners(a: Body) -> list[Point]:
-    lc, ls = a.size[0] / 2 * math.cos(a.heading), a.size[0] / 2 * math.sin(a.heading)
-    wc, ws = a.size[1] / 2 * math.cos(a.heading), a.size[1] / 2 * math.sin(a.heading)
-    return [(a.x + i * lc - j * ws, a.y + i * ls + j * wc) for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+def _frame(a: Body) -> _Frame:
+    return a.x, a.y, math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
 
 
-def _holds(a: Body, p: Point) -> bool:
-    c, s, dx, dy = math.cos(a.heading), math.sin(a.heading), p[0] - a.x, p[1] - a.y
-    inside = abs(dx * c + dy * s) <= a.size[0] / 2 + _NEAR_M
-    return inside and abs(dy * c - dx * s) <= a.size[1] / 2 + _NEAR_M
+def _held(one: _Frame, other: _Frame) -> list[Point]:
+    """The corners of a box in (or within centimetres of) another, counter-clockwise from front left."""
+    x, y, c, s, length, width = one
+    lc, ls, wc, ws = length * c, length * s, width * c, width * s
+    corners = (
+        (x + lc - ws, y + ls + wc), (x - lc - ws, y - ls + wc), (x - lc + ws, y - ls - wc), (x + lc + ws, y + ls - wc)
+    )  # fmt: skip
+    x, y, c, s, length, width = other
+    length, width = length + _NEAR_M, width + _NEAR_M
+    return [
+        p for p in corners
+        if abs((p[0] - x) * c + (p[1] - y) * s) <= length and abs((p[1] - y) * c - (p[0] - x) * s) <= width
+    ]  # fmt: skip

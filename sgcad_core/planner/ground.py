@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.boxes import radius
 from sgcad_core.planner.impact import Body
 
 _SLIP_LEVER = 0.25
@@ -54,6 +53,8 @@ class Released(NamedTuple):
 
 def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None) -> None:
     """Ground friction over a step; more of it where the body would not stand in the time that is left."""
+    if one.stands:
+        return
     speed = one.speed
     target = 0.0
     if speed > 0.0:
@@ -87,7 +88,7 @@ def _steered(bend: float, speed: float, across_mps2: float) -> float:
 
 def _turning_mps2(one: Body, drag: Drag) -> float:
     """Angular deceleration of a body on locked wheels, rad/s2."""
-    return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * radius(one) * drag.across
+    return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 
 def run_out(released: Released, drag: Drag, runs: Sequence[RunOut], end_s: float, step: float) -> Floats:

@@ -8,7 +8,7 @@ is stepped through thousands of times. Knows no roads, no driver and no clock. S
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sgcad_core.geometry.plane import Size
 from sgcad_core.specs import SIZE_M, ActorKind
@@ -46,6 +46,16 @@ class Body:
     vx: float = 0.0
     vy: float = 0.0
     spin: float = 0.0
+    radius: float = field(init=False)
+    """From the center to a corner."""
+
+    def __post_init__(self) -> None:
+        self.radius = math.hypot(*self.size) / 2
+
+    @property
+    def stands(self) -> bool:
+        """Whether it neither moves nor turns."""
+        return self.vx == self.vy == self.spin == 0.0
 
     @property
     def speed(self) -> float:
@@ -95,8 +105,10 @@ def compliance(first: Body, second: Body, at: Point) -> Matrix:
 
 def approach(first: Body, second: Body, at: Point, normal: Point) -> float:
     """How fast the two come together at a point along the normal (from first to second), m/s."""
-    (ax, ay), (bx, by) = first.velocity_at(*at), second.velocity_at(*at)
-    return (ax - bx) * normal[0] + (ay - by) * normal[1]
+    x, y = at
+    along = (first.vx - first.spin * (y - first.y)) - (second.vx - second.spin * (y - second.y))
+    across = (first.vy + first.spin * (x - first.x)) - (second.vy + second.spin * (x - second.x))
+    return along * normal[0] + across * normal[1]
 
 
 def collide(

@@ -61,6 +61,10 @@ class VehicleWays:
         """(n,) of each way, as far as is known from the last try."""
         return self.judge(self.ends + self.off) + self.odd
 
+    def cost(self, number: int) -> float:
+        """Of one way."""
+        return float(self.judge(self.ends[number : number + 1] + self.off)[0] + self.odd[number])
+
 
 @dataclass
 class BlowWays:
@@ -100,7 +104,7 @@ class BlowWays:
 
     def predicted(self) -> float:
         """What the most promising ways cost."""
-        return sum(float(v.costs()[k]) for v, k in zip(self.vehicles.values(), self.best(), strict=True))
+        return sum(v.cost(k) for v, k in zip(self.vehicles.values(), self.best(), strict=True))
 
     def choice(self) -> Choice:
         """The most promising ways, noted as tried."""

@@ -5,7 +5,9 @@ A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and the wreck, n
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +17,9 @@ from sgcad_core.planner.ground import Drag, RunOut
 from sgcad_core.planner.hitch import Hitch, hitched
 from sgcad_core.planner.impact import FRICTION, RESTITUTION, body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
+from sgcad_core.planner.movers import Mover, Touch
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.wreck import Mover, Touch, Wreck
+from sgcad_core.planner.wreck import Wreck
 from sgcad_core.records import ObservedContact, Trajectory
 from sgcad_core.specs import ActorKind, Area, Surface
 
@@ -57,6 +60,16 @@ class Track:
         self.driven = self.poses
 
 
+class _Settled(NamedTuple):
+    """What came of a settled scene: poses, touches, and the index of the first impact by actor."""
+
+    poses: dict[str, Floats]
+    touches: list[Touch]
+    hits: dict[str, int | None]
+    driven: list[Floats]
+    """The undisturbed poses behind it, so that they stay what their ids stand for."""
+
+
 @dataclass
 class Scene:
     """Tracks by actor, in the order of placing; `contact` is the index of the first contact."""
@@ -77,6 +90,7 @@ class Scene:
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs that touch a second time as told."""
+    _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
         """Place an actor so that its own clock shows the given time at the first contact."""
@@ -104,12 +118,23 @@ class Scene:
         return first
 
     def settle(self) -> None:
-        """Let everybody drive, and whatever touches push, until all stand."""
-        wreck = self.wreck()
-        poses, self.touches = wreck.settle()
-        movers = wreck.named
+        """Let everybody drive, and whatever touches push, until all stand; what was settled before is looked up."""
+        cause = self._cause()
+        if cause not in self._settled:
+            wreck = self.wreck()
+            poses, touches = wreck.settle()
+            hits = {name: mover.hit for name, mover in wreck.named.items()}
+            self._settled[cause] = _Settled(poses, touches, hits, [t.driven for t in self.tracks.values()])
+        found = self._settled[cause]
+        self.touches = list(found.touches)
         for name, track in self.tracks.items():
-            track.poses, track.hit = poses[name], movers[name].hit
+            track.poses, track.hit = found.poses[name], found.hits[name]
+
+    def _cause(self) -> Hashable:
+        """All that the way to rest depends on."""
+        movers = tuple((t.actor, id(t.driven), t.size, t.mass, t.motion.fixed) for t in self.tracks.values())
+        chosen = self.friction, self.restitution, self.again, tuple(self.runs.items())
+        return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
     def wreck(self) -> Wreck:
         """The simulation of what follows from the first touch."""

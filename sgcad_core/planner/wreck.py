@@ -8,20 +8,30 @@ B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, box_gaps
-from sgcad_core.planner.boxes import Apart, apart, mean, radius, touch_points
-from sgcad_core.planner.ground import Drag, RunOut, slow
+from sgcad_core.planner.boxes import Apart, apart, mean, touch_points
+from sgcad_core.planner.ground import slow
 from sgcad_core.planner.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.movers import (
+    Mover,
+    Pair,
+    Touch,
+    all_apart,
+    follow,
+    key_of,
+    last_move,
+    may_meet,
+    shift,
+    state_of,
+)
 
 SEEN_M = 0.022
 """Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
@@ -41,34 +51,6 @@ _DEEPEST_M = 0.03
 _ROUNDS = 6
 """Of impulses over all touching pairs in one step."""
 _LEAST_LEFT_S = 0.1
-
-
-@dataclass
-class Mover:
-    """One body with the (n, 3) poses that it would follow undisturbed; `free` once it was touched."""
-
-    name: str
-    body: Body
-    script: Floats
-    drag: Drag
-    run: RunOut | None = None
-    """How it runs out; None: it slides with its drag."""
-    free: bool = False
-    hit: int | None = None
-    """The last sample before its first touch takes effect."""
-
-    @property
-    def fixed(self) -> bool:
-        """Whether nothing moves it."""
-        return self.body.inverse_mass == 0.0
-
-
-class Touch(NamedTuple):
-    """Two movers touch."""
-
-    t_s: float
-    first: str
-    second: str
 
 
 @dataclass
@@ -99,15 +81,27 @@ class Wreck:
         pairs = self._pairs()
         start = self._start(pairs)
         poses = {m.name: m.script.copy() for m in self.movers}
-        for k in range(start, min(self.count - 1, until or self.count)):
+        drives = {m.name: last_move(m.script) for m in self.movers}
+        before, end = None, min(self.count - 1, until or self.count)
+        for k in range(start, end):
             self._sample(k, pairs)
+            state = [state_of(m.body) for m in self.movers]
+            over = state == before and self._rests() and all(m.free or k > drives[m.name] for m in self.movers)
             for m in self.movers:
                 if m.free:
-                    poses[m.name][k + 1] = (m.body.x, m.body.y, m.body.heading)
+                    poses[m.name][k + 1 : end + 1 if over else k + 2] = (m.body.x, m.body.y, m.body.heading)
+            if over:
+                break
+            before = state
         seen = sorted([*self.past, *((t, pair) for pair, t in self.touches.items())])
         return poses, [Touch(t, *pair) for t, pair in seen]
 
-    def _pairs(self) -> list[tuple[Mover, Mover]]:
+    def _rests(self) -> bool:
+        """Whether nothing moves and no touch is so new that time alone would change what it does."""
+        latest = max(self.touches.values(), default=0.0)
+        return self.now - latest > _HELD_S + STEP_S and all(m.body.stands for m in self.movers)
+
+    def _pairs(self) -> list[Pair]:
         """All pairs but those that overlap from the start: parts of one thing, or scenery."""
         found = []
         for a, b in combinations(self.movers, 2):
@@ -116,7 +110,7 @@ class Wreck:
                 found.append((a, b))
         return found
 
-    def _start(self, pairs: Sequence[tuple[Mover, Mover]]) -> int:
+    def _start(self, pairs: Sequence[Pair]) -> int:
         """The sample before the first overlap of any two scripts; the last one where there is none."""
         first = self.count
         for a, b in pairs:
@@ -125,36 +119,36 @@ class Wreck:
         return max(first - 1, 0)
 
     # -------------------------------------------------------------- one sample of the clock
-    def _sample(self, k: int, pairs: Sequence[tuple[Mover, Mover]]) -> None:
+    def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
         for m in self.movers:
             if not m.free:
-                _follow(m, k)
-        near = [pair for pair in pairs if _may_meet(*pair)]
+                follow(m, k)
+        near = [pair for pair in pairs if may_meet(*pair)]
         self.now, end = k * STEP_S, (k + 1) * STEP_S
+        seen = None
         while self.now < end - 1e-9:
-            step = min(self._step(near), end - self.now)
+            step = min(self._step(near, seen or all_apart(near)), end - self.now)
             for m in self.movers:
                 if not m.fixed:
                     self._advance(m, step)
             self.now += step
-            self._resolve(near, k)
+            seen = self._resolve(near, k)
         self._show(near, k)
 
-    def _show(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
+    def _show(self, near: Sequence[Pair], sample: int) -> None:
         """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
         for a, b in near:
-            if self.touches.get(_key(a, b), -1.0) > sample * STEP_S:
+            if self.touches.get(key_of(a, b), -1.0) > sample * STEP_S:
                 seen = apart(a.body, b.body)
-                _shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
+                shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
-    def _step(self, near: Sequence[tuple[Mover, Mover]]) -> float:
-        """The longest step after which no pair has sunk deeper than it may."""
+    def _step(self, near: Sequence[Pair], gaps: Sequence[Apart]) -> float:
+        """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if near or self.hitches else STEP_S
-        for a, b in near:
-            gap, normal = apart(a.body, b.body)
+        for (a, b), (gap, normal) in zip(near, gaps, strict=True):
             closing = (a.body.vx - b.body.vx) * normal[0] + (a.body.vy - b.body.vy) * normal[1]
-            closing += abs(a.body.spin) * radius(a.body) + abs(b.body.spin) * radius(b.body)
-            room = gap + 1.2 * SEEN_M if _key(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
+            closing += abs(a.body.spin) * a.body.radius + abs(b.body.spin) * b.body.radius
+            room = gap + 1.2 * SEEN_M if key_of(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
             if closing > 0:
                 longest = min(longest, max(room / closing, _SHORTEST_S))
         return longest
@@ -170,13 +164,17 @@ class Wreck:
             slow(one, m.drag, step, left, run)
 
     # -------------------------------------------------------------- touches
-    def _resolve(self, near: Sequence[tuple[Mover, Mover]], sample: int) -> None:
-        touching = [(a, b, seen) for a, b in near if self._touches(a, b, seen := apart(a.body, b.body), sample)]
+    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Apart] | None:
+        """What all touches do at a moment. How far each pair is apart; None where that was changed."""
+        gaps = all_apart(near)
+        touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
+        if not touching and not self.hitches:
+            return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = mean(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
-        for _ in range(_ROUNDS if touching or self.hitches else 0):
+        for _ in range(_ROUNDS):
             moved = [
                 collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
                 for (a, b, seen), points in zip(touching, corners, strict=True)
@@ -184,11 +182,13 @@ class Wreck:
             ]
             if not any([*moved, *(self._joined(hitch, pull) for hitch in self.hitches)]):
                 break
+        parted = False
         for (a, b, seen), points in zip(touching, corners, strict=True):
-            self._keep_seen(a, b, seen, mean(points), sample)
-            self._part(a, b, seen)
+            self._keep_seen(a, b, seen, points, sample)
+            parted |= self._part(a, b, seen)
         for hitch in self.hitches:
             self._joined(hitch, draw_together)
+        return None if parted or self.hitches else gaps
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
         """What a hitch does to its two bodies, once both are free."""
@@ -197,7 +197,7 @@ class Wreck:
 
     def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
-        key = _key(a, b)
+        key = key_of(a, b)
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
             self.past.append((self.touches.pop(key), key))
         if key in self.touches:
@@ -224,58 +224,28 @@ class Wreck:
 
     def _bounce(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> float:
         """Restitution of a new touch: no more than leaves the overlap to be seen at the next sample."""
-        if self.now - self.touches[_key(a, b)] > 1e-9:
+        if self.now - self.touches[key_of(a, b)] > 1e-9:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
-    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> None:
+    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
         """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
-        if self.touches[_key(a, b)] <= sample * STEP_S:
+        if self.touches[key_of(a, b)] <= sample * STEP_S:
             return
+        at = mean(points)
         left = max((sample + 1) * STEP_S - self.now, 1e-3)
         allowed = 0.5 * max(-seen.gap_m, 0.0) / left
         parting = -approach(a.body, b.body, at, seen.normal)
         if parting > allowed:
             hold(a.body, b.body, at, seen.normal, parting - allowed)
 
-    def _part(self, a: Mover, b: Mover, seen: Apart) -> None:
-        """Move two apart that sank into each other: places only, no motion comes of it."""
-        held = self.now - self.touches[_key(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
+    def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
+        """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
+        held = self.now - self.touches[key_of(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
-            return
+            return False
         by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
-        _shift(a, b, seen, by)
-
-
-def _shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
-    """Move two apart along their axis (together where negative): places only, no motion comes of it."""
-    total = a.body.inverse_mass + b.body.inverse_mass
-    for one, sign in ((a.body, -1), (b.body, 1)):
-        share = sign * by_m * one.inverse_mass / total
-        one.x += share * seen.normal[0]
-        one.y += share * seen.normal[1]
-
-
-def _key(a: Mover, b: Mover) -> tuple[str, str]:
-    return a.name, b.name
-
-
-def _follow(m: Mover, k: int) -> None:
-    """Put a mover where its script has it at sample k, on the way to the next."""
-    here, there = m.script[k], m.script[k + 1]
-    m.body.x, m.body.y, m.body.heading = (float(v) for v in here)
-    m.body.vx, m.body.vy, m.body.spin = (float(v) for v in (there - here) / STEP_S)
-
-
-def _may_meet(a: Mover, b: Mover) -> bool:
-    """Whether two can come into touch within a sample."""
-    if not (a.free or b.free or _moves(a) or _moves(b)):
-        return False
-    reach = radius(a.body) + radius(b.body) + (a.body.speed + b.body.speed) * STEP_S + 0.5
-    return math.hypot(a.body.x - b.body.x, a.body.y - b.body.y) < reach
-
-
-def _moves(m: Mover) -> bool:
-    return bool(m.body.vx or m.body.vy or m.body.spin)
+        shift(a, b, seen, by)
+        return True

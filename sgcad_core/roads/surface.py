@@ -41,16 +41,15 @@ class RoadSurface(NamedTuple):
 
         Bearings are counter-clockwise from east, from the lane's center line to the point.
         """
-        along = self.ends - self.starts
-        square = np.maximum((along**2).sum(axis=1), 1e-9)
-        from_start = points[:, None, :] - self.starts[None]
-        share = np.clip((from_start * along[None]).sum(axis=2) / square, 0.0, 1.0)
-        away = from_start - share[:, :, None] * along[None]
-        beyond = np.hypot(away[:, :, 0], away[:, :, 1]) - self.halves
+        east, north = (self.ends - self.starts).T
+        square = np.maximum(east**2 + north**2, 1e-9)
+        dx, dy = (points[:, i, None] - self.starts[None, :, i] for i in (0, 1))
+        share = np.clip((dx * east + dy * north) / square, 0.0, 1.0)
+        dx, dy = dx - share * east, dy - share * north
+        beyond = np.hypot(dx, dy) - self.halves
         nearest = np.argmin(beyond, axis=1)
         rows = np.arange(len(points))
-        best = away[rows, nearest]
-        return beyond[rows, nearest], np.arctan2(best[:, 1], best[:, 0])
+        return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest])
 
     def junction_near(self, point: Floats) -> Junction | None:
         """The junction whose area is nearest to a point."""

@@ -105,3 +105,14 @@ def test_an_offset_line_runs_beside_at_its_distance():
     assert offset_polyline(line, 2.0)[:, 1] == pytest.approx(np.full(31, 2.0))
     assert arc_lengths(line)[-1] == pytest.approx(30)
     assert resample(line, [-1.0, 12.5, 99.0])[:, 0] == pytest.approx([0, 12.5, 30])
+
+
+@settings(max_examples=150, deadline=None)
+@given(box, box)
+def test_gaps_are_those_of_the_corners_on_the_four_axes(first, second):
+    gaps = []
+    for axis in (a + turn for a in (first.heading_rad, second.heading_rad) for turn in (0.0, math.pi / 2)):
+        one, two = (corners(b) @ np.array([math.cos(axis), math.sin(axis)]) for b in (first, second))
+        gaps.append(max(one.min() - two.max(), two.min() - one.max()))
+    found = box_gaps(rows(first), size(first), rows(second), size(second))[0]
+    assert found == pytest.approx(max(gaps), abs=1e-9)

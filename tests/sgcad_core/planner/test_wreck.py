@@ -15,7 +15,8 @@ from sgcad_core.planner.boxes import apart, mean, touch_points
 from sgcad_core.planner.ground import Drag, slow
 from sgcad_core.planner.hitch import hitched
 from sgcad_core.planner.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
-from sgcad_core.planner.wreck import Mover, Wreck
+from sgcad_core.planner.movers import Mover
+from sgcad_core.planner.wreck import Wreck
 
 CAR = (4.7, 1.8)
 DRAG = Drag(4.5, 7.0)
@@ -231,3 +232,30 @@ def test_who_is_not_touched_goes_on_as_it_would() -> None:
     assert len(touches) == 1
     assert np.array_equal(poses["V3"], free.script)
     assert free.hit is None
+
+
+class _Endless(Wreck):
+    """Simulates on to the end of the clock."""
+
+    def _rests(self) -> bool:
+        return False
+
+
+@pytest.mark.parametrize("speed", [4.0, 12.0, 25.0])
+def test_what_stands_is_not_simulated_any_longer_and_nothing_changes_by_that(speed, monkeypatch) -> None:
+    samples = {Wreck: 0, _Endless: 0}
+    whole = Wreck._sample
+
+    def counted(self: Wreck, k: int, pairs) -> None:
+        samples[type(self)] += 1
+        whole(self, k, pairs)
+
+    monkeypatch.setattr(Wreck, "_sample", counted)
+    found = [
+        kind((mover("A", (0.0, 0.0, 0.0), (speed, 0.0)), mover("B", (12.0, 0.4, 1.2), (0.0, 0.0))), COUNT).settle()
+        for kind in samples
+    ]
+    assert samples[Wreck] < samples[_Endless]
+    assert found[0][1] == found[1][1]
+    for name, poses in found[0][0].items():
+        assert np.array_equal(poses, found[1][0][name])
