@@ -116,13 +116,24 @@ DIFFERENCES: dict[str, str] = {
     "`TeleportAction` in the story": "esmini holds an entity still in the step of its teleport; ours goes on at once: "
     "one step of motion, 0.6 m at 56 m/s and steps of 0.01 s",
     "`SynchronizeAction`": "esmini takes its own and the master's speed along the road's reference line, also where "
-    "somebody crosses the road; ours along the way that is gone",
-    "`TimeHeadwayCondition`, alongRoute": "esmini measures as the crow flies between boxes; ours along the road, as "
-    "version 1.0 says",
+    "somebody crosses the road; ours along the way that is gone. Where the speed of the moment leads there by no even "
+    "change, esmini begins at another speed at once; ours changes it evenly in two phases",
+    "`TimeHeadwayCondition`, alongRoute": "esmini measures as the crow flies, between boxes or origins; ours along the "
+    "road, as version 1.0 says: what follows begins some steps earlier or later in a bend or beside another lane",
+    "`Nurbs`, times of control points": "the standard calls them the time dimension of the point, so in ours the time "
+    "is a coordinate of the curve like x and y; esmini draws the same curve and tells times evenly between the places "
+    "where each control point counts most: some tenths of a second apart on the way, none at both ends",
+    "`RoutePosition` with `Orientation`": "esmini heeds it only before `InRoutePosition`, though the schema leaves the "
+    "order open, and cuts `t` of `FromRoadCoordinates` to whole metres; ours reads both as they stand",
+    "Behind the end of a trajectory": "the standard's default is to keep lane and speed: ours faces along the lane and "
+    "keeps the offset; esmini keeps the angle to the road too, and drives on askew. What starts there is turned so far",
+    "A junction without a route": "left open: both take the connection that turns least; where two turn alike (the "
+    "stem of a T), esmini draws one at random, ours takes the first",
     "An entity off all roads, without a map": "esmini stops it when its trajectory ends; ours goes straight on at its "
     "speed",
     "Superelevation": "motion is plane in ours: on a banked bend a lane lies up to some metres beside esmini's",
-    "Lanes that slant or widen": "ours counts the distance along the lane's line, esmini along the reference line",
+    "Lanes that slant or widen": "ours counts the distance along the lane's line, esmini along the reference line; "
+    "where a lane narrows to nothing, ours stays on its line and esmini takes the lane beside it at once",
 }
 """Where our player and esmini part on public files, by element, and what the standard says of it."""
 

@@ -130,8 +130,9 @@ def straight(pose: Pose) -> Course:
     return Course(np.array([here, here + ahead]))
 
 
-def lateral_m(points: Floats, pose: Pose) -> float:
-    """How far a pose lies to the left of a polyline's first segment, metres."""
+def beside(points: Floats, pose: Pose) -> tuple[float, float]:
+    """How far a pose lies along a polyline's first segment from its first point, and to its left, metres."""
     (x, y), (x2, y2) = points[0], points[1]
-    length = float(((x2 - x) ** 2 + (y2 - y) ** 2) ** 0.5)
-    return float((x2 - x) * (pose.y_m - y) - (y2 - y) * (pose.x_m - x)) / max(length, 1e-9)
+    length = max(math.hypot(x2 - x, y2 - y), 1e-9)
+    c, s, dx, dy = (x2 - x) / length, (y2 - y) / length, pose.x_m - x, pose.y_m - y
+    return float(c * dx + s * dy), float(c * dy - s * dx)

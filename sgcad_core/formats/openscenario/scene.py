@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.course import Course, lateral_m, straight
+from sgcad_core.formats.openscenario.course import Course, beside, straight
 from sgcad_core.formats.openscenario.motion import Pose, Transition
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.way import LanePlace, Route, Way
@@ -160,8 +160,8 @@ class Scene:
         way = self.roads.drive(place, self.roads.sense(place, pose.heading_rad), route)
         if len(way.points) < 2:
             return None
-        side = lateral_m(way.points, pose)
-        return Course(way.points, shift=Transition(side, side, "step", 0.0), way=way)
+        ahead, side = beside(way.points, pose)
+        return Course(way.points, ahead, shift=Transition(side, side, "step", 0.0), way=way)
 
     def named(self, kind: str, ref: str) -> Iterator[Stage]:
         """Storyboard elements of a kind by name or by path ("act::group::maneuver")."""

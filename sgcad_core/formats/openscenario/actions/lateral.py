@@ -15,7 +15,7 @@ from sgcad_core.formats.openscenario.actions.running import (
     nested,
 )
 from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.course import Course, lateral_m
+from sgcad_core.formats.openscenario.course import Course, beside
 from sgcad_core.formats.openscenario.families import Family
 from sgcad_core.formats.openscenario.motion import EPSILON, STEEPEST, Transition
 from sgcad_core.formats.openscenario.positions import shifted
@@ -41,8 +41,7 @@ def _lane_change(node: Node) -> Begin:
         sense = scene.sense(body, place)
         lane = target(scene, actor)
         way = _way(scene, body, LanePlace(place.road, lane, place.s_m, 0.0), sense, node)
-        first = lateral_m(way.points, scene.pose(actor, node))
-        return _shift(scene, body, way, (first, offset * sense), over)
+        return _shift(scene, body, way, offset * sense, over)
 
     return begin
 
@@ -67,18 +66,17 @@ def _way(scene: Scene, body: Body, place: LanePlace, sense: int, node: Node) -> 
     return way
 
 
-def _shift(
-    scene: Scene, body: Body, way: Way, offsets: tuple[float, float], over: Dynamics, aside_counts: bool = True
-) -> Running:
-    """Run a transition of the lateral offset along a way."""
-    first, last = offsets
+def _shift(scene: Scene, body: Body, way: Way, last: float, over: Dynamics, aside_counts: bool = True) -> Running:
+    """Run a transition of the lateral offset along a way, from where the entity is."""
+    assert body.pose is not None  # noqa: S101 - the caller checks it
+    ahead, first = beside(way.points, body.pose)
     by_time = over.dimension != "distance"
     shape, span = over.shape, over.value
     if over.dimension == "rate":
         span = STEEPEST[shape] * abs(last - first) / over.value if over.value else 0.0
     shift = Transition(first, last, shape if span else "step", span, scene.t_s if by_time else 0.0)
     body.timed = None
-    body.course = course = Course(way.points, shift=shift, by_time=by_time, way=way, aside_counts=aside_counts)
+    body.course = course = Course(way.points, ahead, shift, by_time, way, aside_counts=aside_counts)
 
     def ended(scene: Scene) -> bool:
         mine = body.course or course
@@ -124,9 +122,9 @@ def _lane_offset(node: Node) -> Begin:
             return at_once(body)
         sense = scene.sense(body, place)
         way = _way(scene, body, place._replace(offset_m=0.0), sense, node)
-        first, last = lateral_m(way.points, scene.pose(actor, node)), target(scene, body, place) * sense
+        first, last = beside(way.points, scene.pose(actor, node))[1], target(scene, body, place) * sense
         span = math.sqrt(_CURVES[shape] * abs(last - first) / limit) if limit > EPSILON else 0.0
-        running = _shift(scene, body, way, (first, last), Dynamics(shape, "time", span), aside_counts=False)
+        running = _shift(scene, body, way, last, Dynamics(shape, "time", span), aside_counts=False)
         if continuous:
             return Running(body, ("path",), lambda scene: False).claim()
         return running

@@ -149,3 +149,28 @@ def test_a_place_on_a_route_is_in_the_lane_that_is_named(number):
     )
     motions = [v1(scenario({"V1": where}), crossroads().xodr) for where in (place, lane("3", number, 30))]
     assert row(motions[0], 0)[:3] == pytest.approx(row(motions[1], 0)[:3])
+
+
+WIDENING = (
+    '<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="7" length="100" junction="-1"><planView>'
+    '<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView><lanes><laneSection s="0">'
+    '<center><lane id="0" type="none"/></center><right><lane id="-1" type="driving">'
+    '<width sOffset="0" a="2" b="1" c="0" d="0"/></lane></right></laneSection></lanes></road></OpenDRIVE>'
+)
+"""Its only lane widens by 1 m per metre: the lane's line slants by half of that."""
+
+
+@pytest.mark.parametrize(
+    ("start", "action"),
+    [
+        (world(0, -4), follow([(None, 0, -4, 0), (None, 10, -4, 0)])),
+        (lane("7", -1, 10, offset=2), speed_action(10)),
+        (lane("7", -1, 10, offset=2), offset(0)),
+    ],
+    ids=["behind a trajectory", "from the start", "into another offset"],
+)
+def test_nobody_jumps_into_a_lane_that_slants(start, action):
+    """Beside the line of such a lane, the nearest point of the line lies not across the road but further on or back."""
+    motion = v1(scenario({"V1": start}, event("e", action, at(0)), {"V1": 10}, end=at(2)), WIDENING)
+    assert np.diff(motion.x_m) == pytest.approx(0.45, abs=0.06), "0.5 m, along the road or the slant"
+    assert np.abs(np.diff(motion.y_m)).max() < 0.35
