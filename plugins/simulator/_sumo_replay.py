@@ -19,6 +19,10 @@ from sgcad_core.errors import SimulationFailed
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true")
 _OPTIONS = ("--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never", *_SILENT)
 
+EXACT_CLASS = "passenger"
+"""Class of every mover, people included. Who may drive anywhere ("ignoring") is matched to the areas where people wait
+at a crosswalk, too, and SUMO 1.28 dies of that (signal 11). Poses are exact on and off all lanes either way."""
+
 
 def replay(net_xml: str, movers: Sequence[Mover], dt_s: float) -> Replayed:
     """Drive every mover along its poses on the network and read the poses back.
@@ -68,7 +72,7 @@ def _add(mover: Mover) -> None:
     libsumo.vehicletype.setLength(kind, mover.length_m)
     libsumo.vehicletype.setWidth(kind, mover.width_m)
     libsumo.vehicletype.setMinGap(kind, 0.0)
-    libsumo.vehicletype.setVehicleClass(kind, "ignoring")
+    libsumo.vehicletype.setVehicleClass(kind, EXACT_CLASS)
     libsumo.vehicle.add(mover.id, "any", typeID=kind)
     libsumo.vehicle.setSpeedMode(mover.id, 0)
     libsumo.vehicle.setLaneChangeMode(mover.id, 0)

@@ -11,8 +11,12 @@ from sgcad_core.errors import SimulationFailed
 from sgcad_core.execution.contact import realised
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import RoadNetwork, Scenario
+from sgcad_core.roads.layout import road_spec
+from sgcad_core.specs import Leg, RoadLayout
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(120)
@@ -61,6 +65,23 @@ def test_sumo_holds_everybody_on_and_off_the_road():
         assert np.abs(np.diff(seen.heading_rad)).max() < 0.1, "continuous"
     assert "largest deviation" in execution.log
     assert "lost" not in execution.log
+
+
+def test_vehicles_may_cut_across_where_people_wait_at_a_crosswalk():
+    legs = tuple(
+        Leg(bearing=at, lanes_in=1, lanes_out=1, beside=("sidewalk",), crosswalk=True, control="signal")
+        for at in "NSEW"
+    )
+    spec = road_spec(RoadLayout(legs=legs))
+    net = compile_network(plain_xml(spec), spec)
+    assert 'function="walkingarea"' in net.net_xml
+    sweeps = np.linspace(-14, 14, len(K))
+    motions = [trajectory(f"V{n}", sweeps, at + 0 * K, 0.0) for n, at in enumerate((-8.0, -6.5, 6.5, 8.0), 1)]
+    motions += [trajectory(f"V{n}", at + 0 * K, sweeps, np.pi / 2) for n, at in enumerate((-8.0, -6.5, 6.5, 8.0), 5)]
+    execution = LibSumo().execute(scenario_of(*motions), net)
+    assert "lost" not in execution.log
+    for seen, wanted in zip(execution.trajectories, motions, strict=True):
+        assert np.hypot(seen.x_m - wanted.x_m, seen.y_m - wanted.y_m).max() < 1e-5
 
 
 BAD_NETS = [
