@@ -20,7 +20,8 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
         return []
     result = results[0]
     told = [contact(result)] if result["collision"]["declared"] or result["collision"]["observed"] else []
-    return [*told, *(f"note: {note}" for note in result["notes"][:MAX_ASSUMED]), *assumed(result["facts"])]
+    near = [approach(result["near_crash"])] if result.get("near_crash") else []
+    return [*told, *near, *(f"note: {note}" for note in result["notes"][:MAX_ASSUMED]), *assumed(result["facts"])]
 
 
 def contact(result: Mapping[str, Any]) -> str:
@@ -35,6 +36,16 @@ def contact(result: Mapping[str, Any]) -> str:
     told_so = ", as the report tells" if result["collision"]["realised"] else ""
     other = f"; the report tells that {_declared(told)}" if told and not told_so else ""
     return f"at {seen['t_s']:.1f} s {met}{told_so}{other}"
+
+
+def approach(near: Mapping[str, Any]) -> str:
+    """How near both come in a near crash, and whether that is what was declared."""
+    seen, declared = near["observed"], near["declared"]
+    if not seen:
+        return "a near crash is told; nobody else is near"
+    basis = "as the report tells" if declared["clearance_basis"] == "told" else "the usual distance of a near crash"
+    wanted = basis if near["realised"] else f"{declared['clearance_m']:.1f} m was wanted"
+    return f"nobody touches: {seen['actor']} and {seen['other']} come to {seen['clearance_m']:.1f} m, {wanted}"
 
 
 def _declared(told: Mapping[str, Any]) -> str:

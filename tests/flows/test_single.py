@@ -37,6 +37,24 @@ def test_a_contact_that_is_not_the_declared_one_is_told_beside_it(collision, lin
     assert single.lines([RESULT | {"collision": RESULT["collision"] | collision}]) == [line]
 
 
+@pytest.mark.parametrize(
+    ("basis", "realised", "line"),
+    [
+        ("default", True, "nobody touches: V1 and V2 come to 0.6 m, the usual distance of a near crash"),
+        ("told", True, "nobody touches: V1 and V2 come to 0.6 m, as the report tells"),
+        ("told", False, "nobody touches: V1 and V2 come to 0.6 m, 1.5 m was wanted"),
+    ],
+)
+def test_of_a_near_crash_it_is_told_how_near_they_come(basis, realised, line):
+    near = {
+        "declared": {"clearance_m": 0.6 if realised else 1.5, "clearance_basis": basis},
+        "observed": {"actor": "V1", "other": "V2", "clearance_m": 0.62, "t_s": 5.0},
+        "realised": realised,
+    }
+    nothing = {"declared": None, "observed": None, "realised": False}
+    assert single.lines([RESULT | {"collision": nothing, "near_crash": near}]) == [line]
+
+
 def test_only_values_that_nobody_told_count_as_assumed():
     facts = [
         {"field": "vehicles.V1.start_speed_mph", "value": 50.0, "basis": "default"},
