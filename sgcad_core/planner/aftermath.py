@@ -19,26 +19,34 @@ from sgcad_core.told_course import Courses, CourseTold
 _THINGS = ("object", "pedestrian", "bicycle")
 
 
-def strikes_of(behavior: BehaviorSpec, later: Sequence[Contact]) -> list[Strike]:
-    """The further contacts that are with a thing, or with somebody who stands beside the road, in order."""
+def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
+    """The contacts behind the first that are with a thing, or with somebody who stands beside the road, in order.
+
+    A thing is struck once, by somebody who is on the road by then; who meets in the first contact is no thing.
+    """
     actors = {a.id: a for a in behavior.actors}
-    found = []
-    for number, contact in enumerate(later):
-        thing = actors.get(contact.struck)
-        if thing is not None and thing.kind in _THINGS:
-            goes_on = any(c.striker == contact.striker for c in later[number + 1 :])
-            found.append(Strike(thing, contact.striker, contact.striker_area, goes_on))
+    found: list[Strike] = []
+    met = {contacts[0].striker, contacts[0].struck} if contacts else set()
+    things = {c.struck for c in contacts[1:] if actors[c.struck].kind in _THINGS} - met
+    for number, contact in enumerate(contacts[1:], 1):
+        if contact.struck in things and contact.striker not in things:
+            goes_on = any(c.striker == contact.striker for c in contacts[number + 1 :])
+            found.append(Strike(actors[contact.struck], contact.striker, contact.striker_area, goes_on))
+            things.remove(contact.struck)
     return found
 
 
 def run_out(
-    scene: Scene, behavior: BehaviorSpec, later: Sequence[Contact], courses: Courses, graph: LaneGraph
+    scene: Scene, behavior: BehaviorSpec, contacts: Sequence[Contact], courses: Courses, graph: LaneGraph
 ) -> list[str]:
-    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be."""
-    strikes = strikes_of(behavior, later)
+    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be.
+
+    `contacts`: those that can come about, the first one first.
+    """
+    strikes = strikes_of(behavior, contacts)
     told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
-    first = [pair_of(contact) for contact in behavior.contacts[:1]]
-    scene.again = frozenset(pair for contact in later if (pair := pair_of(contact)) in first)
+    first = [pair_of(contact) for contact in contacts[:1]]
+    scene.again = frozenset(pair for contact in contacts[1:] if (pair := pair_of(contact)) in first)
     if not told and not strikes and not scene.again:
         return []
     for strike in strikes:

@@ -67,32 +67,25 @@ class Plan(Record):
 
 
 def plan(
-    behavior: BehaviorSpec,
-    graph: LaneGraph,
-    *,
-    may_skid: bool = False,
-    by_force: bool = True,
-    courses: Courses = NOTHING_TOLD,
-) -> Plan:
+    behavior: BehaviorSpec, graph: LaneGraph, *,
+    may_skid: bool = False, by_force: bool = True, courses: Courses = NOTHING_TOLD,
+) -> Plan:  # fmt: skip
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
 
-    `courses`: what the report tells of evasion and rest, by actor.
-
-    `may_skid`: the report tells that somebody lost control, so boxes may turn against their way before they touch.
-    Not `by_force`: without the long search through the oddest ways, and without slides, where all others fail.
+    `courses`: what the report tells of evasion and rest, by actor. `may_skid`: it tells that somebody lost control, so
+    boxes may turn against their way before they touch. Not `by_force`: without slides and the longest search.
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
     cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
-    contacts = cast.usable(behavior.contacts)
-    near = behavior.near_crash
+    contacts, near = cast.contacts, behavior.near_crash
     scene = cast.encounter(contacts[0]) if contacts else cast.near_crash(near) if near else None
     scene = scene or Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
     for contact in contacts[1:]:
         cast.later(scene, contact)
     cast.rest(scene)
     scene.settle()
-    cast.notes += run_out(scene, behavior, contacts[1:], courses, graph)
+    cast.notes += run_out(scene, behavior, contacts, courses, graph)
     observed = scene.first_contact()
     realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     return Plan(
@@ -122,7 +115,12 @@ class _Cast:
     @cached_property
     def things(self) -> frozenset[str]:
         """What is struck on the way to rest: placed when that way is known."""
-        return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.behavior.contacts[1:]))
+        return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.contacts))
+
+    @cached_property
+    def contacts(self) -> list[Contact]:
+        """Those of the behavior that can come about."""
+        return self.usable(self.behavior.contacts)
 
     def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
         """Contacts between two different actors of the behavior."""

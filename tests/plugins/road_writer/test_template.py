@@ -79,6 +79,8 @@ stop sign left turned one-way divided median in each direction two lanes of stru
 @given(st.lists(st.sampled_from(STORY.split()), max_size=40).map(" ".join))
 @settings(max_examples=25, deadline=None)
 def test_any_babble_of_a_crash_compiles_to_one_network(text: str) -> None:
-    figures = network_figures(graph(write("Crash. " + text)))
+    figures = network_figures(
+        graph(write("There was a crash of the one and the other on the road. It was so: " + text))
+    )
     assert figures.components == 1
     assert figures.intersections <= 1

@@ -14,11 +14,15 @@ from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.choices import SLIDES
+from sgcad_core.planner.motion import LEAD_S
+from sgcad_core.planner.scene import AFTER_S
 from sgcad_core.roads.lane_graph import road_of
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 
 STEP_S = 0.05
 EXAMPLES = 20
+LONGEST_S = LEAD_S[1] + AFTER_S + 3.0
+"""A lead, the usual time behind the contact, and more for who runs on far."""
 KINDS, MANEUVERS, AREAS = ActorKind.__args__, Maneuver.__args__, Area.__args__
 
 
@@ -53,7 +57,7 @@ def check(behavior: BehaviorSpec, made: Plan) -> None:
     assert [t.actor for t in made.trajectories] == [a.id for a in behavior.actors]
     clock = made.trajectories[0].t_s
     assert np.allclose(clock, np.arange(len(clock)) * STEP_S)
-    assert 8.0 <= clock[-1] <= 14.0
+    assert 8.0 <= clock[-1] <= LONGEST_S
     for track in made.trajectories:
         columns = (track.x_m, track.y_m, track.heading_rad, track.speed_mps)
         assert all(len(c) == len(clock) and np.isfinite(c).all() for c in columns)
@@ -112,6 +116,25 @@ def test_any_behavior_gives_finite_continuous_motion_on_one_clock(case):
     made = plan(behavior, network(layout))
     check(behavior, made)
     check_contact(behavior, made)
+
+
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        [("V1", "V1"), ("B1", "B1")],
+        [("V1", "B1"), ("V1", "V1"), ("V1", "B1")],
+        [("V1", "V2"), ("B1", "O1"), ("V1", "B1")],
+        [("V1", "V2"), ("V1", "O1"), ("V2", "O1"), ("V1", "O1")],
+    ],
+)
+def test_odd_orders_of_contacts_leave_nobody_out(pairs):
+    kinds: dict[str, ActorKind] = {"V1": "car", "V2": "car", "B1": "bicycle", "O1": "object"}
+    actors = [
+        {"id": n, "kind": k, "road": "N", "direction": "forward", "maneuver": "straight"} for n, k in kinds.items()
+    ]
+    contacts = [{"striker": a, "struck": b, "striker_area": "front", "struck_area": "back"} for a, b in pairs]
+    behavior = BehaviorSpec.model_validate({"actors": actors, "contacts": contacts})
+    check(behavior, plan(behavior, network("bend")))
 
 
 @settings(max_examples=12, deadline=None)
