@@ -90,8 +90,12 @@ def language() -> Language:
 @lru_cache(maxsize=1)
 def vocabulary() -> Language:
     """The word classes alone, for modules that need words before any rule is read."""
-    classes = [word_class(*item) for item in _records(HERE / "vocabulary")]
-    return Language({c.name: c for c in classes}, {})
+    classes: dict[str, WordClass] = {}
+    for file, name, record in _records(HERE / "vocabulary"):
+        if name in classes:
+            raise fault(file, name, f"{classes[name].file} has a class of that name", "give one of both another name")
+        classes[name] = word_class(file, name, record)
+    return Language(classes, {})
 
 
 def _records(folder: Path) -> list[tuple[str, str, object]]:

@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import yaml
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.language import of_role, rule, slot, values, words
+from sgcad_core.language import data, of_role, rule, slot, values, words
 from sgcad_core.language.data import Language, language
 from sgcad_core.language.examples import class_faults, faults, parsed, reads, rule_faults, written
 from sgcad_core.language.records import RuleRecord, rule_record, word_class
@@ -162,6 +163,21 @@ def test_a_rule_that_is_not_there_names_its_neighbors() -> None:
 def test_a_role_that_is_not_there_names_those_that_are() -> None:
     with pytest.raises(ConfigError, match=r"no rule has this role; roles are .*deed"):
         of_role("dead")
+
+
+def test_a_class_of_two_files_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "vocabulary").mkdir()
+    for name in ("areas", "roads"):
+        (tmp_path / "vocabulary" / f"{name}.yaml").write_text("part:\n  words: [door, wheel]\n")
+    monkeypatch.setattr(data, "HERE", tmp_path)
+    with pytest.raises(ConfigError, match=r"roads.yaml, record 'part': areas.yaml has a class of that name"):
+        data.vocabulary.__wrapped__()
+
+
+def test_no_record_stands_twice_in_its_file() -> None:
+    for file in sorted(data.HERE.glob("*/*.yaml")):
+        keys = [key.value for key, _ in yaml.compose(file.read_text(encoding="utf-8")).value]
+        assert len(keys) == len(set(keys)), file.name
 
 
 def test_classes_that_stand_in_themselves_are_refused() -> None:
