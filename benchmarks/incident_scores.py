@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from flows.store import read_trajectories
-from sgcad_core.execution.contact import first_contact
+from sgcad_core.execution.contact import first_with
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import Size, wrap_angle
 from sgcad_core.records import ObservedContact, Trajectory
@@ -57,9 +57,8 @@ class Run:
         """The subject's first contact with anybody."""
         if SUBJECT not in self.tracks:
             return None
-        mine = self.tracks[SUBJECT]
-        pairs = [first_contact((mine, other), self.sizes) for name, other in self.tracks.items() if name != SUBJECT]
-        return min((hit for hit in pairs if hit), key=lambda hit: hit.t_s, default=None)
+        others = [track for name, track in self.tracks.items() if name != SUBJECT]
+        return first_with(self.tracks[SUBJECT], others, self.sizes)
 
 
 def scores(run: Run, truth: Mapping[str, Any]) -> dict[str, bool]:

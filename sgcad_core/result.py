@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-from sgcad_core.execution.contact import avoided, closest_approach, first_contact, realised
+from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
@@ -156,7 +156,7 @@ def _subject_untouched(record: CaseRecord) -> bool:
     sizes = sizes_of(record.scenario)
     mine = next((t for t in record.execution.trajectories if t.actor == subject), None)
     others = [t for t in record.execution.trajectories if t.actor != subject]
-    return mine is not None and all(first_contact((mine, other), sizes) is None for other in others)
+    return mine is not None and first_with(mine, others, sizes) is None
 
 
 def _network(network: RoadNetwork | None) -> dict[str, Any] | None:

@@ -38,6 +38,12 @@ def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size])
     return observe(a, b, cast("int", k), sizes)
 
 
+def first_with(mine: Trajectory, others: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
+    """One actor's first contact with any of the others."""
+    seen = [c for other in others if (c := first_contact((mine, other), sizes)) is not None]
+    return min(seen, key=lambda c: c.t_s, default=None)
+
+
 def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
     """Whether the first contact is the declared pair with the declared areas, in either order."""
     if declared is None or observed is None:

@@ -8,13 +8,13 @@ sizes and the lane graph; no driver.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.execution.contact import first_contact, poses
+from sgcad_core.execution.contact import first_with, poses
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
 from sgcad_core.handover.beyond import Start, gone_on
 from sgcad_core.metrics.thresholds import DRIVING
@@ -84,12 +84,6 @@ class Script:
         kinds = {a.id: a.type for a in self.actors}
         pairs = [a for a in track if a != ego and "trailer" in (kinds[a], kinds[ego])]
         return frozenset(a for a in pairs if _coupled(track[ego], track[a], self.sizes))
-
-
-def first_with(ego: Trajectory, others: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
-    """The ego's first contact with any of the others."""
-    seen = [c for other in others if (c := first_contact((ego, other), sizes)) is not None]
-    return min(seen, key=lambda c: c.t_s, default=None)
 
 
 def _coupled(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> bool:
