@@ -1,0 +1,75 @@
+"""The desk's answers to changes: edit, undo, run again. JSON in, JSON out; nothing is answered without the guard."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import JSONResponse, Response
+
+from flows.desk.desk import Desk
+from flows.desk.mending import Changed, Done, Kind, Order, told
+from sgcad_core.errors import SgcadError, SimulationFailed, WrongEdit
+
+router = APIRouter()
+Plain = str | int | float | bool | list[str] | None
+
+
+class Asked(BaseModel):
+    """A change as the page asks for it."""
+
+    model_config = ConfigDict(extra="forbid")
+    version: str = Field(max_length=80)
+    stamp: str = Field("", max_length=80)
+    edits: dict[str, Plain] = Field(default_factory=dict, max_length=60)
+    who: str = Field("", max_length=120)
+    why: str = Field("", max_length=1000)
+
+
+@router.post("/edit/{key:path}")
+async def edit(request: Request, key: str) -> Response:
+    """Lay facts over a case."""
+    return await _change(request, key, "revise")
+
+
+@router.post("/undo/{key:path}")
+async def undo(request: Request, key: str) -> Response:
+    """Take the last change back."""
+    return await _change(request, key, "undo")
+
+
+@router.post("/rerun/{key:path}")
+async def rerun(request: Request, key: str) -> Response:
+    """Run the case again."""
+    return await _change(request, key, "rerun")
+
+
+async def _change(request: Request, key: str, kind: Kind) -> Response:
+    """200 with what is said at which field; 409 the case is another by now; 422 refused, with the reason."""
+    desk: Desk = request.app.state.desk
+    try:
+        asked = Asked.model_validate_json(await request.body())
+    except ValidationError as fault:
+        return JSONResponse({"text": f"The page sent no change: {fault.errors()[0]['msg']}. Reload it."}, 400)
+    _, folder = await run_in_threadpool(desk.case, key)
+    order = Order(kind, folder, asked.edits, asked.who, asked.why, asked.stamp or None)
+    try:
+        done: Done = await run_in_threadpool(desk.mender.change, order, asked.version)
+    except SgcadError as fault:
+        return JSONResponse(_refusal(fault), _status(fault))
+    return JSONResponse({"status": done.status, "seconds": round(done.seconds, 3), "changed": done.changed,
+                         "findings": {name: list(lines) for name, lines in done.findings.items()}})  # fmt: skip
+
+
+def _status(fault: SgcadError) -> int:
+    return 409 if isinstance(fault, Changed) else 503 if isinstance(fault, SimulationFailed) else 422
+
+
+def _refusal(fault: SgcadError) -> dict[str, Any]:
+    """The reason, and what concerns which field."""
+    fields: dict[str, list[str]] = {}
+    for finding in getattr(fault, "findings", ()) if isinstance(fault, WrongEdit) else ():
+        fields.setdefault(finding.where, []).append(finding.what)
+    return {"text": told(fault), "fields": fields}

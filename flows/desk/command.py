@@ -1,0 +1,149 @@
+"""`sgcad desk open`: starts the desk's server over a results folder and says where it is."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import sys
+import threading
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from sgcad_core.errors import ConfigError
+
+if TYPE_CHECKING:
+    import uvicorn
+
+    from flows.desk.guard import Gate
+
+DEFAULT_RUNS = Path("runs")
+DEFAULT_PORT = 8321
+EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104 - what is guarded against
+
+
+def open_desk(
+    runs: Annotated[
+        Path, typer.Argument(help="A results folder: what --out was of `sgcad run` or `evaluate`.")
+    ] = DEFAULT_RUNS,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; beyond this machine a token is demanded.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port; 0 takes a free one.", min=0, max=65535)] = DEFAULT_PORT,
+    names: Annotated[
+        list[str] | None, typer.Option("--name", help="A further host name that the desk answers to.")
+    ] = None,
+    token: Annotated[str, typer.Option(envvar="SGCAD_DESK_TOKEN", help="Demand this token on this machine too.")] = "",
+    open_browser: Annotated[bool, typer.Option("--open", help="Open a browser.")] = False,
+    mlflow: Annotated[str, typer.Option(help="Address of MLflow's pages, such as http://127.0.0.1:5000.")] = "",
+    prefect: Annotated[str, typer.Option(help="Address of Prefect's pages, such as http://127.0.0.1:4200.")] = "",
+) -> None:
+    """Look through the cases of a results folder in a browser: see which to trust, mend the others, go on.
+
+    Ctrl-C ends it; nothing is lost, every change is on disk.
+    """
+    serve(Asked(runs, host, port, tuple(names or ()), token, open_browser, mlflow, prefect))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """The command line."""
+
+    runs: Path
+    host: str
+    port: int
+    names: tuple[str, ...] = ()
+    token: str = ""
+    open_browser: bool = False
+    mlflow: str = ""
+    prefect: str = ""
+
+
+def serve(asked: Asked) -> None:
+    """Serve until Ctrl-C. Raises ConfigError: no such folder, a port in use, a wrong address."""
+    root, pages = _folder(asked.runs), (_page(asked.mlflow, "--mlflow"), _page(asked.prefect, "--prefect"))
+    from flows.desk.app import application  # a second or two, which a wrong folder need not wait for
+    from flows.links import noted_desk
+
+    gate = gate_of(asked)
+    app = application(root, gate, *pages)
+    with socket_at(asked.host, asked.port) as listening:
+        address = address_of(asked.host, listening.getsockname()[1], gate.token)
+        sys.stdout.write(f"The desk over {root} is at\n\n  {address}\n\nCtrl-C ends it.\n")
+        sys.stdout.flush()
+        if asked.open_browser:
+            threading.Timer(0.5, webbrowser.open, (address,)).start()
+        with noted_desk(root, address_of(asked.host, listening.getsockname()[1], "").rstrip("/")):
+            server_of(app).run(sockets=[listening])
+
+
+def server_of(app: object) -> uvicorn.Server:
+    """The desk's server: quiet, one process, no web sockets."""
+    import uvicorn
+
+    config = uvicorn.Config(
+        app,  # type: ignore[arg-type]
+        log_level="warning", access_log=False, server_header=False, timeout_graceful_shutdown=3, proxy_headers=False,
+        ws="none",
+    )  # fmt: skip
+    return uvicorn.Server(config)
+
+
+def gate_of(asked: Asked) -> Gate:
+    """Who may come in: beyond this machine only who has the token, which is made up where none is given."""
+    from flows.desk.guard import LOOPBACK, Gate
+
+    local = asked.host in LOOPBACK
+    if asked.token and len(asked.token) < 16:
+        raise ConfigError(
+            f"--token: {len(asked.token)} characters can be guessed; give 16 or more, or none to have one made"
+        )
+    names = {*LOOPBACK, *(name.lower() for name in asked.names)}
+    if not local:
+        names |= {asked.host.lower(), socket.gethostname().lower(), socket.getfqdn().lower()}
+    token = asked.token or ("" if local else secrets.token_urlsafe(24))
+    return Gate(names=frozenset(names), token=token, any_address=not local)
+
+
+def address_of(host: str, port: int, token: str) -> str:
+    """What to open in a browser."""
+    name = socket.gethostname() if host in EVERYWHERE else f"[{host}]" if ":" in host else host
+    return f"http://{name}:{port}/" + (f"?token={token}" if token else "")
+
+
+def _folder(runs: Path) -> Path:
+    if runs.is_dir():
+        if (runs / "result.json").is_file():
+            raise ConfigError(f"{runs}: is one case; give the folder above, such as {runs.resolve().parent.parent}")
+        return runs.resolve()
+    remedy = (
+        "make results first, such as with `make demo` or `sgcad run REPORT`, or name their folder: sgcad desk FOLDER"
+    )
+    raise ConfigError(f"{runs}: no such folder; {remedy}")
+
+
+def _page(given: str, option: str) -> str:
+    from flows.links import address
+
+    if given and not address(given):
+        raise ConfigError(f"{option} {given}: no web address; give one such as http://127.0.0.1:5000")
+    return address(given)
+
+
+def socket_at(host: str, port: int) -> socket.socket:
+    """A listening socket. Raises ConfigError naming the port and what to do."""
+    try:
+        family = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+        listening = socket.socket(family[0], socket.SOCK_STREAM)
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(family[4][:2])
+    except OSError as fault:
+        why = fault.strerror or str(fault)
+        raise ConfigError(
+            f"--host {host} --port {port}: cannot listen there ({why}); --port 0 takes a free one"
+        ) from fault
+    listening.listen(64)
+    return listening

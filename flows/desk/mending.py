@@ -1,0 +1,180 @@
+"""Changing a case from the desk: in a process of its own that stays warm, so that a planner's or a simulator's death
+kills no page, and only what a person has really seen is changed.
+
+The near end is `Mender`; `work` is what the far end does. The page's rules: a change carries the version of the case
+that was on the screen, and is refused where the case on disk is another one by now.
+"""
+
+from __future__ import annotations
+
+import io
+import queue
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from flows.desk.form import Findings
+from flows.desk.version import version_of
+from sgcad_core.errors import SgcadError, SimulationFailed
+from sgcad_core.workers import Worker
+
+MEND_S, RUN_S = 60.0, 600.0
+"""Longest mending; longest running again (a model may be asked)."""
+WORKERS = 2
+"""Processes; the second one starts when two people change something at once."""
+Kind = Literal["revise", "undo", "rerun", "warm"]
+
+
+class Changed(SgcadError):
+    """The case on disk is another than the one on the person's screen."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """One change; `seen`: the stamp of the facts that were on the screen."""
+
+    kind: Kind
+    folder: Path
+    edits: Mapping[str, Any] = field(default_factory=dict)
+    who: str = ""
+    why: str = ""
+    seen: str | None = None
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came of a change: what is to be said at which field."""
+
+    status: str
+    findings: Findings
+    seconds: float
+    changed: bool
+
+
+class Mender:
+    """Carries changes out, each case's one after the other. Thread-safe."""
+
+    def __init__(self, target: str = "flows.desk.mending:work") -> None:
+        self._workers = [Worker(target) for _ in range(WORKERS)]
+        self._idle: queue.LifoQueue[Worker] = queue.LifoQueue()  # the last one used is warm
+        for worker in reversed(self._workers):
+            self._idle.put(worker)
+        self._said: dict[Path, tuple[str, Findings]] = {}
+        self._busy: dict[Path, threading.Lock] = {}
+        self._warmed: set[Path] = set()
+        self._lock = threading.Lock()
+
+    def warm(self, folder: Path) -> None:
+        """Prepare in the background for changes of this case and those of its config; once each."""
+        with self._lock:
+            known = folder.parent in self._warmed
+            self._warmed.add(folder.parent)
+        if not known:
+            threading.Thread(target=self._warm, args=(folder,), daemon=True, name="desk-warm").start()
+
+    def _warm(self, folder: Path) -> None:
+        with self._worker() as worker, suppress(SgcadError):  # the first change will tell
+            worker.call(Order("warm", folder), timeout_s=MEND_S)
+
+    def change(self, order: Order, version: str) -> Done:
+        """Carry out a change of the case as the person saw it.
+
+        Raises Changed, WrongEdit and BadInput (nothing was changed), SimulationFailed (the process died).
+        """
+        with self._alone(order.folder), self._worker() as worker:
+            if version != version_of(order.folder):
+                raise Changed(
+                    "This case was changed on disk since you opened it (another person, or a run). Your change was not "
+                    "made: look at the case as it is now, then make it again."
+                )
+            done: Done = worker.call(order, timeout_s=RUN_S if order.kind == "rerun" else MEND_S)
+            with self._lock:
+                self._said[order.folder] = (version_of(order.folder), done.findings)
+        return done
+
+    def said(self, folder: Path) -> Findings:
+        """What validators and planner said of the last change, while the case is as that change left it."""
+        with self._lock:
+            version, findings = self._said.get(folder, ("", {}))
+        return findings if version == version_of(folder) else {}
+
+    def close(self) -> None:
+        """End the processes."""
+        for worker in self._workers:
+            worker.kill()
+
+    @contextmanager
+    def _worker(self) -> Iterator[Worker]:
+        worker = self._idle.get()
+        try:
+            yield worker
+        finally:
+            self._idle.put(worker)
+
+    @contextmanager
+    def _alone(self, folder: Path) -> Iterator[None]:
+        with self._lock:
+            lock = self._busy.setdefault(folder, threading.Lock())
+        with lock:
+            yield
+
+
+# ------------------------------------------------------------------ the far end
+def work(order: Order) -> Done | None:
+    """Carry an order out over there. Raises WrongEdit, BadInput, ConfigError."""
+    from flows import revising
+
+    if order.kind == "warm":
+        _warm_up(order.folder)
+        return None
+    if order.kind == "rerun":
+        return _rerun(order.folder)
+    if order.kind == "undo":
+        done = revising.undo(order.folder, seen=order.seen)
+    else:
+        done = revising.revise(order.folder, order.edits, who=order.who, why=order.why, seen=order.seen)
+    said = {name: [_line(finding) for finding in found] for name, found in done.findings.items()}
+    return Done(str(done.result["status"]), said, done.seconds, done.changed)
+
+
+def _line(finding: Any) -> str:
+    remedy = f" – {finding.remedy}" if finding.remedy else ""
+    return f"{finding.what}{f': {finding.value}' if finding.value else ''}{remedy}"
+
+
+def _rerun(folder: Path) -> Done:
+    """The whole case once more, as its config says and with what people said of it."""
+    from flows import cases, chain, revising
+    from sgcad_core.asking.refine import run_at_once
+
+    case = revising.opened(folder)
+    digest = cases.digest_of(case.case, case.config)
+    ending = chain.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
+    return Done(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
+
+
+def _warm_up(folder: Path) -> None:
+    """Do once, for nothing, what the first change of such a case would wait for: imports, plugins, the simulator's own
+    process, matplotlib's fonts. A config with a model is only built: its model is not asked for nothing."""
+    from matplotlib.figure import Figure
+
+    from flows import revising
+    from flows.chain import CaseRun
+    from sgcad_core.asking.refine import run_at_once
+
+    case = revising.opened(folder)
+    if case.config.backbone is None:
+        CaseRun(case.config, case.case, run_at_once, edits=case.edits()).go()
+    figure = Figure()
+    figure.text(0, 0, "V1")
+    figure.savefig(io.BytesIO(), format="png", backend="agg")
+
+
+def told(fault: SgcadError) -> str:
+    """A fault for the person who made the change."""
+    if isinstance(fault, SimulationFailed):
+        return f"The change could not be carried out, nothing was changed: {fault}"
+    return str(fault)

@@ -1,0 +1,155 @@
+"""The desk's pages that only show: list, case, player, drawings, files. Nothing here changes anything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from fastapi import APIRouter, Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+
+from flows.desk import case as cases
+from flows.desk import choosing, form
+from flows.desk.choosing import Asked
+from flows.desk.desk import STATIC, Desk, Gone
+from flows.desk.roadmap import map_of
+from flows.desk.version import version_of
+from sgcad_core.edits import effective
+from sgcad_core.errors import SgcadError
+
+router = APIRouter()
+PLAYER_POLICY = (
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data:; frame-ancestors 'self'"
+)
+"""The player is one file with its script inside. It gets an origin of its own, no cookie and no network."""
+STATIC_TYPES = {".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml", ".txt": "text/plain"}
+
+
+def desk_of(request: Request) -> Desk:
+    """The desk that answers."""
+    desk: Desk = request.app.state.desk
+    return desk
+
+
+@router.get("/")
+def list_page(request: Request) -> Response:
+    """The list of cases, filtered and sorted."""
+    desk, asked = desk_of(request), Asked.of(request.query_params)
+    listing = desk.index.listing()
+    everything = list(listing.rows.values())
+    rows = choosing.chosen(everything, asked)
+    shown, number, pages = choosing.page_of(rows, asked)
+    facets = choosing.counts(everything, asked)
+    return desk.render(
+        request, "list.html", asked=asked, rows=shown, found=len(rows), total=len(everything), pending=listing.pending,
+        number=number, pages=pages, facets=facets, facet_words=choosing.FACETS, flags=choosing.FLAGS,
+        sorts=choosing.SORTS, first=(number - 1) * choosing.PAGE,
+    )  # fmt: skip
+
+
+@router.get("/case/{key:path}")
+def case_page(request: Request, key: str) -> Response:
+    """One case: report, drawing, map, player, facts."""
+    desk, asked = desk_of(request), Asked.of(request.query_params)
+    row, folder = desk.case(key)
+    result = desk.result(folder)
+    rows = choosing.chosen(desk.index.listing().rows.values(), asked)
+    before, after, number = choosing.around(rows, key)
+    page = cases.page_of(folder, result)
+    return desk.render(
+        request, "case.html", row=row, page=page, thing_of=cases.thing_of, road_map=map_of(folder, result), asked=asked,
+        before=before, after=after, number=number, found=len(rows), version=version_of(folder),
+        links=desk.links.of(key, str(result.get("config") or ""), row.case), **mending_of(desk, page, folder),
+    )  # fmt: skip
+
+
+def mending_of(desk: Desk, page: cases.CasePage, folder: Path) -> dict[str, Any]:
+    """What the page needs to mend a case; where that cannot be, why."""
+    from flows import revising
+
+    nothing = {"groups": page.groups, "can_mend": False, "edits": (), "additions": (), "stamp": ""}
+    try:
+        edits = revising.opened(folder).edits()
+        fields = revising.editable(folder)
+    except SgcadError as fault:
+        return nothing | {"no_mend": f"cannot be changed here: {fault}"}
+    desk.mender.warm(folder)
+    stands = effective(edits)
+    groups = form.groups_with(page.groups, fields, stands, desk.mender.said(folder))
+    return {"groups": groups, "can_mend": True, "no_mend": "", "edits": stands, "stamp": revising.stamp_of(edits),
+            "additions": list(form.additions(fields))}  # fmt: skip
+
+
+@router.get("/version/{key:path}")
+def version(request: Request, key: str) -> Response:
+    """What stands on disk now, so that an open page notices a change."""
+    _, folder = desk_of(request).case(key)
+    return JSONResponse({"version": version_of(folder)})
+
+
+@router.get("/player/{key:path}")
+def player(request: Request, key: str) -> Response:
+    """The case's player, sealed off."""
+    return _file(request, key, "player.html", "text/html; charset=utf-8", {"Content-Security-Policy": PLAYER_POLICY})
+
+
+@router.get("/drawing/{number}/{key:path}")
+def drawing(request: Request, number: int, key: str) -> Response:
+    """One of the report's drawings, from 1."""
+    _, folder = desk_of(request).case(key)
+    found = cases.diagrams_of(folder)
+    if not 1 <= number <= len(found):
+        raise Gone(f"This report has {len(found)} drawings; there is no number {number}.")
+    return _file(request, key, found[number - 1].name, "image/png", {})
+
+
+@router.get("/file/{name}/{key:path}")
+def download(request: Request, name: str, key: str) -> Response:
+    """One of the case's files, to keep."""
+    if name not in cases.FILES:
+        raise Gone(f"{name!r} is no file of a case.")
+    case = key.rpartition("/")[2]
+    return _file(request, key, name, "application/octet-stream", {}, filename=f"{case}-{name}")
+
+
+@router.get("/attempt/{attempt}/{name}/{key:path}")
+def attempt(request: Request, attempt: str, name: str, key: str) -> Response:
+    """What a writer was asked and answered, as plain text."""
+    if not cases.ATTEMPT.fullmatch(attempt) or name not in cases.ATTEMPT_FILES:
+        raise Gone(f"{attempt}/{name} is no file of an attempt.")
+    return _file(request, key, f"attempts/{attempt}/{name}", "text/plain; charset=utf-8", {})
+
+
+@router.get("/static/{name}")
+def static(name: str) -> Response:
+    """A style, a script or the icon."""
+    file = STATIC / name
+    if file.suffix not in STATIC_TYPES or file.parent != STATIC or not file.is_file():
+        return PlainTextResponse(f"There is no {name}.", 404)
+    return FileResponse(file, media_type=STATIC_TYPES[file.suffix], headers={"Cache-Control": "no-cache"})
+
+
+def _file(
+    request: Request, key: str, name: str, kind: str, headers: Mapping[str, str], filename: str | None = None
+) -> Response:
+    """A file of a case's folder, never one that a link in it leads out to."""
+    desk = desk_of(request)
+    _, folder = desk.case(key)
+    file = folder / name
+    if not file.resolve().is_relative_to(desk.root) or not file.is_file():
+        raise Gone(f"This case has no {name}.")
+    try:
+        content = file.read_bytes()  # whole: a batch may write the case anew while its length is told already
+    except OSError as fault:
+        raise Gone(f"This case has no {name} any more ({fault.strerror}).") from fault
+    kept = {"Content-Disposition": f"attachment; {_named(filename)}"} if filename else {}
+    return Response(content, media_type=kind, headers={**headers, **kept})
+
+
+def _named(filename: str) -> str:
+    """A file's name as a header takes it (RFC 6266); other letters than ASCII in RFC 5987's spelling."""
+    spelled = quote(filename, safe="")
+    return f'filename="{filename}"' if spelled == filename else f"filename*=utf-8''{spelled}"

@@ -1,0 +1,145 @@
+  // ---------------------------------------------------------------- what the figures are, in a line each
+  const EXPLAIN = {
+    collision_probability: "share of instants at which the boxes overlap; depends on how long the clock runs, so it is small though a collision happens",
+    near_miss_probability: "share of instants at which the centers are nearer than a length and a metre",
+    collision: "whether any two boxes overlap at all",
+    collision_speed_mps: "relative speed in the step that ends in the first contact",
+    time_to_collision_s: "least time to the contact if both keep going as they do; exact: only on a collision course, 0 once they touch",
+    post_encroachment_time_s: "least time between one leaving a place and the other coming to it; 0 where they touch",
+    required_deceleration_mps2: "hardest braking that one of both would have needed at any instant before the contact",
+    minimum_distance_m: "least distance: paper's between centers, exact between outlines",
+    interaction_intensity_mean: "one over the distance to the others within 50 m, summed; mean over time",
+    interaction_intensity_max: "the same at its largest",
+    average_displacement_error_m: "how far a prediction at constant velocity is off, on average; says how much is maneuvered",
+    final_displacement_error_m: "the same at the end of the prediction",
+    emergency_score: "points for contact, short TTC, short PET and nearness, by the paper's weights",
+    emergency_level: "critical from 10 points, high from 6, moderate from 3",
+    delta_v_mps: "change of each one's velocity in the contact, from masses and a common end velocity",
+    delta_v_worst_mps: "the larger of both",
+    contact_energy_j: "energy that the contact takes up, from masses and relative speed",
+    fatality_risk: "share of such contacts that kill, from published curves over speed",
+    time_exposed_ttc_s: "how long TTC was under 1.5 s before the contact",
+    time_integrated_ttc_s2: "how far and how long TTC was under 1.5 s",
+    time_exposed_drac_s: "how long harder braking than 3.35 m/s2 was needed",
+    braking_s_before_s: "when the first of both began to brake, before the contact",
+    ttc_at_braking_s: "TTC at that instant",
+    brake_by_s: "the latest instant at which braking hard alone would have avoided it",
+    brake_by_m: "the same as a way: how far from the contact one would have had to brake",
+    required_2_s_before_mps2: "constant braking from 2 s before the contact on that would have avoided it",
+    steer_by_s: "the latest instant at which steering alone would have avoided it",
+  };
+  for (const s of ["0_5", "1", "2"]) {
+    EXPLAIN[`ttc_${s}_s_before_s`] = `TTC ${s.replace("_", ".")} s before the contact`;
+    EXPLAIN[`drac_${s}_s_before_mps2`] = `braking needed ${s.replace("_", ".")} s before the contact`;
+  }
+
+  // ---------------------------------------------------------------- report, verdict, account, tables
+  const unit = (name) => name.replace(/_s$/, " (s)").replace(/_mps$/, " (m/s)").replace(/_m$/, " (m)");
+  const seen = contact && declared && contact.actor !== declared.striker && contact.other === declared.striker
+    ? [contact.other, contact.other_area, contact.actor, contact.actor_area] : contact && [contact.actor, contact.actor_area, contact.other, contact.other_area];
+  function tell(place, text, at) {                       // the narrative, its replaced words marked, its vehicles in their colors
+    let from = 0;
+    for (const r of data.redactions || []) {
+      if (r.start < at || r.start >= at + text.length) continue;
+      const begin = Math.max(r.start - at, from), end = Math.min(r.end - at, text.length);
+      paint(place, text.slice(from, begin));
+      place.append(make("span", end > begin ? text.slice(begin, end) : "[…]", { className: "gone", title: `${r.removed} characters about persons were ${end > begin ? "replaced" : "left out"} here` }));
+      from = Math.max(end, begin);
+    }
+    paint(place, text.slice(from));
+  }
+  function paint(place, text) {
+    let from = 0;
+    for (const hit of text.matchAll(NAMED)) {
+      const number = hit[1] ? Number(hit[1]) : NUMBERS.indexOf(hit[2].toLowerCase()) + 1;
+      const actor = data.actors.find((a) => a.id === `V${number}`);
+      if (!actor) continue;
+      place.append(text.slice(from, hit.index), make("mark", hit[0], { style: `background:${actor.color}` }));
+      from = hit.index + hit[0].length;
+    }
+    place.append(text.slice(from));
+  }
+  const NUMBERS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"];
+  const NAMED = new RegExp(`\\b(?:(?:vehicle|unit|veh\\.?|traffic unit)\\s*(?:no\\.?\\s*|number\\s*|#\\s*)?|V|U(?=\\d))(?:(\\d{1,2})|(?<=\\s)(${NUMBERS.join("|")}))\\b`, "gi");
+  const sides = (a, aSide, b, bSide) => `${a} ${aSide} → ${b} ${bSide}`;
+
+  $("case").textContent = data.case;
+  $("about").textContent = `config ${data.config} · ${data.status} · attempts: road ${data.attempts.road}, scenario ${data.attempts.scenario} · ${Object.values(data.seconds).reduce((a, b) => a + b, 0).toFixed(1)} s`;
+  const account = data.account && data.account.verdict !== "none" ? data.account : null;
+  if (account) {                                         // what is told and there, told and lacking, assumed: first thing
+    const whole = account.verdict === "whole", of = (kind) => account.items.filter((i) => i.kind === kind);
+    $("account").hidden = false; $("account").open = !whole; $("account").className = whole ? "whole" : "amber";
+    $("account").firstElementChild.textContent = (whole ? `✓ Nothing that was found to be told is lacking: ${account.has} things told are there` : `⚠ ${account.lacking} of ${account.told} things told are lacking`) + ` · ${account.assumed} assumed`;
+    for (const item of of("lacks")) {
+      const line = make("li"), words = item.reason ? `${item.text}: ${item.reason}` : item.text;
+      const sentence = data.sentences.find((s) => s.of === item.start);
+      if (sentence) { const told = make("button", words); told.type = "button"; told.onclick = () => point(sentence.things, sentence); line.append(told); } else line.append(words);
+      $("lacks").append(line);
+    }
+    if (account.assumed) $("assumed").textContent = `Assumed: ${of("assumed").map((i) => i.text).join("; ")}.`;
+  }
+  const verdict = $("verdict");
+  if (contact) {
+    verdict.textContent = `${sides(...seen)} at ${contact.t_s.toFixed(2)} s` + (declared ? (data.collision.realised ? " · as declared ✓" : " · not as declared ✗") : "");
+    verdict.className = !declared ? "" : data.collision.realised ? "good" : "bad";
+    $("mark").style.left = `calc(8px + (100% - 16px) * ${contactStep / Math.max(last, 1)})`;
+  } else if (closest) {
+    verdict.textContent = `near crash: ${closest.actor} and ${closest.other} closest ${closest.clearance_m.toFixed(1)} m at ${closest.t_s.toFixed(1)} s` + (near.realised ? " · as declared ✓" : " · not as declared ✗");
+    verdict.className = near.realised ? "good" : "bad";
+    $("mark").style.left = `calc(8px + (100% - 16px) * ${momentStep / Math.max(last, 1)})`;
+  } else {
+    verdict.textContent = declared ? "the declared contact did not happen ✗" : "no contact"; verdict.className = declared ? "bad" : "";
+    $("mark").hidden = true;
+  }
+  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
+  for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
+  let read = 0;
+  data.sentences.forEach((s, k) => {
+    tell($("narrative"), data.narrative.slice(read, s.start), read);
+    const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
+    span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end), s.start); $("narrative").append(span);
+    read = s.end;
+  });
+  tell($("narrative"), data.narrative.slice(read), read);
+  if ((data.redactions || []).length) { $("redacted").hidden = false; $("redacted").textContent = "Dotted words stand for others, and […] for words left out: sex, age, names, licence, health and injury data and numbers of reports and badges are not kept."; }
+  for (const thing of Object.keys(data.facts)) if (thing.startsWith("road ")) $("roads").append(pointable(make("button", thing), [thing]));
+  if (data.facts.contact) $("roads").append(pointable(make("button", "contact"), ["contact"]));
+  row($("actors"), ["", "type", "maneuver", "size"], true);
+  for (const a of data.actors) row($("actors"), [pill(a), a.type, a.maneuver, `${a.length_m.toFixed(1)} × ${a.width_m.toFixed(1)} m`]);
+  fillSpeeds();
+  $("conditions").textContent = Object.entries(data.conditions).map(([k, v]) => `${k}: ${words(v)}`).join(" · ");
+  row($("collision"), ["declared", declared ? sides(declared.striker, declared.striker_area, declared.struck, declared.struck_area) : "none"]);
+  row($("collision"), ["observed", contact ? sides(...seen) : "none"]);
+  if (contact) row($("collision"), ["first contact", `${contact.t_s.toFixed(2)} s`]);
+  if (near) {
+    const told = near.declared, c = told.conflict;
+    row($("collision"), ["avoided", sides(c.striker, c.striker_area, c.struck, c.struck_area)]);
+    row($("collision"), ["evasion", told.evasions.map((e) => `${e.actor} ${words(e.maneuver)}`).join(", ") || "not told"]);
+    row($("collision"), ["clearance", `${told.clearance_m.toFixed(2)} m (${told.clearance_basis})`]);
+    if (closest) row($("collision"), ["closest approach", `${closest.clearance_m.toFixed(2)} m at ${closest.t_s.toFixed(2)} s`]);
+  }
+  const realised = near ? near.realised : data.collision.realised;
+  row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? "yes" : "no" })]);
+  const net = data.network || {};
+  for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
+  if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);
+  const paper = data.metrics.paper || {}, exact = data.metrics.exact || {};
+  row($("metrics"), ["", make("th", "paper's formula", { className: "n" }), make("th", "exact", { className: "n" })], true);
+  function explained(key) {                              // the figure's name, and under it what it is in a line
+    const td = make("td", words(unit(key)));
+    if (EXPLAIN[key]) td.append(make("small", EXPLAIN[key]));
+    return td;
+  }
+  for (const key of new Set([...Object.keys(paper), ...Object.keys(exact)])) row($("metrics"), [explained(key), ...[paper[key], exact[key]].map((v) => make("td", flatly(v), { className: "n" }))]);
+  for (const [field, nats] of Object.entries(data.grounding || {})) {
+    const chip = make("span", `${field}  ${nats.toFixed(2)}`), strength = Math.min(Math.abs(nats) / 4, 1);
+    chip.style.background = nats >= 0 ? `rgba(27,127,77,${0.1 + 0.35 * strength})` : `rgba(196,32,58,${0.1 + 0.35 * strength})`;
+    $("grounding").append(chip); $("groundcard").hidden = false;
+  }
+  window.addEventListener("message", (e) => {              // the page around it points at something
+    if (seated && e.source === parent && e.data?.sgcad === "point" && Array.isArray(e.data.things)) point(e.data.things.map(String), undefined, true);
+  });
+  fit();
+  window.addEventListener("load", fit);
+  const start = /[#&]t=([\d.]+)/.exec(location.hash);          // player.html#t=4.2 opens at that second
+  if (start) go(Number(start[1]) / step);

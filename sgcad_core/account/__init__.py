@@ -1,0 +1,10 @@
+"""A case's account: what its report tells and the scenario has, what it tells and the scenario lacks, what was assumed.
+
+Layer: above records, roads, metrics and execution; result.json is made with it. Knows no file and no plugin.
+"""
+
+from sgcad_core.account.making import account_of
+from sgcad_core.account.notes import Note
+from sgcad_core.account.records import Account, Item
+
+__all__ = ["Account", "Item", "Note", "account_of"]

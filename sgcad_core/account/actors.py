@@ -1,0 +1,42 @@
+"""Who is told and who is there: vehicles by number, people and things that are struck, what kind each is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.records import Item
+from sgcad_core.specs import SIZE_M
+
+_LIKE = {"suv": "car", "van": "car"}
+"""Kinds that reports mix."""
+
+
+def actor_items(made: Made) -> Iterator[Item]:
+    """Vehicles of the report, what they strike, and the kinds that are stated."""
+    kinds = {actor.id: actor.type for actor in made.scenario.actors}
+    for vehicle in made.reading.crash.vehicles:
+        named = " ".join(str(w) for w in (vehicle.year, vehicle.make, vehicle.model) if w)
+        text = f"{vehicle.id}{f', a {named}' if named else ''}"
+        there = vehicle.id in made.tracks
+        yield made.item(there, f"vehicles.{vehicle.id}", vehicle.id, why="not in the scenario", text=text)
+    for other in made.reading.crash.others:
+        there = other.id in made.tracks
+        text = f"{other.id}, a {other.word}"
+        yield made.item(there, f"others.{other.id}.word", other.word, why="not in the scenario", text=text)
+    for vehicle in made.reading.crash.vehicles:
+        yield from _kind(made, vehicle.id, kinds)
+
+
+def _kind(made: Made, name: str, kinds: Mapping[str, str]) -> Iterator[Item]:
+    fact = made.told.get(f"vehicles.{name}.kind")
+    if name not in kinds:
+        return
+    if fact and is_told(fact):
+        told, seen = str(fact.value), kinds[name]
+        same = _LIKE.get(told, told) == _LIKE.get(seen, seen)
+        yield made.item(same, fact.field, told, seen, why=f"a {seen} drives there")
+    towing = made.told.get(f"vehicles.{name}.trailer")
+    if towing and is_told(towing):
+        longer = made.sizes[name][0] > SIZE_M[kinds[name]][0] + 1 or any(a[0] == "T" for a in made.tracks)
+        yield made.item(longer, towing.field, True, why="it tows nothing")

@@ -1,0 +1,54 @@
+"""What the scenario has and nobody told: defaults, and what only follows from what is told, by the field.
+
+Knows facts; what a model answered is its own opinion and no assumption, unless the evidence does not carry it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from sgcad_core.account.made import Made
+from sgcad_core.account.records import Item
+from sgcad_core.account.words import phrase
+from sgcad_core.facts import Fact
+
+_NO_PART = re.compile(r"\.role$|\.lanes_backward$|^others\.[A-Z]\d+\.(start_(lane|road)|exit_road)$")
+"""Labels that move nothing, and halves of what is listed once."""
+_FOLLOWS = re.compile(
+    r"contacts\.\d+\.(striker|struck|striker_area|struck_area)$|vehicles\.V\d+\.(heading|maneuver|start_road)$"
+    r"|junction\.(kind|stem|stopped)$"
+)
+"""What is named as assumed where it only follows from what is told."""
+
+
+def assumed_items(made: Made, facts: Iterable[Fact]) -> Iterator[Item]:
+    """One item a field, the last fact of it; a junction of which no control is told has none."""
+    last = {fact.field: fact for fact in facts}
+    for fact in last.values():
+        if fact.value is not None and not _NO_PART.search(fact.field) and (reason := _reason(fact)):
+            yield _item(fact, reason, made)
+    junction = made.reading.roads.junction
+    if junction.kind not in ("none", "parking_lot") and "junction.control" not in last:
+        fact = Fact(field="junction.control", value="none", basis="default", status="default", rule="", confidence=0.2)
+        yield _item(fact, "not told", made)
+
+
+def _reason(fact: Fact) -> str:
+    """Why it counts as assumed; "" where it does not."""
+    if fact.status == "default":
+        return "not told"
+    if fact.basis == "text" and fact.status == "inferred" and _FOLLOWS.match(fact.field):
+        return f"follows from what is told ({fact.rule.replace('_', ' ')})"
+    if fact.basis == "model" and fact.status == "inferred":
+        return "answered by the model, and the report does not carry it"
+    return ""
+
+
+def _item(fact: Fact, reason: str, made: Made) -> Item:
+    parts = fact.field.split(".")
+    subject = parts[1] if parts[0] in ("vehicles", "others") else ".".join(parts[:-1])
+    return Item(
+        kind="assumed", field=fact.field, subject=subject, value=fact.value, text=phrase(fact.field, fact.value),
+        reason=reason, start=fact.start, end=fact.end,
+    )  # fmt: skip

@@ -1,0 +1,128 @@
+"""Told contacts against those that come about: the first one, later ones, things that are struck, near crashes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sgcad_core.account.made import Made
+from sgcad_core.account.records import Item
+from sgcad_core.execution.contact import avoided, closest_approach
+from sgcad_core.language import of_role
+from sgcad_core.narrative.facts import ContactFacts
+from sgcad_core.records import ObservedContact
+from sgcad_core.specs import Area
+from sgcad_core.told_course import ImpactTold
+
+_OPEN_SIDES = 4
+_EPS_S = 1e-6
+
+
+def contact_items(made: Made) -> Iterator[Item]:
+    """What becomes of every contact that is told, in the order of the text; of a near crash whether it is one."""
+    crash = made.reading.crash
+    if crash.near_crash:
+        yield from _near_crash(made)
+        return
+    stated = [(n, c) for n, c in enumerate(crash.contacts) if c.stated or _thing(made, c)]
+    last = -1.0
+    for number, contact in stated:
+        pair = _pair(contact.striker, contact.struck)
+        times = [t for t, a, b in made.crash.touches if _pair(a, b) == pair]
+        yield _came_about(made, number, contact, times, last)
+        yield from _sides(made, number, contact, times)
+        last = max(last, times[0]) if times and not crash.unnumbered else last
+    for number, impact in enumerate(crash.impacts):
+        yield _impact(made, number, impact)
+
+
+def _pair(a: str, b: str) -> frozenset[str]:
+    return frozenset((a, b))
+
+
+def _thing(made: Made, contact: ContactFacts) -> bool:
+    """Whether somebody is told to have struck a thing or a person: those contacts are put together, but told."""
+    return any(other.id == contact.struck for other in made.reading.crash.others)
+
+
+def _came_about(made: Made, number: int, contact: ContactFacts, times: list[float], last: float) -> Item:
+    field, pair = f"contacts.{number}.striker", (contact.striker, contact.struck)
+    text = f"{_ordinal(number)}: {contact.striker} strikes {_called(made, contact.struck)}"
+    first = made.execution.contact
+    seen = f"{first.actor} and {first.other} touch first" if first else "nobody touches"
+    if not times:
+        gone = [name for name in pair if name not in made.tracks]
+        why = f"{' and '.join(gone)} not in the scenario" if gone else "the two do not touch"
+        return made.item(False, field, contact.striker, seen, why=why, text=text)
+    if number == 0 and first and _pair(first.actor, first.other) != _pair(*pair) and not _before(made, first):
+        return made.item(False, field, contact.striker, seen, why=f"not the first contact: {seen}", text=text)
+    if times[-1] < last - _EPS_S:
+        return made.item(False, field, contact.striker, f"{times[0]:.1f} s", why="comes before the others", text=text)
+    return made.item(True, field, contact.striker, text=text)
+
+
+def _ordinal(number: int) -> str:
+    return "first contact" if number == 0 else f"contact {number + 1}"
+
+
+def _called(made: Made, name: str) -> str:
+    return next((f"{name} ({o.word})" for o in made.reading.crash.others if o.id == name), name)
+
+
+def _before(made: Made, first: ObservedContact) -> bool:
+    """Whether the report tells a contact with a thing before the first one of two vehicles, and this is one."""
+    early = {impact.actor for impact in made.reading.crash.impacts if impact.before}
+    return any({first.actor, first.other} & early and name[0] == "O" for name in (first.actor, first.other))
+
+
+def _sides(made: Made, number: int, contact: ContactFacts, times: list[float]) -> Iterator[Item]:
+    """The sides that the words leave open are assumed; the others must touch."""
+    may = {contact.striker: contact.striker_may, contact.struck: contact.struck_may}
+    names = {contact.striker: "striker_area", contact.struck: "struck_area"}
+    declared = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+    seen = _areas(made.touch(times[0], (contact.striker, contact.struck))) if times else {}
+    for who, allowed in may.items():
+        if len(allowed) == _OPEN_SIDES or not who.startswith("V"):
+            continue
+        side: Area | None = seen.get(who)
+        why = f"the {side} touches" if side else "the two do not touch"
+        text = f"{_ordinal(number)}: {' or '.join(allowed)} of {who}"
+        field = f"contacts.{number}.{names[who]}"
+        yield made.item(side in allowed, field, declared[who], side, why=why, text=text)
+
+
+def _areas(seen: ObservedContact) -> dict[str, Area]:
+    return {seen.actor: seen.actor_area, seen.other: seen.other_area}
+
+
+def _impact(made: Made, number: int, impact: ImpactTold) -> Item:
+    """A contact behind the first one, or with a thing."""
+    letter = _letter(impact.other)
+    vehicle = made.reading.crash.vehicle(impact.other) is not None
+    met = [
+        t for t, a, b in made.crash.touches
+        if impact.actor in (a, b) and (impact.other in (a, b) if vehicle else {a[0], b[0]} >= {letter, impact.actor[0]})
+    ]  # fmt: skip
+    again = vehicle and any(_pair(c.striker, c.struck) == _pair(impact.actor, impact.other)
+                            for c in made.reading.crash.contacts)  # fmt: skip
+    has = len(met) > int(again)
+    text = f"{impact.actor} strikes {impact.other}{' once more' if again else ''}"
+    why = "the two touch once only" if met and again else "does not come about"
+    return made.item(has, f"impacts.{number}.other", impact.other, why=why, text=text)
+
+
+def _letter(word: str) -> str:
+    """The first letter of the ids of such a thing or person."""
+    return next((str(user.yields["letter"]) for user in of_role("road_user") if user.search(word)), "O")
+
+
+def _near_crash(made: Made) -> Iterator[Item]:
+    near, told = made.scenario.near_crash, made.reading.crash.near_crash
+    pair = made.reading.crash.contacts[0] if made.reading.crash.contacts else None
+    if told is None or pair is None or not told.stated:
+        return
+    text = f"near crash of {pair.striker} and {pair.struck}"
+    closest = closest_approach(made.execution.trajectories, made.sizes, (pair.striker, pair.struck))
+    seen = f"{closest.clearance_m:.1f} m" if closest else "nobody near"
+    has = near is not None and avoided(near, made.execution.contact, closest)
+    why = f"they come to {seen}" if not made.execution.contact else "somebody touches"
+    yield made.item(has, "contacts.0.striker", pair.striker, seen, why=why, text=text)

@@ -1,0 +1,166 @@
+"""What vehicles are told to do against what they do: as `sgcad score` sees a motion, fact by fact.
+
+A vehicle that is not there lacks itself, not each of its deeds. Angles are clockwise degrees from north.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.records import Item
+from sgcad_core.facts import Fact, Value
+from sgcad_core.geometry.plane import wrap_angle
+from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP
+from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
+from sgcad_core.metrics.crash_seen import Driven
+from sgcad_core.metrics.truth_course import vehicle_marks
+from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
+
+_HEADING_RAD = math.radians(45.0 + 22.5)
+"""A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
+_SPIN_DEG = 60.0
+"""A told angle of spin is right within so much: reports give quarters."""
+
+
+class Seen(NamedTuple):
+    """Whether a deed shows; what is seen instead, and in words why it lacks."""
+
+    has: bool
+    instead: Value = None
+    why: str = "not so in the scenario"
+
+
+Judge = Callable[[Made, str, Value], Seen | None]
+"""Of a vehicle's fact; None: nothing to hold it to."""
+
+
+def motion_items(made: Made) -> Iterator[Item]:
+    """Every told deed of the vehicles that are there."""
+    for fact in made.reading.facts:
+        parts = fact.field.split(".", 2)
+        if parts[0] != "vehicles" or len(parts) < 3 or parts[1] not in made.tracks or not is_told(fact):
+            continue
+        seen = _judged(made, parts[1], parts[2], fact)
+        if seen is not None:
+            yield made.item(seen.has, fact.field, fact.value, seen.instead, why=seen.why)
+
+
+def _judged(made: Made, who: str, name: str, fact: Fact) -> Seen | None:
+    if name in _JUDGES:
+        return _JUDGES[name](made, who, fact.value)
+    if name not in _LABELS:
+        return None
+    marks = _marks(made, who, _LABELS[name](fact.value))
+    return Seen(all(m >= 1.0 for m in marks.values())) if marks else None
+
+
+def _marks(made: Made, who: str, label: VehicleLabel) -> Mapping[str, float]:
+    return vehicle_marks(CourseLabel("", {who: label}, ()), made.crash)[who]
+
+
+# ------------------------------------------------------------------ as labels of the scorers
+def _evasion(*deeds: str) -> VehicleLabel:
+    return VehicleLabel(evasion=deeds)
+
+
+_LABELS: dict[str, Callable[[Value], VehicleLabel]] = {
+    "maneuver": lambda value: VehicleLabel(maneuver=value),  # type: ignore[arg-type]
+    "speed_mph": lambda value: VehicleLabel(speed_mph=float(value)),  # type: ignore[arg-type]
+    "evasion.brakes": lambda _: _evasion("brake"),
+    "evasion.steers": lambda value: _evasion("steer" if value == "either" else f"steer_{value}"),
+    "evasion.none": lambda _: _evasion(),
+    "lost_control": lambda _: VehicleLabel(lost_control=True),
+    "spin": lambda value: VehicleLabel(rest=RestLabel(turned="cw" if value == "clockwise" else "ccw")),
+    "rest.facing_deg": lambda value: VehicleLabel(rest=RestLabel(facing=_point(float(value)))),  # type: ignore[arg-type]
+    "rest.where": lambda value: VehicleLabel(rest=RestLabel(where=value)),  # type: ignore[arg-type]
+}
+"""Facts that the scorers know under a label of their own."""
+
+
+def _point(degrees: float) -> str:
+    return min(POINT_DEG, key=lambda word: abs((POINT_DEG[word] - degrees + 180) % 360 - 180))
+
+
+# ------------------------------------------------------------------ others
+def _heading(made: Made, who: str, value: Value) -> Seen | None:
+    if value not in COMPASS:
+        return None
+    first = float(made.tracks[who].heading_rad[0])
+    off = abs(float(wrap_angle(np.array([first - angle_of(value)]))[0]))
+    seen = compass_of_angle(first)
+    return Seen(off <= _HEADING_RAD, seen, f"it heads {seen}")
+
+
+def _lane(made: Made, who: str, value: Value) -> Seen | None:
+    """A numbered lane, or one by its side; a turn lane is the outermost one of its side."""
+    side = str(value).removesuffix("_turn") if isinstance(value, str) else value
+    if side not in ("left", "right", "middle") and not isinstance(side, int):
+        return None
+    marks = _marks(made, who, VehicleLabel(lane=side))
+    one = Driven(made.crash, who)
+    if not marks or one.home is None:
+        return None
+    edge, lane = one.home
+    place = next(i for i, other in enumerate(edge.car_lanes) if other.index == lane.index) + 1
+    return Seen(all(m >= 1 for m in marks.values()), place, f"it starts in lane {place} of {len(edge.car_lanes)}")
+
+
+def _spin_deg(made: Made, who: str, value: Value) -> Seen | None:
+    if not isinstance(value, int | float):
+        return None
+    one = Driven(made.crash, who)
+    turned = abs(math.degrees(float(wrap_angle(np.diff(one.path.pose[one.hit :, 2])).sum())))
+    return Seen(abs(turned - float(value)) <= _SPIN_DEG, round(turned), f"it turns by {turned:.0f} degrees")
+
+
+def _side(made: Made, who: str, value: Value) -> Seen | None:
+    where = made.told.get(f"vehicles.{who}.rest.where")
+    if where is None or where.value in ("road", "intersection"):
+        return None
+    label = VehicleLabel(rest=RestLabel(where=where.value, side=str(value)))  # type: ignore[arg-type]
+    mark = _marks(made, who, label).get("rest_side")
+    return None if mark is None else Seen(mark >= 1, why="it comes to rest on another side")
+
+
+def _attitude(made: Made, who: str, value: Value) -> Seen | None:
+    return Seen(value == "wheels", "wheels", "its box stays flat: no rollover is drawn")
+
+
+def _rolls(made: Made, who: str, value: Value) -> Seen:
+    return Seen(False, "wheels", "its box stays flat: no rollover is drawn")
+
+
+def _joins(road_name: Callable[[Made, str], str | None]) -> Judge:
+    """Whether a vehicle comes from, or goes into, such a road."""
+
+    def judged(made: Made, who: str, value: Value) -> Seen | None:
+        wanted = {DRIVEWAY: DRIVEWAY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
+        spec, name = made.network.spec, road_name(made, who)
+        if wanted is None or spec is None or name is None:
+            return None
+        kind = next((road.kind for road in spec.roads if road.id == name), "road")
+        lot = made.reading.roads.junction.kind == PARKING_LOT
+        return Seen(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
+
+    return judged
+
+
+def _start(made: Made, who: str) -> str | None:
+    behavior = made.scenario.behavior
+    return next((a.road for a in behavior.actors if a.id == who), None) if behavior else None
+
+
+def _exit(made: Made, who: str) -> str | None:
+    behavior = made.scenario.behavior
+    return next((a.exit_road for a in behavior.actors if a.id == who), None) if behavior else None
+
+
+_JUDGES: dict[str, Judge] = {
+    "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
+    "rest.attitude": _attitude, "rolls": _rolls, "origin": _joins(_start), "target": _joins(_exit),
+}  # fmt: skip

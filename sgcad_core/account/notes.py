@@ -1,0 +1,69 @@
+"""Notes of a case with a schema: what any step remarked, of whom, where in the report. Knows no file.
+
+kind: `reader` (the report's files), `limit` (beyond what is read or driven), `finding` (a validator's remark), `held`
+(what a model's answer was held to), `judge` (a second simulator), `plan` (what writer and planner changed or left out).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Literal
+
+from sgcad_core.facts import Fact
+from sgcad_core.frozen import Record
+from sgcad_core.narrative.limits import BEYOND
+
+NoteKind = Literal["reader", "limit", "finding", "held", "judge", "plan"]
+_ID = re.compile(r"\b[VPBTOA]\d{1,2}\b")
+_WORDS = {
+    "rest": "rest.",
+    "lane": "lane",
+    "speed": "speed",
+    "mph": "speed",
+    "heading": "heading",
+    "maneuver": "maneuver",
+}
+
+
+class Note(Record):
+    """One remark; `field` and `subject` are empty where it is of the whole case, [start, end) None without sentence."""
+
+    kind: NoteKind
+    field: str = ""
+    subject: str = ""
+    text: str
+    start: int | None = None
+    end: int | None = None
+
+
+def notes_of(kind: NoteKind, texts: Iterable[str], facts: Mapping[str, Fact], field: str = "") -> list[Note]:
+    """Notes of plain remarks: the subject is the first actor that is named, the field and sentence that of its fact."""
+    return [_note(kind, text, facts, field) for text in texts]
+
+
+def _note(kind: NoteKind, text: str, facts: Mapping[str, Fact], field: str) -> Note:
+    subject = match[0] if (match := _ID.search(text)) else ""
+    field = field or _field(subject, text, facts)
+    fact = facts.get(field)
+    place = (fact.start, fact.end) if fact else (None, None)
+    kind = "limit" if text.startswith(BEYOND) else kind
+    return Note(kind=kind, field=field, subject=subject, text=text, start=place[0], end=place[1])
+
+
+def _field(subject: str, text: str, facts: Mapping[str, Fact]) -> str:
+    """The fact that the words name, of the actor that they name; else the contact of two named ones."""
+    names = list(dict.fromkeys(_ID.findall(text)))
+    told = [name for name in facts if name.startswith((f"vehicles.{subject}.", f"others.{subject}."))]
+    wanted = [start for word, start in _WORDS.items() if re.search(rf"\b{word}\b", text)]
+    found = next((name for name in told for w in wanted if name.split(".", 2)[2].startswith(w)), "")
+    if found or len(names) < 2:
+        return found
+    return next((name for name, fact in facts.items() if _between(name, fact, names, facts)), "")
+
+
+def _between(name: str, fact: Fact, names: list[str], facts: Mapping[str, Fact]) -> bool:
+    if not name.endswith((".striker", ".actor")):
+        return False
+    other = facts.get(name.replace(".striker", ".struck").replace(".actor", ".other"))
+    return other is not None and {fact.value, other.value} == set(names[:2])

@@ -1,0 +1,162 @@
+"""Told roads against the compiled ones: axes, lanes, ways, limits, curves; the junction, its control; conditions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.motion import Seen
+from sgcad_core.account.records import Item
+from sgcad_core.facts import Value
+from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
+from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.narrative.road_provenance import road_names
+from sgcad_core.narrative.roads import RoadFact
+from sgcad_core.roads.drawn import DrawnRoad, junctions, near
+from sgcad_core.roads.lane_graph import network_figures
+from sgcad_core.roads.told_totals import allowed_totals
+from sgcad_core.specs import Compass
+
+TOLERANCE_DEG = 35.0
+"""Between a road as drawn and the compass direction that the report names, as the validator `road_narrative` has it."""
+LIMIT_MPH = 3.0
+CURVED_RAD = math.radians(10.0)
+_WAYS: dict[str, Compass] = {
+    "northbound": "N", "southbound": "S", "eastbound": "E", "westbound": "W", "northeastbound": "NE",
+    "southeastbound": "SE", "northwestbound": "NW", "southwestbound": "SW",
+}  # fmt: skip
+
+
+def place_items(made: Made) -> Iterator[Item]:
+    """Every told fact of roads, the junction and the conditions that can be held to the scenario."""
+    roads = dict(zip(road_names(made.reading.roads), made.reading.roads.roads, strict=True))
+    for fact in made.reading.facts:
+        parts = fact.field.split(".")
+        if not is_told(fact) or len(parts) < 2:
+            continue
+        seen = None
+        if parts[0] == "roads" and parts[1] in roads:
+            seen = _road(made, roads[parts[1]], parts[2], fact.value)
+        elif fact.field in _JUNCTION:
+            seen = _JUNCTION[fact.field](made, fact.value)
+        elif parts[0] == "conditions":
+            seen = _condition(made, parts[1], fact.value)
+        if seen is not None:
+            yield made.item(seen.has, fact.field, fact.value, seen.instead, why=seen.why)
+    for kind in made.reading.roads.junction.unsupported:
+        called = unsupported_kind(kind).called
+        yield made.item(False, "junction.place", kind, why=unsupported_kind(kind).remedy, text=f"the place: {called}")
+
+
+# ------------------------------------------------------------------ roads
+def _road(made: Made, road: RoadFact, name: str, value: Value) -> Seen | None:
+    here = [d for d in made.drawn if road.axis is None or d.along(road.axis, TOLERANCE_DEG, either=True)]
+    if name == "axis":
+        return Seen(bool(here), ", ".join(d.id for d in made.drawn), "no road runs that way")
+    if name in ("lanes_total", "lanes_each_way"):
+        return _lanes(made, road, here, name, int(value)) if isinstance(value, int) else None
+    if name.startswith("lanes_") and isinstance(value, int):
+        return _lanes_one_way(made, here, name.removeprefix("lanes_"), value)
+    if name.startswith("curve_"):
+        return Seen(any(_curved(d) for d in here), "straight", "the road is straight")
+    if name == "speed_limit_mph" and isinstance(value, int | float):
+        limits = sorted({round(s) for d in here for s in d.speeds_mph})
+        fits = any(abs(limit - value) <= LIMIT_MPH for limit in limits)
+        return Seen(fits, ", ".join(map(str, limits)), f"the limit is {limits or 'open'}")
+    return _lane_kind(made, here, name, value)
+
+
+def _lanes(made: Made, road: RoadFact, here: list[DrawnRoad], name: str, value: int) -> Seen:
+    """A counted total with the readings that its words allow; of one carriageway, or of both where that is open."""
+    wanted = allowed_totals(road, made.pictured) or {value, 2 * value if name == "lanes_each_way" else value}
+    counts = {n for d in here for n in ((d.total, d.forward, d.backward) if road.lanes.divided else (d.total,))}
+    if name == "lanes_each_way":
+        counts |= {n for d in here for n in (d.forward, d.backward)}
+        wanted = wanted | {value}
+    seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
+    return Seen(bool(counts & wanted), seen, f"drawn: {seen or 'no such road'}")
+
+
+def _lanes_one_way(made: Made, here: list[DrawnRoad], way: str, value: int) -> Seen | None:
+    if way not in _WAYS:
+        return None
+    counts = sorted({d.lanes_towards(_WAYS[way], TOLERANCE_DEG) for d in here} - {0})
+    told = sum(name.startswith("turn_lanes") for name in made.told)
+    fits = any(value <= n <= value + told + made.pictured for n in counts)
+    return Seen(fits, ", ".join(map(str, counts)), f"drawn: {counts or 'none'} that way")
+
+
+def _curved(road: DrawnRoad) -> bool:
+    turns = [abs(math.remainder(b - a, 2 * math.pi)) for a, b in pairwise(road.headings)]
+    return bool(turns) and max(sum(turns), *turns) > CURVED_RAD
+
+
+def _lane_kind(made: Made, here: list[DrawnRoad], name: str, value: Value) -> Seen | None:
+    """One-way, center turn lane, turn lanes, median."""
+    if name == "one_way":
+        one = any(not d.forward or not d.backward for d in here)
+        both = any(d.forward and d.backward for d in here)
+        return Seen(one if value else both or len(here) > 1, None, "it is drawn the other way")
+    spec = made.network.spec
+    ids = {d.id for d in here}
+    roads = [road for road in spec.roads if road.id in ids] if spec else []
+    if not roads:
+        return None
+    if name == "center_turn_lane":
+        return Seen(any(r.center_turn_lane for r in roads), None, "no such lane is drawn")
+    if name.startswith("turn_lanes_") and isinstance(value, tuple | list):
+        turns = [turn for r in roads for turn in (*r.turns_forward, *r.turns_backward)]
+        return Seen(all(side in turns for side in value), None, "no lane is for that turn alone")
+    if name == "divided" and value:
+        parted = len({r.id for r in roads if not (r.lanes_forward and r.lanes_backward)}) > 1
+        return Seen(parted or any(r.median != "none" for r in roads), None, "no median is drawn")
+    return None
+
+
+# ------------------------------------------------------------------ the junction
+def _kind(made: Made, value: Value) -> Seen | None:
+    kind, spec = str(value), made.network.spec
+    drawn = {road.kind for road in spec.roads} if spec else set()
+    legs = max((len(found) for found in junctions(made.graph)), default=0)
+    if kind in (DRIVEWAY, RAMP):
+        return Seen(kind in drawn, f"{legs} legs", f"no {kind} is drawn") if spec else None
+    if kind == PARKING_LOT:
+        return None
+    record = junction_kind(kind)  # type: ignore[arg-type]
+    if record.round:
+        return Seen(bool(made.graph.circles), "none", "no roundabout is drawn")
+    if record.legs <= 2:
+        return Seen(network_figures(made.graph).intersections == 0, f"{legs} legs", "a junction is drawn")
+    return Seen(legs == record.legs, f"{legs} legs", f"the junction drawn has {legs} legs")
+
+
+def _control(made: Made, value: Value) -> Seen | None:
+    spec = made.network.spec
+    if spec is None:
+        return None
+    drawn = {node.control for node in spec.nodes} - {"none"}
+    fits = str(value) in drawn or (value in ("stop", "yield") and "all_way_stop" in drawn)
+    seen = ", ".join(sorted(drawn)) or "none"
+    return Seen(fits, seen, f"the junction drawn has {seen}")
+
+
+def _stem(made: Made, value: Value) -> Seen | None:
+    if value not in COMPASS:
+        return None
+    legs = [leg for found in junctions(made.graph) if len(found) > 2 for leg in found]
+    fits = any(near(angle_of(value), leg, TOLERANCE_DEG + 15) for leg in legs)
+    seen = ", ".join(sorted({compass_of_angle(leg) for leg in legs}))
+    return Seen(fits, seen, f"legs lie {seen or 'nowhere'}")
+
+
+def _condition(made: Made, name: str, value: Value) -> Seen | None:
+    behavior = made.scenario.behavior
+    seen = getattr(behavior, name, None) if behavior else None
+    return None if behavior is None else Seen(seen == value, seen, f"the scenario has {seen or 'none'}")
+
+
+_JUNCTION: dict[str, Callable[[Made, Value], Seen | None]] = {
+    "junction.kind": _kind, "junction.control": _control, "junction.stem": _stem,
+}  # fmt: skip

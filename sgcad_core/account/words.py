@@ -1,0 +1,50 @@
+"""What fields and values are called for people. Knows field names; no report and no scenario."""
+
+from __future__ import annotations
+
+from sgcad_core.facts import Value
+
+FIELDS = {
+    "start_speed_mph": "speed", "exit_road": "leaves by", "start_lane": "lane", "start_road": "starts on",
+    "final_speed_mph": "last speed", "lane_word": "lane", "speed_mph": "speed", "speed_limit_mph": "speed limit",
+    "meant_maneuver": "means to", "exit_heading": "turns to", "heading": "heads", "maneuver": "maneuver",
+    "lanes_total": "lanes in all", "striker_area": "striking side", "struck_area": "struck side",
+}  # fmt: skip
+"""What some fields are called; the others by their own names."""
+UNITS = {"mph": " mph", "deg": " degrees", "m": " m"}
+
+
+def named(field: str) -> tuple[str, str]:
+    """Whom a field is about and what it is called: "vehicles.V1.rest.where" -> ("V1", "rest where")."""
+    kind, *rest = field.split(".")
+    if kind in ("vehicles", "others") and rest:
+        return rest[0], _called(rest[1:])
+    if kind == "roads" and rest:
+        return f"road {rest[0]}", _called(rest[1:])
+    if kind in ("contacts", "impacts") and rest:
+        which = "contact" if kind == "contacts" else "later impact"
+        return f"{which} {int(rest[0]) + 1}" if rest[0].isdigit() else which, _called(rest[1:])
+    return kind, _called(rest)
+
+
+def _called(names: list[str]) -> str:
+    return " ".join(
+        FIELDS.get(name, name.replace("_", " ").removesuffix(" mph").removesuffix(" deg")) for name in names
+    )
+
+
+def shown(field: str, value: Value) -> str:
+    """A value with its unit."""
+    if value is True:
+        return "yes"
+    if value is None:
+        return "none"
+    text = ", ".join(value) if isinstance(value, tuple | list) else str(value).replace("_", " ")
+    return text + UNITS.get(field.rpartition("_")[2], "") if "_" in field.rpartition(".")[2] else text
+
+
+def phrase(field: str, value: Value) -> str:
+    """A field and its value in words: "V2 speed 35 mph"."""
+    about, name = named(field)
+    told = "" if value is True else shown(field, value)
+    return " ".join(filter(None, [about, name, told]))

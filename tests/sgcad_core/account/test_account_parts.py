@@ -1,0 +1,192 @@
+"""The account's parts, each on one real execution: what is told otherwise lacks, what is told so is there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sgcad_core.account.actors import actor_items
+from sgcad_core.account.assumed import assumed_items
+from sgcad_core.account.contacts import contact_items
+from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.making import account_of
+from sgcad_core.account.motion import motion_items
+from sgcad_core.account.notes import notes_of
+from sgcad_core.account.places import place_items
+from sgcad_core.account.unread import unread_items
+from sgcad_core.account.words import named, phrase, shown
+from sgcad_core.config import load
+from sgcad_core.facts import Fact
+from sgcad_core.settings import ROOT
+
+DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The bundled left turn at a signal, executed."""
+    from flows.cases import Case
+    from flows.chain import CaseRun, run_at_once
+
+    run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"), run_at_once)
+    run.go()
+    record = run.record()
+    return Made(record.reading, record.network, record.scenario, record.execution, record.drawn)
+
+
+def fact(field, value, **more):
+    more = {"basis": "text", "status": "stated", "start": 3, "end": 9, "rule": "r", "confidence": 0.9, **more}
+    return Fact(field=field, value=value, **more)
+
+
+def telling(made, *facts):
+    """The same execution, of a report that tells these facts beside or instead of its own."""
+    kept = [f for f in made.reading.facts if f.field not in {g.field for g in facts}]
+    return replace(made, reading=replace(made.reading, facts=(*kept, *facts)))
+
+
+def of(items, field):
+    return {item.field: item for item in items}.get(field)
+
+
+# ------------------------------------------------------------------ the whole
+def test_a_bundled_report_is_whole_and_its_counts_agree(made):
+    told = account_of(made, made.reading.facts).summary()
+    assert told["verdict"] == "whole"
+    assert told["lacking"] == 0 < told["has"] == told["told"]
+    assert told["told"] + told["assumed"] == len(told["items"])
+
+
+def test_nothing_executed_is_no_verdict():
+    assert account_of(None, ()).summary() == {
+        "verdict": "none", "told": 0, "has": 0, "lacking": 0, "assumed": 0, "items": []
+    }  # fmt: skip
+
+
+def test_what_is_beyond_a_limit_lacks_and_makes_the_case_lacking(made):
+    notes = notes_of("limit", ["V1: '200 mph' is told"], made.told)
+    account = account_of(made, made.reading.facts, notes)
+    assert account.verdict == "lacking"
+    assert account.of("lacks")[0].reason == "beyond a limit of ours"
+    assert account.of("lacks")[0].subject == "V1"
+
+
+# ------------------------------------------------------------------ places
+@pytest.mark.parametrize(("field", "so", "otherwise"), [
+    ("junction.control", "signal", "stop"),
+    ("junction.kind", "four_leg", "t"),
+    ("roads.main.lanes_southbound", 2, 6),
+    ("roads.main.speed_limit_mph", 35, 70),
+    ("roads.cross.one_way", False, True),
+    ("conditions.surface", "dry", "snow"),
+    ("conditions.light", "day", "dark"),
+])  # fmt: skip
+def test_a_place_told_otherwise_lacks_with_what_is_there_instead(made, field, so, otherwise):
+    assert of(place_items(telling(made, fact(field, so))), field).kind == "has"
+    item = of(place_items(telling(made, fact(field, otherwise))), field)
+    assert item.kind == "lacks"
+    assert item.reason
+    assert (item.start, item.end) == (3, 9)
+
+
+# ------------------------------------------------------------------ actors and motion
+def test_a_vehicle_that_is_told_and_not_there_lacks(made):
+    gone = replace(made, scenario=made.scenario.model_copy(update={"actors": made.scenario.actors[:1]}))
+    items = list(actor_items(gone))
+    assert "lacks" in {item.kind for item in items if item.subject == "V2"}
+    assert {item.kind for item in actor_items(made)} == {"has"}
+
+
+@pytest.mark.parametrize(("field", "so", "otherwise"), [
+    ("vehicles.V1.heading", "N", "E"),
+    ("vehicles.V1.maneuver", "turn_left", "turn_right"),
+    ("vehicles.V2.maneuver", "straight", "turn_left"),
+])  # fmt: skip
+def test_motion_told_otherwise_lacks(made, field, so, otherwise):
+    assert of(motion_items(telling(made, fact(field, so))), field).kind == "has"
+    assert of(motion_items(telling(made, fact(field, otherwise))), field).kind == "lacks"
+
+
+def test_motion_is_judged_as_executed_not_as_planned(made):
+    """V2 mirrored in time drives backwards along its way."""
+    tracks = [
+        t if t.actor != "V2" else t.model_copy(update={"heading_rad": t.heading_rad + np.pi})
+        for t in made.execution.trajectories
+    ]
+    turned = replace(made, execution=made.execution.model_copy(update={"trajectories": tuple(tracks)}))
+    assert of(motion_items(made), "vehicles.V2.heading").kind == "has"
+    assert of(motion_items(turned), "vehicles.V2.heading").kind == "lacks"
+
+
+# ------------------------------------------------------------------ contacts
+def test_a_contact_that_happens_is_there_and_one_that_cannot_lacks(made):
+    assert {item.kind for item in contact_items(made)} == {"has"}
+    far = [t if t.actor != "V2" else t.model_copy(update={"x_m": t.x_m + 50.0}) for t in made.execution.trajectories]
+    missed = replace(made, execution=made.execution.model_copy(update={"trajectories": tuple(far), "contact": None}))
+    assert "lacks" in {item.kind for item in contact_items(missed)}
+
+
+# ------------------------------------------------------------------ assumed
+@pytest.mark.parametrize(("given", "reason"), [
+    ({"status": "default", "basis": "default"}, "not told"),
+    ({"status": "inferred", "rule": "left_turn"}, "follows from what is told (left turn)"),
+    ({"status": "inferred", "basis": "model"}, "answered by the model, and the report does not carry it"),
+    ({"status": "stated"}, None),
+    ({"status": "stated", "basis": "person"}, None),
+])  # fmt: skip
+def test_what_nobody_told_is_assumed_with_its_reason(made, given, reason):
+    items = assumed_items(
+        made, [fact("vehicles.V1.maneuver", "turn_left", **given), fact("junction.control", "signal")]
+    )
+    found = of(items, "vehicles.V1.maneuver")
+    assert (found.reason if found else None) == reason
+
+
+def test_a_junction_without_a_told_control_is_assumed_to_have_none_and_labels_are_no_assumptions(made):
+    items = list(assumed_items(made, [fact("vehicles.V1.role", "initiator", status="default")]))
+    assert [(item.field, item.value) for item in items] == [("junction.control", "none")]
+
+
+def test_only_sentences_and_persons_tell():
+    assert is_told(fact("f", 1))
+    assert is_told(fact("f", 1, basis="person", status="inferred"))
+    assert not is_told(fact("f", 1, status="inferred"))
+    assert not is_told(fact("f", 1, basis="model"))
+
+
+# ------------------------------------------------------------------ what was not read
+def test_a_whole_report_leaves_nothing_unread(made):
+    assert [item for item in unread_items(made) if item.kind == "lacks"] == []
+
+
+# ------------------------------------------------------------------ words
+@pytest.mark.parametrize(("field", "value", "words"), [
+    ("vehicles.V2.start_speed_mph", 35, "V2 speed 35 mph"),
+    ("vehicles.V1.rest.where", "ditch", "V1 rest where ditch"),
+    ("contacts.0.striker_area", "front", "contact 1 striking side front"),
+    ("roads.main.lanes_total", 5, "road main lanes in all 5"),
+    ("junction.control", "signal", "junction control signal"),
+    ("vehicles.V1.parked", True, "V1 parked"),
+])  # fmt: skip
+def test_items_are_named_as_people_speak(field, value, words):
+    assert phrase(field, value) == words
+
+
+def test_values_have_their_units():
+    assert shown("vehicles.V1.start_speed_mph", 35) == "35 mph"
+    assert shown("roads.main.turn_lanes", ("left", "right")) == "left, right"
+    assert shown("x", None) == "none"
+    assert named("impacts.1.areas") == ("later impact 2", "areas")
+
+
+# ------------------------------------------------------------------ notes
+def test_a_note_points_at_the_fact_that_it_is_about():
+    facts = {f.field: f for f in (fact("vehicles.V1.start_speed_mph", 35), fact("vehicles.V2.heading", "N"))}
+    note = notes_of("plan", ["V2: its heading was turned"], facts)[0]
+    assert (note.field, note.subject, note.start) == ("vehicles.V2.heading", "V2", 3)
+    assert notes_of("plan", ["the road is long"], facts)[0].field == ""
+
+
+def test_a_note_on_two_vehicles_points_at_their_contact():
+    facts = {f.field: f for f in (fact("contacts.0.striker", "V1"), fact("contacts.0.struck", "V2"))}
+    assert notes_of("plan", ["the contact of V1 and V2 came late"], facts)[0].field == "contacts.0.striker"
