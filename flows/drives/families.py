@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ import numpy as np
 
 from flows import store
 from flows.drives.reading import SURFACES, egos, script_of
+from sgcad_core import scratch
 from sgcad_core.config import DriverEntry
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.formats.openscenario.logical import Meets, Range, deterministic, logical_xosc, stochastic
@@ -70,16 +70,13 @@ def vary(family: Family, count: int, seed: int, driver: DriverEntry | None = Non
     """Write a family of so many members; the folder. Raises BadInput, ConfigError, SimulationFailed."""
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=store.PARTIAL, dir=place.parent))
-    try:
+    with scratch.beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
         if driver is not None:
             _hardest(family, count, seed, driver, role, partial)
         shutil.rmtree(place, ignore_errors=True)
         partial.rename(place)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
     return place
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +19,7 @@ from typing import Any, cast
 from flows import store
 from flows.cases import code_digest
 from flows.drives.reading import egos, script_of
+from sgcad_core import scratch
 from sgcad_core.config import DriverEntry
 from sgcad_core.errors import SgcadError
 from sgcad_core.handover.avoidance import avoidance
@@ -113,8 +113,7 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
 def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
     """The drive's files, whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=store.PARTIAL, dir=target.parent))
-    try:
+    with scratch.beside(target) as partial:
         partial.chmod(0o755)
         store.write_trajectories(partial / "trajectories.csv", driven.trajectories)
         if order.pages:
@@ -124,8 +123,6 @@ def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -
         store.write_json(partial / "drive.json", told)
         shutil.rmtree(target, ignore_errors=True)
         partial.rename(target)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
 
 
 def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> list[dict[str, Any]]:

@@ -64,6 +64,15 @@ class Careful:
         return self._came_m[name] > self.say.wander_m
 
     def _critical(self, view: View, perceived: set[str]) -> bool:
-        return bool(perceived) and any(
-            m.user.actor in perceived for m in meetings(self.task, view, self.say.critical_s)
-        )
+        """A touch within 2 s as all move now; who goes along in the strip is taken to stay in it."""
+        if not perceived:
+            return False
+        if any(m.user.actor in perceived for m in meetings(self.task, view, self.say.critical_s)):
+            return True
+        return any(a.user.actor in perceived and self._closes_in(view, a) for a in ahead(self.task, view))
+
+    def _closes_in(self, view: View, a: Ahead) -> bool:
+        """The regulation's time to collision, along the lane: gap over speed difference."""
+        nearing = view.ego.speed_mps - a.along_mps
+        stays = a.aside_m <= 0 and a.along_mps > abs(a.closing_mps)
+        return stays and 0 <= a.gap_m <= nearing * self.say.critical_s

@@ -15,7 +15,8 @@ Critical (CFS): if both go on as they do (own acceleration a, not under -b_min, 
     unsafe  (u + a t / 2 - l) t + (u' - l)^2 / (2 b_max)
 Each is 0 beyond the safe gap, 1 under the unsafe one, linear between. Answer: CFS (b_max - b_min) + b_min where
 CFS > 0, else PFS b_min. Only somebody in the strip, or who reaches it before the ego has passed, counts (the lateral
-check).
+check). Who has reacted once stays alert: he holds his speed where no braking is asked, and brakes again without
+another reaction time, as in the authors' own program (github.com/ec-jrc/JRC-FSM).
 """
 
 from __future__ import annotations
@@ -80,16 +81,14 @@ class Fuzzy:
     _before_mps: float | None = None
 
     def brake(self, view: View) -> float | None:
-        """Deceleration until the next instant, m/s2, positive; None where the foot is not on the brake."""
+        """Deceleration until the next instant, m/s2, positive; None before he has reacted."""
         own = view.ego.speed_mps
         acceleration = 0.0 if self._before_mps is None else (own - self._before_mps) / STEP_S
         self._before_mps = own
         wanted = max((self._answer(a, own, acceleration) for a in self._counting(view)), default=0.0)
-        if wanted <= 0.0:
-            self._since_s, self._braking_mps2 = None, 0.0
-            return None
-        self._since_s = view.t_s if self._since_s is None else self._since_s
-        if view.t_s < self._since_s + self.say.reaction_s - 1e-9:
+        if self._since_s is None and wanted > 0.0:
+            self._since_s = view.t_s
+        if self._since_s is None or view.t_s < self._since_s + self.say.reaction_s - 1e-9:
             return None
         most = min(self._braking_mps2 + self.say.jerk_mps3 * STEP_S, self.say.braking_mps2)
         self._braking_mps2 = min(wanted, most)
@@ -105,7 +104,7 @@ class Fuzzy:
         if a.closing_mps <= 0:
             return False
         nearing = view.ego.speed_mps - a.along_mps
-        passed = a.gap_m + 2 * view.ego.length_m + 2 * a.user.length_m
+        passed = a.gap_m + view.ego.length_m + a.user.length_m
         return nearing > 0 and a.aside_m / a.closing_mps <= passed / nearing + self.say.headway_margin_s
 
     def _answer(self, a: Ahead, own: float, acceleration: float) -> float:

@@ -104,7 +104,7 @@ def _connected(say: External) -> tuple[Answer, Callable[[], None]]:
             file.flush()
             said = file.readline(_LONGEST_LINE)
             return json.loads(said)
-        except (OSError, ValueError) as fault:
+        except (OSError, ValueError, RecursionError) as fault:  # a line of brackets is deeper than json goes
             raise SimulationFailed(f"the external driver at {where} is gone ({fault})") from fault
 
     def close() -> None:

@@ -53,7 +53,7 @@ def gone_on(graph: LaneGraph, start: Start, length_m: float, maneuver: str) -> F
     here = np.array([start.x_m, start.y_m])
     at = np.arange(0.0, length_m + 2 * _STEP_M, _STEP_M)
     held = _held(start, at)
-    strip = _strip_at(graph, here, start.course_rad)
+    strip = strip_at(graph, here, start.course_rad)
     if strip is None:
         return held
     first, line = _from(strip.line, here), _followed(graph, strip, length_m, maneuver)
@@ -88,7 +88,7 @@ def strips(graph: LaneGraph) -> Iterator[Strip]:
             yield Strip(connection.via_shape, connection, connection.from_edge)
 
 
-def _strip_at(graph: LaneGraph, here: Floats, course_rad: float) -> Strip | None:
+def strip_at(graph: LaneGraph, here: Floats, course_rad: float) -> Strip | None:
     """The strip that runs here and points as the vehicle moves."""
     found = [(cost, i, s) for i, s in enumerate(strips(graph)) if (cost := _cost(s.line, here, course_rad)) is not None]
     return min(found)[2] if found else None

@@ -15,8 +15,9 @@ from sgcad_core.planner.impact import RESTITUTION, Body, body, collide, mass_kg
 from sgcad_core.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.seat import STEP_S
 from sgcad_core.specs import ActorKind
+from sgcad_core.units import MPS_PER_MPH
 
-MPH_PER_MPS = 1 / 0.44704
+MPH_PER_MPS = 1 / MPS_PER_MPH
 _PEOPLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle"})
 
 

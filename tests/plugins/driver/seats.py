@@ -20,7 +20,9 @@ def task(speed=20.0, friction=8.34, gives_way=None):
 
 def view(made, t=0.0, x=0.0, speed=None, others=()):
     own = float(made.way.speed_mps[0]) if speed is None else speed
-    return View(t, user("V1", x=x, speed=own), x, x / max(float(made.way.speed_mps[0]), 1e-9), tuple(others))
+    return View(
+        t, made.ego._replace(x_m=x, speed_mps=own), x, x / max(float(made.way.speed_mps[0]), 1e-9), tuple(others)
+    )
 
 
 def ride(seat, made, others_at, seconds=8.0):

@@ -101,6 +101,19 @@ def test_nobody_at_the_port_is_told_and_so_is_one_who_hangs_up():
             drive(staged_rear_end(), External(port=server.getsockname()[1]))
 
 
+def test_an_answer_deeper_than_json_goes_is_told():
+    def answers(server):
+        line, _ = server.accept()
+        line.recv(100)
+        line.sendall(b"[" * 300_000 + b"\n")
+        line.close()
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        threading.Thread(target=answers, args=(server,), daemon=True).start()
+        with pytest.raises(SimulationFailed, match="is gone"):
+            drive(staged_rear_end(), External(port=server.getsockname()[1]))
+
+
 def test_one_door_is_needed_and_not_two():
     for fields in ({}, {"target": "a:b", "port": 80}):
         with pytest.raises(ValidationError, match="not both and not neither"):

@@ -1,5 +1,6 @@
 """UN R157's models, against the times and formulas of the regulation."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -94,3 +95,52 @@ def test_the_fuzzy_driver_brakes_gently_where_he_sees_it_coming():
     )
     assert rows[:, 3].min() >= -4.01
     assert (90.0 + 10 * rows[:, 0] - rows[:, 1]).min() > 4.7
+
+
+# ------------------------------------------------------------------ cut-ins, as the authors' own program ends them
+LENGTH, WIDTH, BESIDE_M = 4.3, 1.9, 1.6
+CRASHES = [(15, 8, 2.0, 5), (25, 8, 2.0, 5), (15, 8, 1.5, 10), (15, 12, 1.5, 5), (25, 12, 1.0, 20), (35, 5, 1.0, 5),
+           (20, 16, 2.0, 20), (20, 16, 1.5, 15)]  # fmt: skip
+"""Speed of the ego, how much slower the other is, its lateral speed (m/s), the gap (m): random ones of 672."""
+AVOIDED = [(25, 5, 2.0, 10), (15, 12, 0.5, 5), (30, 16, 0.5, 20), (15, 8, 1.5, 60), (15, 12, 2.0, 30), (35, 2, 0.5, 60),
+           (30, 8, 0.5, 20), (35, 12, 1.0, 40)]  # fmt: skip
+
+
+def touches(model, own, slower, aside_mps, gap):
+    """Whether the ego runs into one who cuts in from the left and then stays before it."""
+    made = task(own)
+
+    def cutting_in(t):
+        y = max(BESIDE_M + WIDTH - aside_mps * t, 0.0)
+        ahead_mps, left_mps = own - slower, -aside_mps if y > 0 else 0.0
+        speed, course = math.hypot(ahead_mps, left_mps), math.atan2(left_mps, ahead_mps)
+        x = gap + LENGTH + ahead_mps * t
+        return user(x=x, y=y, speed=speed, course=course, length=LENGTH, width=WIDTH)._replace(heading_rad=0.0)
+
+    made = dataclasses.replace(made, ego=made.ego._replace(length_m=LENGTH, width_m=WIDTH))
+    rows = ride(Reference(model=model).take_over(made), made, lambda t: [cutting_in(t)], 34.0)
+    there = np.array([(cutting_in(t).x_m, cutting_in(t).y_m) for t in rows[:, 0]])
+    return bool(((np.abs(there[:, 0] - rows[:, 1]) < LENGTH) & (there[:, 1] < WIDTH)).any())
+
+
+@pytest.mark.parametrize("cut_in", CRASHES)
+def test_the_fuzzy_driver_meets_those_that_its_authors_driver_meets(cut_in):
+    assert touches("fuzzy", *cut_in)
+
+
+@pytest.mark.parametrize("cut_in", AVOIDED)
+def test_the_fuzzy_driver_avoids_those_that_its_authors_driver_avoids(cut_in):
+    assert not touches("fuzzy", *cut_in)
+
+
+def test_who_stays_in_the_lane_that_it_came_into_is_braked_for():
+    """At 2 m/s sideways its course leads through the lane, but a car that comes into a lane means to stay there."""
+    assert not touches("careful", 15, 5, 2.0, 15)
+
+
+def test_after_braking_the_fuzzy_driver_does_not_speed_up_towards_who_made_him_brake():
+    made = task(20.0)
+    leader = [user(x=60.0 + 12.0 * t, speed=12.0) for t in np.arange(0, 20, 0.05)]
+    rows = ride(Reference(model="fuzzy").take_over(made), made, lambda t: [leader[round(t / 0.05)]], 19.0)
+    assert first_braking(rows) > 0
+    assert (np.diff(rows[rows[:, 0] >= first_braking(rows), 2]) <= 1e-9).all()
