@@ -16,6 +16,7 @@ class Batch:
     ids (B, L); positions (3, B, L); sheets (n, 3, H, W) of bytes for every shape of drawing, N drawings in all; grids
     (N, P, 2) row and column of each patch, lengths (N,) real patches; image_index flat places of picture tokens,
     patch_index which tokens stand there; picks (M,) flat places before a value, wanted (M,) its token, weights (M,);
+    allowed (M, K) all tokens that are as right as the wanted one, it among them, -1 behind shorter lists;
     ends (S,) flat places of sentence ends, sentence_tags (S, T) what those sentences tell; phrases (R,) flat places of
     the ends of noted phrases, noted (R, U) what those tell; drawn (sum of picture tokens, D) what each of
     `patch_index` shows; pointing (Q,) flat places before a value that some source tells, sources (Q, L) where in the
@@ -32,6 +33,7 @@ class Batch:
     picks: Tensor
     wanted: Tensor
     weights: Tensor
+    allowed: Tensor
     ends: Tensor
     sentence_tags: Tensor
     phrases: Tensor

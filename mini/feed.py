@@ -1,26 +1,31 @@
 """Training rows without end, made in worker processes: seed number n gives the same row everywhere.
 
-The curriculum goes by stage (drawings, narratives, then everything; or mostly narratives) and by progress (0 to 1) of
-the budget: short texts first, longer ones later. A row's seed, mode and length follow from its number and the progress,
-so a resumed run goes on where it stopped.
+The curriculum goes by stage (drawings, narratives, then everything; or mostly narratives; or gists beside those) and by
+progress (0 to 1) of the budget: short texts first, longer ones later. A row's seed, mode and length follow from its
+number and the progress, so a resumed run goes on where it stopped.
 """
 
 from __future__ import annotations
 
 import multiprocessing as mp
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
 from queue import Empty
 from random import Random
 from typing import Any
 
 from PIL import Image
 
+from mini.generator.incidents import make_incident
 from mini.generator.report import TEXT_MODES, Report, make_report
+from mini.gist import gist_row, told_of
 from mini.picture import VIEWS, quarters_of, turn_points, turn_upright
 from mini.renderer.draw import Shape, draw_labeled
 from mini.rows import MAX_TEXT, Row, training_row
 from mini.tokens import Coder, load_tokenizer
+from mini.told import Told, load
 
 POOL = 96
 MOVED = 0.5
@@ -36,8 +41,16 @@ MIXED = {"text": 35.0, "image": 28.0, "both": 24.0, "none": 7.0, "thin": 2.5, "n
 """More rows of one source than are measured (`MODES`): where both tell a value, there is least left to learn."""
 WORDS = {"text": 66.0, "both": 14.0, "image": 8.0, "none": 5.0, "thin": 3.0, "no_crash": 2.0, "conflict": 2.0}
 """Mostly narratives, with so many drawings that these are not unlearned."""
-STAGES: dict[str, dict[str, float]] = {"text": TEXT_MODES, "pictures": {"image": 1.0}, "words": WORDS, "all": MIXED}
+STAGES: dict[str, dict[str, float]] = {
+    "text": TEXT_MODES,
+    "pictures": {"image": 1.0},
+    "words": WORDS,
+    "all": MIXED,
+    "gist": WORDS,
+}
 """Weights of the modes that a stage of training shows."""
+GISTS = {"told": 0.52, "incident": 0.2, "made": 0.16}
+"""Shares of the rows of the stage "gist" that ask the gist alone: of told texts, made incidents and made narratives."""
 
 
 PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))
@@ -63,8 +76,11 @@ def length_for(rng: Random, stage: str, progress: float) -> float:
     return float(rng.random() ** (1.6 - 0.6 * progress)) * (0.5 + 0.9 * progress)
 
 
-def one_row(coder: Coder, seed: int, progress: float, stage: str = "all") -> Row:
+def one_row(coder: Coder, seed: int, progress: float, stage: str = "all", told: Sequence[Told] = ()) -> Row:
     """The row of a seed; reports that are too long are told again with less noise."""
+    if stage == "gist" and (text := _gist(Random(f"{seed} gist"), seed, told)):
+        rng = Random(f"{seed} worn")
+        return gist_row(coder, text, rng, WORN if rng.random() < 0.5 else (0.0, 0.0))
     rng = Random(seed)
     length, modes = length_for(rng, stage, progress), STAGES[stage]
     while True:
@@ -74,6 +90,18 @@ def one_row(coder: Coder, seed: int, progress: float, stage: str = "all") -> Row
             worn = WORN if rng.random() < 0.5 else (0.0, 0.0)
             return training_row(coder, report, *labeled(report), view, worn)
         length *= 0.7
+
+
+def _gist(rng: Random, seed: int, told: Sequence[Told]) -> Told | None:
+    """The text whose gist a seed asks for; None: it asks for a whole report, as without told texts a share does."""
+    share = rng.random()
+    if told and share < GISTS["told"]:
+        return rng.choice(told)
+    if share < GISTS["told"] + GISTS["incident"]:
+        return make_incident(seed)
+    if share < sum(GISTS.values()):
+        return told_of(make_report(seed, False, rng.random(), {"text": 1.0}))
+    return None
 
 
 def labeled(report: Report) -> tuple[Image.Image | None, list[Shape]]:
@@ -92,18 +120,18 @@ def drawing(report: Report) -> Image.Image | None:
     return draw_labeled(report).image if report.has_image else None
 
 
-def pool(coder: Coder, number: int, progress: float, stage: str = "all") -> list[Row]:
+def pool(coder: Coder, number: int, progress: float, stage: str = "all", told: Sequence[Told] = ()) -> list[Row]:
     """POOL rows, sorted by length."""
     stage, within = moment(stage, progress)
-    rows = [one_row(coder, number * POOL + i, within, stage) for i in range(POOL)]
+    rows = [one_row(coder, number * POOL + i, within, stage, told) for i in range(POOL)]
     return sorted(rows, key=lambda row: len(row.ids))
 
 
-def _work(folder: str, stage: str, jobs: Any, done: Any) -> None:
+def _work(folder: str, stage: str, told: str, jobs: Any, done: Any) -> None:
     import torch
 
     torch.set_num_threads(1)
-    coder = Coder(load_tokenizer(folder))  # type: ignore[arg-type]
+    make = _maker(folder, stage, told)
     parent = os.getppid()
     while os.getppid() == parent:
         try:
@@ -113,36 +141,48 @@ def _work(folder: str, stage: str, jobs: Any, done: Any) -> None:
         if job is None:
             break
         number, progress = job
-        done.put((number, progress, pool(coder, number, progress, stage)))
+        done.put((number, progress, make(number, progress)))
     done.cancel_join_thread()
+
+
+def _maker(folder: str, stage: str, told: str) -> Callable[[int, float], list[Row]]:
+    """`pool` of a folder's tokenizer, a stage and a file of told texts, if there is one."""
+    texts = load(Path(told)) if told else []
+    return partial(pool, Coder(load_tokenizer(Path(folder))), stage=stage, told=texts)
 
 
 class Feed:
     """Pools in order, a few ahead."""
 
     def __init__(
-        self, folder: str, workers: int, start: int, stride: int = 1, first: float | None = None, stage: str = "all"
+        self,
+        folder: str,
+        workers: int,
+        start: int,
+        stride: int = 1,
+        first: float | None = None,
+        stage: str = "all",
+        told: str = "",
     ) -> None:
-        self.stage = stage
         context = mp.get_context("spawn")
         self.jobs: Any = context.Queue()
         self.done: Any = context.Queue()
         self.next, self.asked, self.stride, self.first = start, start, stride, first
         self.ready: dict[int, tuple[float, list[Row]]] = {}
         self.workers = [
-            context.Process(target=_work, args=(folder, stage, self.jobs, self.done), daemon=True)
+            context.Process(target=_work, args=(folder, stage, told, self.jobs, self.done), daemon=True)
             for _ in range(workers)
         ]
-        self.coder = None if workers else Coder(load_tokenizer(folder))  # type: ignore[arg-type]
+        self.make = None if workers else _maker(folder, stage, told)
         for worker in self.workers:
             worker.start()
 
     def pools(self, progress: Callable[[], float]) -> Iterator[tuple[int, float, list[Row]]]:
         """(number, progress, rows) without end; progress() is asked when a pool is ordered."""
         while True:
-            if self.coder is not None:
+            if self.make is not None:
                 at = self._progress(progress)
-                yield self.next, at, pool(self.coder, self.next, at, self.stage)
+                yield self.next, at, self.make(self.next, at)
             else:
                 yield self.next, *self._ordered(progress)
             self.next += self.stride

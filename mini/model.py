@@ -239,11 +239,15 @@ class Forward:
         return -shares.masked_fill(~batch.sources[:, None], float("-inf")).logsumexp(dim=-1).mean()
 
     def _answers(self, batch: Batch, picked: Tensor, candidates: Tensor | None) -> tuple[Tensor, Tensor]:
-        weight, wanted = self.model.lm_head.weight, batch.wanted
+        """-log of what all tokens allowed have together, weighted mean; and the share of sure picks that are right."""
+        weight, allowed = self.model.lm_head.weight, batch.allowed
+        known = allowed >= 0
         if candidates is not None:
-            weight, wanted = weight[candidates], torch.searchsorted(candidates, wanted)
+            weight, allowed = weight[candidates], torch.searchsorted(candidates, allowed.clamp(min=0))
         logits = F.linear(picked, weight).float()
-        each = F.cross_entropy(logits, wanted, reduction="none")
+        within = logits.gather(1, allowed.clamp(min=0)).masked_fill(~known, float("-inf")).logsumexp(-1)
+        each = logits.logsumexp(-1) - within
         sure = batch.weights >= 1
-        right = (logits.argmax(-1) == wanted)[sure].float().mean()
+        hit = (logits.argmax(-1, keepdim=True) == allowed) & known
+        right = hit.any(-1)[sure].float().mean()
         return (each * batch.weights).sum() / batch.weights.sum(), right.detach()

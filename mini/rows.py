@@ -48,6 +48,8 @@ class Row:
     """Place of the last token of each noted phrase and what it tells, as indices into `NOTES`."""
     pointers: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of a value and the places that tell it."""
+    also: dict[int, list[int]] = field(default_factory=dict)
+    """Place of a value of which only a set is known, and the tokens of that set."""
     picture_tags: NDArray[np.uint8] | None = None
     """What each picture token shows, (tokens, len(tags.PICTURE)) of 0 and 1."""
 
@@ -172,12 +174,14 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
     ids = np.full((len(rows), longest), coder.special[PAD])
     place = np.zeros((3, len(rows), longest), np.int64)
     picks, wanted, weights = [], [], []
+    allowed: list[list[int]] = []
     for i, row in enumerate(rows):
         n = len(row.ids)
         ids[i, :n], place[:, i, :n] = row.ids, positions(row)
         for at, weight in row.picks:
             picks.append(i * longest + at - 1)
             wanted.append(row.ids[at])
+            allowed.append(row.also.get(at, [row.ids[at]]))
             weights.append(weight)
     pointing = [(i, at, found) for i, row in enumerate(rows) for at, found in row.pointers]
     sources = np.zeros((len(pointing), longest), np.bool_)
@@ -192,6 +196,7 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         picks=torch.tensor(picks),
         wanted=torch.tensor(wanted),
         weights=torch.tensor(weights),
+        allowed=_padded(allowed),
         ends=ends,
         sentence_tags=told,
         phrases=phrases,
@@ -201,6 +206,12 @@ def collate(rows: Sequence[Row], coder: Coder) -> Batch:
         sources=torch.from_numpy(sources),
         **_pictures(seen, longest),
     )
+
+
+def _padded(allowed: Sequence[Sequence[int]]) -> torch.Tensor:
+    """Lists of tokens as a table, -1 behind shorter ones."""
+    most = max((len(some) for some in allowed), default=1)
+    return torch.tensor([[*some, *[-1] * (most - len(some))] for some in allowed]).reshape(-1, most)
 
 
 def _asked(

@@ -16,7 +16,7 @@ from mini.generator.grammar import HINT
 from mini.generator.notes import IDS
 from mini.generator.settled import FROM_LEFT, STEM, VAGUE, driven, lanes_beside, led_to
 from mini.generator.world import Actor, Crash, Leg
-from sgcad_core.kinds import ROADS
+from sgcad_core.kinds import FOUR, PLAIN, ROADS
 
 BEARINGS = range(8)
 LANES = range(6)
@@ -111,7 +111,7 @@ def _open(crash: Crash, fact: str, facts: Set[str], before: Set[str]) -> bool:
     """Whether a sentence that tells a fact leaves its value open by then."""
     key, _, rest = fact.partition(".")
     if key == "layout" and STEM not in facts:
-        return crash.layout not in ("plain", "four")  # three legs, and no telling which
+        return crash.layout not in (PLAIN, FOUR)  # three legs, and no telling which
     if key == "lane" and f"{FROM_LEFT}.{rest}" in facts:
         return not _countable(crash, rest, before | facts)
     return f"{VAGUE}.{fact}" in facts

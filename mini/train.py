@@ -193,7 +193,7 @@ class Trainer:
             self.pool + options.rank,
             options.ranks,
             self.pool_progress,
-            options.stage,
+            *(options.stage, options.told),
         )
         saved, before, over = begun, self.spent, False
         try:
@@ -233,7 +233,7 @@ class Trainer:
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""
         if moment(self.options.stage, self.pool_progress or 0.0)[0] != "pictures":
-            return self.forward.lesson(batch, self._candidates(batch.wanted), self.taggers)
+            return self.forward.lesson(batch, self._candidates(batch.allowed[batch.allowed >= 0]), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())
         return Lesson(nothing, nothing, nothing, nothing, drawings, nothing)

@@ -15,6 +15,7 @@ from mini.generator.labels import plain
 from mini.generator.mentions import Mentions
 from mini.generator.settled import STEM
 from mini.generator.world import Actor, Crash
+from sgcad_core.kinds import INTERSECTIONS
 
 LEAVES = ("turn_", "u_turn", "lane_change", "merge", "backing", "overtaking")
 """How maneuvers begin of one that does not stay where it drives."""
@@ -146,7 +147,7 @@ class ApproachMixin:
         rng, actor = self.rng, self.crash.actors[index]
         text = ""
         beside = self.crash.config in ("head_on", "rear_end", "lane_change")
-        if self.crash.layout in ("four", "t") and rng.random() < (0.9 if self.ciren and not beside else 0.4):
+        if self.crash.layout in INTERSECTIONS and rng.random() < (0.9 if self.ciren and not beside else 0.4):
             same = later and (self.junction_named or self.held_out)
             place = "the same intersection" if same else self.scene_junction()
             text = " " + rng.choice(NEARING.side(False)).format(place=place)

@@ -10,7 +10,7 @@ from random import Random
 
 from mini.generator.vehicles import KIND_WEIGHTS
 from mini.generator.world import OPPOSITE, TURN_OF, Actor, Contact, Crash, pick
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import DRIVEWAY, INTERSECTIONS, PLAIN, RAMP
 
 
 def _vehicle(rng: Random, leg: int, out: int | None, maneuver: str, purpose: str = "") -> Actor:
@@ -124,7 +124,7 @@ def rear_end(rng: Random, crash: Crash) -> bool:
 def _lead(rng: Random, crash: Crash, a: int) -> Actor:
     how = pick(rng, {"stopped": 55.0, "slowing": 24.0, "straight": 14.0, "turning": 7.0})
     purposes = {"traffic": 1.0}
-    if crash.layout in ("four", "t"):
+    if crash.layout in INTERSECTIONS:
         control = crash.leg(a).control  # type: ignore[union-attr]
         purposes = {"light": 6.0 * (control == "signal"), "sign": 3.0 * (control == "stop"), "traffic": 1.5}
     for turn in ("left", "right"):
@@ -207,7 +207,7 @@ def pedestrian(rng: Random, crash: Crash) -> bool:
     if a is None:
         return False
     kind = rng.choice(("pedestrian", "pedestrian", "bicycle"))
-    leg = a if crash.layout == "plain" else (a + 4) % 8
+    leg = a if crash.layout == PLAIN else (a + 4) % 8
     crash.actors = [_vehicle(rng, a, a + 4, "straight"), Actor("", kind, leg, None, "straight")]
     crash.contacts = [Contact(0, 1, "front", rng.choice(("left", "right")))]
     return True
@@ -276,7 +276,7 @@ def overtaking(rng: Random, crash: Crash) -> bool:
     if a is None or not opens(crash, a) or crash.leg(a).median not in ("none", "painted"):  # type: ignore[union-attr]
         return False
     passing = _vehicle(rng, a, a + 4, "overtaking")
-    if opens(crash, a + 2) and crash.layout != "plain":
+    if opens(crash, a + 2) and crash.layout != PLAIN:
         crash.actors = [passing, _vehicle(rng, a, a + 2, "turn_left")]
         crash.contacts = [Contact(0, 1, "front", "left")]
     else:

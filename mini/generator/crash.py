@@ -11,7 +11,7 @@ from random import Random
 from mini.generator import roads
 from mini.generator.configurations import BUILDERS, opens
 from mini.generator.world import Actor, Crash, Leg, pick
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, FOUR, MERGE, PLAIN, T
 
 CONFIGS = {
     "crossing": 15.0,
@@ -30,18 +30,18 @@ CONFIGS = {
     "overtaking": 2.5,
 }
 LAYOUTS = {
-    "crossing": {"four": 9.0, "t": 0.0},
-    "left_opposite": {"four": 5.0, "t": 2.5, DRIVEWAY: 1.5},
-    "left_lateral": {"four": 2.5, "t": 4.0, DRIVEWAY: 2.5},
-    "right_into": {"four": 2.0, "t": 3.0, DRIVEWAY: 2.0},
-    "rear_end": {"plain": 4.5, "four": 3.5, "t": 2.0, DRIVEWAY: 1.0},
+    "crossing": {FOUR: 9.0, T: 0.0},
+    "left_opposite": {FOUR: 5.0, T: 2.5, DRIVEWAY: 1.5},
+    "left_lateral": {FOUR: 2.5, T: 4.0, DRIVEWAY: 2.5},
+    "right_into": {FOUR: 2.0, T: 3.0, DRIVEWAY: 2.0},
+    "rear_end": {PLAIN: 4.5, FOUR: 3.5, T: 2.0, DRIVEWAY: 1.0},
     "backing": {DRIVEWAY: 1.0},
-    "pedestrian": {"plain": 2.0, "four": 2.0, "t": 1.0},
-    "merge": {"merge": 1.0},
-    "u_turn": {"plain": 3.0, "t": 1.0, "four": 1.0},
-    "lane_change": {"plain": 5.0, "four": 1.5, "t": 1.5},
-    "overtaking": {"plain": 2.0, DRIVEWAY: 1.0, "t": 1.0},
-    "head_on": {"plain": 6.5, "t": 1.5, "four": 1.0},
+    "pedestrian": {PLAIN: 2.0, FOUR: 2.0, T: 1.0},
+    "merge": {MERGE: 1.0},
+    "u_turn": {PLAIN: 3.0, T: 1.0, FOUR: 1.0},
+    "lane_change": {PLAIN: 5.0, FOUR: 1.5, T: 1.5},
+    "overtaking": {PLAIN: 2.0, DRIVEWAY: 1.0, T: 1.0},
+    "head_on": {PLAIN: 6.5, T: 1.5, FOUR: 1.0},
 }
 GLANCED = 0.2
 """Share of head-on crashes struck by the one who crossed whose other vehicle is hit on its side."""
@@ -62,18 +62,18 @@ def sample_crash(rng: Random, config: str | None = None) -> Crash:
 
 
 def _roads(rng: Random, config: str) -> Crash:
-    layout = pick(rng, LAYOUTS.get(config, {"plain": 1.0}))
-    area = "highway" if layout == "merge" else pick(rng, FAMILY_ODDS)
-    if layout != "plain" and area == "highway" and layout != "merge":
+    layout = pick(rng, LAYOUTS.get(config, {PLAIN: 1.0}))
+    area = "highway" if layout == MERGE else pick(rng, FAMILY_ODDS)
+    if layout != PLAIN and area == "highway" and layout != MERGE:
         area = "urban"
     main = rng.choice((0, 2, 4, 6)) if rng.random() < 0.9 else rng.choice((1, 3, 5, 7))
     least = 2 if config == "lane_change" else 1
-    if layout == "plain":
+    if layout == PLAIN:
         legs = sorted(roads.pair(rng, main, area, least, rng.random() < 0.05), key=lambda leg: leg.bearing)
         if rng.random() < (0.5 if config in ("head_on", "departure") else 0.15):
             roads.curve(rng, legs)
     else:
-        legs = roads.merge(rng, main) if layout == "merge" else roads.junction(rng, layout, main, area)
+        legs = roads.merge(rng, main) if layout == MERGE else roads.junction(rng, layout, main, area)
     light, weather, surface = conditions(rng)
     return Crash(config, layout, main % 8, legs, [], [], light, weather, surface, roads.accesses(rng, legs), area)
 

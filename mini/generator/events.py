@@ -19,7 +19,7 @@ from mini.generator.impacts import TRIES, ImpactsMixin
 from mini.generator.labels import has, plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import OPPOSITE, Actor, Crash
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, INTERSECTIONS, ROAD
 
 STATES = ("stopped", "slowing")
 """What clauses of an error may say of the other vehicle, as labels and as maneuvers."""
@@ -99,7 +99,7 @@ class EventsMixin(ImpactsMixin):
             return []
         untrue = ["median"] * all(leg.median == "none" for leg in self.crash.legs)
         untrue += ["two"] * self.crash.alone  # a tree or a pedestrian does not slap sides
-        return untrue + ["junction"] * (self.crash.layout not in ("four", "t"))
+        return untrue + ["junction"] * (self.crash.layout not in INTERSECTIONS)
 
     def _rests(self, options: Sequence[str]) -> str:
         """Where they come to rest, with the struck as the one that is pushed."""
@@ -175,7 +175,7 @@ class EventsMixin(ImpactsMixin):
         others = [leg for leg in self.crash.legs if leg.bearing == only]
         if left and not others:
             others = [leg for leg in self.crash.legs if leg.bearing != actor.leg]
-        return [(leg.bearing + 4) % 8 for leg in others if leg.kind == "road" and leg.lanes_in]
+        return [(leg.bearing + 4) % 8 for leg in others if leg.kind == ROAD and leg.lanes_in]
 
     def spoken(self, text: str) -> str:
         """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""

@@ -8,6 +8,7 @@ from mini.generator import clauses_scene as scene
 from mini.generator import words
 from mini.generator.road_phrases import RoadsMixin
 from mini.generator.settled import STEM, VAGUE
+from sgcad_core.kinds import FOUR, INTERSECTIONS
 
 
 class JunctionMixin(RoadsMixin):
@@ -19,11 +20,11 @@ class JunctionMixin(RoadsMixin):
     def scene_junction(self) -> str:
         """The junction's name; the plain word is what a crossing of two roads is called, seldom a T."""
         layout, control = self.crash.layout, self._control_kind()
-        if layout not in ("four", "t"):
+        if layout not in INTERSECTIONS:
             return "a driveway"
         self.junction_named = True
-        self.stated |= {"layout"} if layout == "four" else set()
-        if self.rng.random() < (0.6 if layout == "four" else 0.93):
+        self.stated |= {"layout"} if layout == FOUR else set()
+        if self.rng.random() < (0.6 if layout == FOUR else 0.93):
             self.stated |= {"layout"}
             text = words.junction(self.rng, self.crash, self.held_out)
             if control == "none" and self.ciren and self.rng.random() < 0.2:
@@ -78,7 +79,7 @@ class JunctionMixin(RoadsMixin):
         return " and ".join(names)
 
     def _control_sentence(self, odds: float) -> list[str]:
-        if self.crash.layout not in ("four", "t") or self.rng.random() > odds:
+        if self.crash.layout not in INTERSECTIONS or self.rng.random() > odds:
             return []
         self.stated.add("control")
         return [self.say(scene.CONTROL[self._control_kind()])]

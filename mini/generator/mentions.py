@@ -6,9 +6,9 @@ from random import Random
 
 from mini.generator.clauses_words import OBJECT, PERSON
 from mini.generator.vehicles import COLORS, YEARS, body_text, model_text
+from mini.generator.words import NUMBERS
 from mini.generator.world import Actor, Crash
 
-NUMBER_WORDS = ("zero", "one", "two", "three", "four", "five")
 STYLES = {
     "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4,
     "Vehicle-{n}": 2, "V {n}": 1, "Vehicle {w} (V{n})": 6, "Unit {n}": 1,
@@ -16,7 +16,7 @@ STYLES = {
 
 
 def _numbered(style: str, number: int) -> str:
-    return style.format(n=number, w=NUMBER_WORDS[number])
+    return style.format(n=number, w=NUMBERS[number])
 
 
 class Mentions:
@@ -79,7 +79,7 @@ class Mentions:
         text = self._year_model(index, actor, 0.95 if self.ciren else body_odds)
         if self.ciren:
             case = " - case vehicle" if number == 1 or self.rng.random() < 0.1 else ""
-            return f"Vehicle {NUMBER_WORDS[number]} (V{number}{case}), {text},".replace(",,", ","), True
+            return f"Vehicle {NUMBERS[number]} (V{number}{case}), {text},".replace(",,", ","), True
         plain = _numbered(self.style, number)
         forms = [f"{plain}, {text},", f"{plain}, {text},", f"{plain} ({text})", f"{plain}, {text}", f"{text} ({plain})"]
         person = f"{self.rng.randint(16, 88)}-year{self.rng.choice('- ')}old {self.rng.choice(('male', 'female'))}"

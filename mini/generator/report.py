@@ -19,6 +19,7 @@ from mini.generator.settled import unsettled
 from mini.generator.targets import Targets, drawn_facts
 from mini.generator.world import Crash, Leg
 from mini.generator.writer import Writer
+from sgcad_core.kinds import INTERSECTIONS, PLAIN, ROAD
 
 MODES = {"both": 42.0, "image": 17.0, "text": 25.0, "none": 8.0, "thin": 3.0, "no_crash": 2.5, "conflict": 2.5}
 TEXT_MODES = {"text": 90.0, "thin": 4.0, "no_crash": 3.0, "conflict": 3.0}
@@ -147,7 +148,7 @@ def _worth_telling(rng: Random, seed: int, length: float, crash: Crash, written:
 def _plain(leg: Leg, told: set[str]) -> bool:
     """A lane each way, or one of a street that is said to be one-way; or no street at all."""
     usual = max(leg.lanes_in, leg.lanes_out) < 2 and (leg.two_way or f"ways.{leg.bearing % 4}" in told)
-    return leg.kind != "road" or usual
+    return leg.kind != ROAD or usual
 
 
 def _stated_facts(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str]]:
@@ -182,7 +183,7 @@ def _refused(seed: int, mode: str, rng: Random, crash: Crash, writer: Writer) ->
     told, doubtful = _stated_facts(crash, written.sentences)
     if mode == "no_crash":
         targets = Targets(crash, told | doubtful, doubtful)
-        known = ("layout" in told and crash.layout in ("four", "t")) or crash.layout == "plain"
+        known = ("layout" in told and crash.layout in INTERSECTIONS) or crash.layout == PLAIN
         road = targets.road if known else refusal(0)
         return Report(seed, mode, crash, written.narrative, False, road, refusal(1) if known else None, targets, told)
     return Report(seed, mode, crash, written.narrative, False, refusal(0), None, None, told)

@@ -10,9 +10,9 @@ from mini.generator.grammar import StatedFacts, clause_of
 from mini.generator.labels import has, plain
 from mini.generator.lane_lists import split
 from mini.generator.records import Group, slots_of
-from mini.generator.settled import AXIS, FLOW, ROAD, VAGUE
+from mini.generator.settled import AXIS, FLOW, ROAD_HINT, VAGUE
 from mini.generator.world import Crash, Leg
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import DRIVEWAY, INTERSECTIONS, RAMP, ROAD
 
 UNCOUNTED = 0.5
 """Share of one-way roads whose lanes nobody counts: in real reports most often there is one."""
@@ -38,15 +38,15 @@ class RoadsMixin:
     @property
     def _first(self) -> int:
         """Axis of the road that the scene is told of first: the main one, unless all are on the one that crosses it."""
-        crossing = self.crash.layout in ("four", "t") and not any(self.crash.is_main(a.leg) for a in self.crash.actors)
+        crossing = self.crash.layout in INTERSECTIONS and not any(self.crash.is_main(a.leg) for a in self.crash.actors)
         return (self.crash.main + 2 * crossing) % 4
 
     def _road(self, axis: int, bare: bool = False) -> str:
         """A noun phrase for a road; tells its lanes unless they were told or the report keeps them back."""
         rng, legs = self.rng, self._legs_on(axis)
-        self.stated.add(f"{ROAD}.{axis % 4}")
+        self.stated.add(f"{ROAD_HINT}.{axis % 4}")
         leg = legs[0] if legs else self.crash.legs[0]
-        if leg.kind != "road" and len(legs) == 1:
+        if leg.kind != ROAD and len(legs) == 1:
             self.stated |= {"layout"}
             driveway = clause_of(rng, clauses_words.ACCESS[DRIVEWAY], False)
             return driveway if leg.kind == DRIVEWAY else clauses_words.ACCESS[RAMP].side(False)[0]
@@ -203,7 +203,7 @@ class RoadsMixin:
 
     def _differs(self, leg: Leg) -> bool:
         """Whether one of two roads is one-way: this or the other."""
-        ways = {side.bearing % 4: side.two_way for side in self.crash.legs if side.kind == "road"}
+        ways = {side.bearing % 4: side.two_way for side in self.crash.legs if side.kind == ROAD}
         return list(ways.values()).count(False) == 1 and (not leg.two_way or len(ways) > 1)
 
     def _uncounted(self, leg: Leg, options: Group, noun: str) -> str:
@@ -246,6 +246,6 @@ class RoadsMixin:
     def _limit(self, slot: str) -> str:
         axis, limit = self._axis_of(slot), self._limit_of(slot)
         self.spoken_of = axis
-        self.stated |= {f"limit.{axis}", *({f"{ROAD}.{axis}"} if slot == "lim2" else ())}  # "the side street"
+        self.stated |= {f"limit.{axis}", *({f"{ROAD_HINT}.{axis}"} if slot == "lim2" else ())}  # "the side street"
         assert limit is not None  # noqa: S101 - clauses are chosen so
         return words.limit(self.rng, limit, self.held_out)

@@ -10,7 +10,7 @@ from random import Random
 
 from mini.answers import MAX_ACCESSES
 from mini.generator.world import OPPOSITE, TURN_OF, Access, Actor, Crash, Leg, pick
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import DRIVEWAY, FOUR, INTERSECTIONS, MERGE, PLAIN, RAMP, ROAD
 
 LIMITS = {
     "rural": (35, 40, 45, 45, 50, 55, 55, 55),
@@ -61,7 +61,7 @@ def add_turn_lanes(rng: Random, legs: list[Leg], bearings: set[int], odds: float
     if len(chosen) == 1 and rng.random() < 0.4:
         chosen = {leg.bearing % 4 for leg in legs}
     for leg in legs:
-        if leg.bearing % 4 not in chosen or leg.kind != "road" or not leg.lanes_in or leg.twltl:
+        if leg.bearing % 4 not in chosen or leg.kind != ROAD or not leg.lanes_in or leg.twltl:
             continue
         turns = [t for t, step in (("right", -2), ("through", 4), ("left", 2)) if (leg.bearing + step) % 8 in bearings]
         leg.turns_in = lane_uses(rng, turns, leg.lanes_in)
@@ -112,9 +112,9 @@ def control(rng: Random, legs: list[Leg], main: int) -> None:
 
 def junction(rng: Random, layout: str, main: int, area: str) -> list[Leg]:
     """Legs of a three-leg, four-leg or driveway junction, ordered clockwise from north."""
-    one_way = layout == "four" and rng.random() < 0.2
+    one_way = layout == FOUR and rng.random() < 0.2
     legs = pair(rng, main, area, one_way=one_way and rng.random() < 0.6)
-    if layout == "four":
+    if layout == FOUR:
         calm = "urban" if area == "urban" or rng.random() < 0.3 else "rural"
         side = pair(rng, main + 2, calm, one_way=one_way and rng.random() < 0.6)
         if sum(s.lanes_in for s in side) > sum(m.lanes_in for m in legs) and rng.random() < 0.7:
@@ -156,13 +156,13 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     """Now and then a driveway or side road away from the hub."""
     if rng.random() > 0.07:
         return []
-    leg = rng.choice([leg for leg in legs if leg.kind == "road"])
+    leg = rng.choice([leg for leg in legs if leg.kind == ROAD])
     return [
         Access(
             leg.bearing,
             rng.choice(("left", "right")),
             rng.choice((30, 40, 40, 60)),
-            rng.choice((DRIVEWAY, DRIVEWAY, "road")),
+            rng.choice((DRIVEWAY, DRIVEWAY, ROAD)),
         )
     ]
 
@@ -174,9 +174,9 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     """
     if crash.area_word == "highway":
         return crash
-    bare = crash.layout in ("t", "four") and not told and rng.random() > NEAR_JUNCTIONS
+    bare = crash.layout in INTERSECTIONS and not told and rng.random() > NEAR_JUNCTIONS
     found = [] if bare else [replace(access, mouth=rng.uniform(1.5, 14.0)) for access in crash.accesses]
-    free = [leg for leg in crash.legs if leg.kind == "road" and all(leg.bearing != access.leg for access in found)]
+    free = [leg for leg in crash.legs if leg.kind == ROAD and all(leg.bearing != access.leg for access in found)]
     stem = next((leg.bearing for leg in crash.legs if leg.kind == DRIVEWAY), None)
     odds = 0.35 if found or stem is not None else 0.03
     while free and not bare and len(found) < MAX_ACCESSES and rng.random() < odds:
@@ -184,7 +184,7 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
         side = rng.choice(("left", "right"))
         if stem is not None and rng.random() < 0.6:
             side = "right" if (leg.bearing - 2) % 8 == stem else "left"
-        kind = rng.choice((DRIVEWAY, DRIVEWAY, DRIVEWAY, "road"))
+        kind = rng.choice((DRIVEWAY, DRIVEWAY, DRIVEWAY, ROAD))
         found.append(Access(leg.bearing, side, rng.choice((20, 20, 30, 30, 40)), kind, rng.uniform(1.5, 14.0)))
     came = {actor.leg for actor in crash.actors}
     short = {leg.bearing for leg in crash.legs if leg.kind == DRIVEWAY and rng.random() < 0.5} - came
@@ -195,7 +195,7 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
 def carriageway(crash: Crash) -> Crash | None:
     """The crash on the one carriageway of a divided road that matters; None where both do, or none is divided."""
     found = next((i for i, leg in enumerate(crash.legs) if leg.bearing == crash.actors[0].leg), None)
-    if crash.layout != "plain" or crash.accesses or len(crash.legs) != 2 or found is None:
+    if crash.layout != PLAIN or crash.accesses or len(crash.legs) != 2 or found is None:
         return None
     here, there = crash.legs[found], crash.legs[1 - found]
     stays = all(a.leg == here.bearing and a.maneuver not in ("crossing_centerline", "u_turn") for a in crash.actors)
@@ -214,9 +214,9 @@ def beside(crash: Crash) -> Crash | None:
     ways = {leg.bearing for leg in main}
     used = {way for a in crash.actors for way in (a.leg, a.out) if way is not None}
     told = {a.purpose for a in crash.actors} & {"light", "sign"}
-    if crash.layout not in ("t", "four") or len(main) != 2 or not used <= ways or told:
+    if crash.layout not in INTERSECTIONS or len(main) != 2 or not used <= ways or told:
         return None
-    return replace(crash, layout="plain", legs=main)
+    return replace(crash, layout=PLAIN, legs=main)
 
 
 def one_way(rng: Random, crash: Crash, odds: float) -> Crash:
@@ -252,13 +252,13 @@ def _unused(crash: Crash) -> list[tuple[int, int]]:
     No lane of another road may be only for a turn that would be closed.
     """
     swerves = any(a.maneuver in ("crossing_centerline", "overtaking", "u_turn", "backing") for a in crash.actors)
-    if swerves or crash.layout == "merge" or crash.area_word == "highway":
+    if swerves or crash.layout == MERGE or crash.area_word == "highway":
         return []
     wheels = [a for a in crash.actors if a.vehicle]
     came, left = {a.leg for a in wheels}, {a.out for a in wheels}
     only = {(leg.bearing + TURN_OF[use]) % 8 for leg in crash.legs for use in leg.turns_in if use in TURN_OF}
-    axes = {leg.bearing % 4 for leg in crash.legs if leg.kind == "road" and leg.two_way}
-    axes -= {leg.bearing % 4 for leg in crash.legs if leg.kind != "road"}
+    axes = {leg.bearing % 4 for leg in crash.legs if leg.kind == ROAD and leg.two_way}
+    axes -= {leg.bearing % 4 for leg in crash.legs if leg.kind != ROAD}
     ways = [(axis + step, (axis + 4 - step) % 8) for axis in sorted(axes) for step in (0, 4)]
     return [(into, out) for into, out in ways if into not in left | only and out not in came]
 

@@ -14,9 +14,9 @@ from mini.generator.labels import has, mark, plain
 from mini.generator.lane_lists import lane_phrase
 from mini.generator.notes import placed
 from mini.generator.records import Group, slots_of
-from mini.generator.settled import AXIS, FLOW, ROAD, STEM
+from mini.generator.settled import AXIS, FLOW, ROAD_HINT, STEM
 from mini.generator.world import WORDS, Leg
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, FOUR, INTERSECTIONS, MERGE, ROAD, T
 
 DAYS = ("weekday", "weekday", "weekend", "Saturday", "Friday")
 _DARK = ("early morning", "evening", "evening", "night", "night", "late evening")
@@ -92,19 +92,19 @@ class SceneMixin(JunctionMixin):
     # -------------------------------------------------------------- sentences
     def _opening(self) -> list[str]:
         kinds = {
-            "four": scene.OPENING_JUNCTION,
-            "t": scene.OPENING_JUNCTION,
+            FOUR: scene.OPENING_JUNCTION,
+            T: scene.OPENING_JUNCTION,
             DRIVEWAY: scene.OPENING_DRIVEWAY,
-            "merge": scene.OPENING_MERGE,
+            MERGE: scene.OPENING_MERGE,
         }
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         if self.crash.layout == DRIVEWAY and not self.held_out and self.rng.random() < PASSED_OVER:
             return self._of_road(scene.OPENING_PLAIN, main)
-        if self.crash.layout in (DRIVEWAY, "merge", "four"):
+        if self.crash.layout in (DRIVEWAY, MERGE, FOUR):
             self.stated.add("layout")
         group = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
         options: Sequence[str] = group.without(self.held_out, ["two"] * self.crash.alone)
-        if self.crash.layout == "t" and self.rng.random() < 0.85:
+        if self.crash.layout == T and self.rng.random() < 0.85:
             options = [clause for clause in options if {"jn", "Jn"} & set(slots_of(clause))]
         return self._of_road(options, main)
 
@@ -135,7 +135,7 @@ class SceneMixin(JunctionMixin):
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         makers: list[Callable[[], list[str]]]
         makers = [partial(self._of_road, scene.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
-        if self.crash.layout in ("four", "t") and rng.random() < 0.4:
+        if self.crash.layout in INTERSECTIONS and rng.random() < 0.4:
             makers.append(partial(self._of_road, scene.ROAD2, main))
         if not self.held_out:
             makers += self._more_of_roads(main)
@@ -148,7 +148,7 @@ class SceneMixin(JunctionMixin):
 
     def _more_of_roads(self, main: int) -> list[Callable[[], list[str]]]:
         """Sentences that only train."""
-        rng, crossing = self.rng, self.crash.layout in ("four", "t")
+        rng, crossing = self.rng, self.crash.layout in INTERSECTIONS
         makers: list[Callable[[], list[str]]] = []
         if rng.random() < 0.3:
             makers.append(self._each_way)
@@ -165,7 +165,7 @@ class SceneMixin(JunctionMixin):
     def _each_way(self) -> list[str]:
         """What lanes either direction of a road has."""
         rng = self.rng
-        axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == "road"])
+        axis = rng.choice([leg.bearing % 4 for leg in self.crash.legs if leg.kind == ROAD])
         legs = self._legs_on(axis)
         if not self.roads_left or not legs[0].two_way or legs[0].twltl:
             return []
@@ -199,14 +199,14 @@ class SceneMixin(JunctionMixin):
         """Lanes of both roads of a junction at once, where they have the same and no others."""
         legs = self.crash.legs
         found = {frozenset((leg.lanes_in, leg.lanes_out)) for leg in legs}
-        odd = any(leg.turns_in or leg.twltl or leg.kind != "road" for leg in legs)
-        if self.crash.layout not in ("four", "t") or len(found) > 1 or odd:
+        odd = any(leg.turns_in or leg.twltl or leg.kind != ROAD for leg in legs)
+        if self.crash.layout not in INTERSECTIONS or len(found) > 1 or odd:
             return []
         ways = found.pop()
         if len(ways - {0}) != 1:
             return []
         lanes, kind = max(ways), "one_way" if 0 in ways else "two_way"
-        self.stated |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD)}
+        self.stated |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD_HINT)}
         return [self.say(roads.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
 
     def _two_way(self) -> bool:
@@ -215,12 +215,12 @@ class SceneMixin(JunctionMixin):
 
     def _flows(self) -> list[str]:
         """Which way a one-way road leads."""
-        found = [leg for leg in self.crash.legs if leg.kind == "road" and not leg.two_way]
+        found = [leg for leg in self.crash.legs if leg.kind == ROAD and not leg.two_way]
         if not found:
             return []
         leg = self.rng.choice(found)
         axis = self.spoken_of = leg.bearing % 4
-        self.stated |= {f"{fact}.{axis}" for fact in ("ways", ROAD, AXIS, FLOW)}
+        self.stated |= {f"{fact}.{axis}" for fact in ("ways", ROAD_HINT, AXIS, FLOW)}
         xb = words.bound(self.rng, leg.flow)
         return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
 
@@ -238,7 +238,7 @@ class SceneMixin(JunctionMixin):
         self.stated.add("access")
         side = (access.leg + 4 + (2 if access.side == "right" else -2)) % 8
         kind = DRIVEWAY if access.kind == DRIVEWAY else "side street"
-        place = "[crash|intersection|impact]" if self.crash.layout in ("four", "t") else "[crash|impact]"
+        place = "[crash|intersection|impact]" if self.crash.layout in INTERSECTIONS else "[crash|impact]"
         clause = f"There [was|is] a {{acc}} on the {{accdir}} side of the road[way|] {{accleg}} of the {place}"
         return [self.say([clause], acc=kind, accdir=WORDS[side], accleg=WORDS[access.leg])]
 

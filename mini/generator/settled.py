@@ -10,8 +10,9 @@ from collections.abc import Iterable, Set
 
 from mini.generator.grammar import HINT
 from mini.generator.world import TURN_OF, Actor, Crash, Leg
+from sgcad_core.kinds import FOUR, INTERSECTIONS, PLAIN, ROAD, T
 
-ROAD = f"{HINT}road"
+ROAD_HINT = f"{HINT}road"
 """With an axis: a sentence speaks of the road of that axis, without saying how it lies."""
 AXIS = f"{HINT}axis"
 """With an axis: a sentence says how the road of that axis lies."""
@@ -74,8 +75,8 @@ def _tied(crash: Crash, sentences: list[frozenset[str]], told: set[str]) -> bool
     """Whether some sentence lays some road on the compass; the other road then crosses it."""
     if any(fact.startswith(AXIS) for fact in told):
         return True
-    headed = [{f"{ROAD}.{actor.leg % 4}", f"heading.{actor.id}"} for actor in crash.actors]
-    if crash.layout in ("four", "t"):
+    headed = [{f"{ROAD_HINT}.{actor.leg % 4}", f"heading.{actor.id}"} for actor in crash.actors]
+    if crash.layout in INTERSECTIONS:
         return any(pair <= facts for facts in sentences for pair in headed)
     return bool(_headed(crash.actors, told))
 
@@ -91,14 +92,14 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
     if key == "limit":  # may stay open, so that a limit of either road has to be laid on one of them
         told = {fact for some in sentences for fact in some}
         same = same and all(f"limit.{leg.bearing % 4}" in told for leg in crash.legs)
-    if same or crash.layout not in ("four", "t"):
+    if same or crash.layout not in INTERSECTIONS:
         return tied
-    return tied and any(fact in some and f"{ROAD}.{axis}" in some for some in sentences)
+    return tied and any(fact in some and f"{ROAD_HINT}.{axis}" in some for some in sentences)
 
 
 def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
     """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
-    if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == "road"):
+    if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == ROAD):
         return True
     used = {leg % 4 for leg in driven(crash.actors, told)}
     return axis in used or f"{FLOW}.{axis}" in told
@@ -116,12 +117,12 @@ def _value(key: str, leg: Leg) -> tuple[object, ...]:
 
 def _legs(crash: Crash, told: set[str], tied: bool) -> bool:
     """Whether the text tells which legs there are."""
-    if crash.layout in ("plain", "four"):
+    if crash.layout in (PLAIN, FOUR):
         return tied or bool(_headed(crash.actors, told))
     found = driven(crash.actors, told)
     found |= {leg for own in crash.legs if f"turns.{own.bearing % 4}" in told for leg in led_to(own)}
     stem = {leg.bearing for leg in crash.stems}
-    if stem <= found and crash.layout != "t":
+    if stem <= found and crash.layout != T:
         return tied
     return STEM in told or {leg.bearing for leg in crash.legs} <= found
 

@@ -10,6 +10,7 @@ from collections.abc import Set
 from typing import Any
 
 from mini.generator.world import COMPASS, Access, Actor, Crash, Leg
+from sgcad_core.kinds import PLAIN
 
 Json = dict[str, Any]
 GUESS = 0.25
@@ -57,7 +58,7 @@ class Targets:
     def _leg(self, index: int, leg: Leg) -> Json:
         axis, path = leg.bearing % 4, ("legs", index)
         lanes, turns = f"lanes.{axis}" in self.known, f"turns.{axis}" in self.known
-        if "legs" not in self.sure and self.crash.layout != "plain":
+        if "legs" not in self.sure and self.crash.layout != PLAIN:
             self._unsure(path, "bearing", "more", "kind")
         elif len(self.crash.legs) == 3:
             self.weights[(*path, "bearing")] = THIRD_LEG

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mini.generator.labels import has
 from mini.generator.settled import VAGUE
 from mini.generator.world import Actor, Crash
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, FOUR, INTERSECTIONS
 
 
 def suits(text: str, crash: Crash, actor: Actor) -> bool:
@@ -16,11 +16,11 @@ def suits(text: str, crash: Crash, actor: Actor) -> bool:
         return False
     if has(text, "sign") and (met is None or met.control != "stop"):
         return False
-    if crash.layout != "four" and has(text, "four_legs"):
+    if crash.layout != FOUR and has(text, "four_legs"):
         return False
     if crash.layout == DRIVEWAY:
         return not has(text, "street")
-    if crash.layout not in ("four", "t"):
+    if crash.layout not in INTERSECTIONS:
         return True
     stops = bool(controls & {"stop", "flashing", "signal"})
     return not has(text, DRIVEWAY) and (not has(text, "stop_line") or stops)

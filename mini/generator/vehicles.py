@@ -1,200 +1,53 @@
-# ruff: noqa: E501 - lists of words
-"""Makes, models and what kind of vehicle they are; general knowledge of the U.S. fleet of 1985-2007."""
+"""Makes, models, bodies and colors of made vehicles, drawn from `phrases/vehicles.yaml`.
+
+Which kind of vehicle a name is of, the vocabulary of sgcad_core says, as it does where a report is read.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from functools import cache
 from random import Random
 
-CARS = [
-    "Ford Taurus",
-    "Ford Focus",
-    "Ford Escort",
-    "Ford Contour",
-    "Ford Mustang",
-    "Ford Crown Victoria",
-    "Chevrolet Cavalier",
-    "Chevrolet Malibu",
-    "Chevrolet Impala",
-    "Chevrolet Lumina",
-    "Chevrolet Aveo",
-    "Chevrolet Corsica",
-    "Chevrolet Monte Carlo",
-    "Pontiac Grand Am",
-    "Pontiac Grand Prix",
-    "Pontiac Sunfire",
-    "Pontiac Bonneville",
-    "Dodge Neon",
-    "Dodge Stratus",
-    "Dodge Intrepid",
-    "Dodge Avenger",
-    "Toyota Camry",
-    "Toyota Corolla",
-    "Toyota Celica",
-    "Honda Accord",
-    "Honda Civic",
-    "Nissan Altima",
-    "Nissan Maxima",
-    "Nissan Sentra",
-    "Buick Century",
-    "Buick LeSabre",
-    "Buick Regal",
-    "Mercury Sable",
-    "Mercury Grand Marquis",
-    "Mercury Mystique",
-    "Saturn SL",
-    "Saturn Ion",
-    "Saturn L200",
-    "Acura Integra",
-    "Acura TL",
-    "Lexus ES 300",
-    "Mazda 626",
-    "Mazda Protege",
-    "Mitsubishi Galant",
-    "Mitsubishi Eclipse",
-    "Hyundai Elantra",
-    "Hyundai Sonata",
-    "Mercedes C230",
-    "Lincoln Town Car",
-    "Kia Spectra",
-    "Kia Rio",
-    "Volkswagen Jetta",
-    "Volkswagen Passat",
-    "Volkswagen Beetle",
-    "Infiniti G35",
-    "Chrysler Sebring",
-    "Chrysler Concorde",
-    "Suzuki Aerio",
-    "Subaru Legacy",
-    "Subaru Impreza",
-    "Cadillac DeVille",
-    "BMW 325i",
-    "Audi A4",
-    "Volvo S60",
-    "Oldsmobile Alero",
-    "Oldsmobile Cutlass",
-    "Plymouth Acclaim",
-    "Eagle Talon",
-    "Geo Metro",
-    "Geo Prizm",
-    "Saab 9-3",
-    "Scion xB",
-    "Mini Cooper",
-]
-SUVS = [
-    "Ford Explorer",
-    "Ford Escape",
-    "Ford Expedition",
-    "Ford Bronco",
-    "Chevrolet Blazer",
-    "Chevrolet Tahoe",
-    "Chevrolet Suburban",
-    "Chevrolet Trailblazer",
-    "Jeep Cherokee",
-    "Jeep Grand Cherokee",
-    "Jeep Wrangler",
-    "Jeep Liberty",
-    "Dodge Durango",
-    "GMC Jimmy",
-    "GMC Yukon",
-    "GMC Envoy",
-    "Toyota 4Runner",
-    "Toyota RAV4",
-    "Toyota Highlander",
-    "Honda CR-V",
-    "Honda Pilot",
-    "Nissan Pathfinder",
-    "Nissan Xterra",
-    "Mercury Mountaineer",
-    "Mitsubishi Montero",
-    "Hyundai Santa Fe",
-    "Kia Sportage",
-    "Isuzu Rodeo",
-    "Suzuki Grand Vitara",
-    "Subaru Forester",
-    "Land Rover Discovery",
-    "Acura MDX",
-    "Lexus RX 300",
-]
-PICKUPS = [
-    "Ford F-150",
-    "Ford F150",
-    "Ford F-250",
-    "Ford Ranger",
-    "Chevrolet Silverado",
-    "Chevrolet S-10",
-    "Chevrolet C1500",
-    "Chevrolet Colorado",
-    "Dodge Ram",
-    "Dodge Ram 1500",
-    "Dodge Dakota",
-    "GMC Sierra",
-    "GMC Sonoma",
-    "Toyota Tacoma",
-    "Toyota Tundra",
-    "Nissan Frontier",
-    "Mazda B2300",
-]
-VANS = [
-    "Dodge Caravan",
-    "Dodge Grand Caravan",
-    "Plymouth Voyager",
-    "Chrysler Town and Country",
-    "Ford Windstar",
-    "Ford Aerostar",
-    "Ford Freestar",
-    "Honda Odyssey",
-    "Toyota Sienna",
-    "Nissan Quest",
-    "Pontiac Montana",
-    "Pontiac Transport",
-    "Chevrolet Venture",
-    "Chevrolet Astro",
-    "Mercury Villager",
-    "Ford E-150",
-    "Chevrolet Express",
-    "Oldsmobile Silhouette",
-    "GMC Safari",
-    "Kia Sedona",
-    "Dodge Sprinter",
-]
-TRUCKS = [
-    "Freightliner",
-    "Freightliner Century",
-    "Peterbilt",
-    "Peterbilt 379",
-    "Kenworth T800",
-    "Mack",
-    "Mack CH613",
-    "International",
-    "International 4300",
-    "Volvo VNL",
-    "Sterling",
-    "Isuzu NPR",
-    "Western Star",
-]
-BIKES = ["Harley Davidson", "Honda", "Kawasaki Ninja", "Yamaha", "Suzuki", "Yamaha R6", "Kawasaki", "Honda Goldwing"]
-BUSES = ["Bluebird", "Thomas", "International", "MCI"]
+from mini.generator.records import Phrase, records
+from sgcad_core.narrative.makes import kind_of
 
-MODELS = {"car": CARS, "suv": SUVS, "pickup": PICKUPS, "van": VANS, "truck": TRUCKS, "motorcycle": BIKES, "bus": BUSES}
-BODIES = {
-    "car": "4-door sedan|4-door sedan|four-door sedan|sedan|2-door coupe|two-door coupe|coupe|3-door hatchback|hatchback|5-door hatchback|station wagon|4-door|four-door|two-door",
-    "suv": "4-door utility vehicle|4-door utility vehicle|2-door utility|SUV|sport utility vehicle|4-door SUV|utility vehicle|4-door sport utility vehicle|sports utility vehicle",
-    "pickup": "pickup|pickup truck|pick-up|pick-up truck|2-door pickup truck|extended cab pickup|4x4 pickup truck|quad cab pickup",
-    "van": "minivan|minivan|van|passenger van|5-door van|mini-van|conversion van|cargo van",
-    "truck": "tractor-trailer|semi-truck|tractor trailer|box truck|straight truck|dump truck|truck tractor|tractor pulling one semi-trailer|semi tractor with a trailer|flatbed truck",
-    "motorcycle": "motorcycle|motor cycle",
-    "bus": "school bus|bus|transit bus|city bus",
-}
 KIND_WEIGHTS = {"car": 58.0, "suv": 15.0, "pickup": 11.0, "van": 8.0, "truck": 4.0, "motorcycle": 2.5, "bus": 1.0}
-COLORS = ["red", "white", "blue", "green", "black", "silver", "gray", "tan", "maroon", "gold"]
+COLORS = [phrase.text for phrase in records("vehicles")["COLOR"]["counted"]]
 YEARS = range(1986, 2008)
 
 
 def model_text(rng: Random, kind: str) -> str:
     """Make and model alone."""
-    return rng.choice(MODELS.get(kind, [kind]))
+    return rng.choice(models().get(kind, (kind,)))
 
 
 def body_text(rng: Random, kind: str) -> str:
     """A body type in the words of investigators."""
-    return rng.choice(BODIES[kind].split("|"))
+    return rng.choice(bodies()[kind])
+
+
+@cache
+def models() -> Mapping[str, tuple[str, ...]]:
+    """Kind -> makes and models in the order of the file."""
+    return by_kind(records("vehicles")["MODEL"]["counted"])
+
+
+@cache
+def bodies() -> Mapping[str, tuple[str, ...]]:
+    """Kind -> body types in the order of the file, each as often as it counts."""
+    return by_kind(records("vehicles")["BODY"]["counted"])
+
+
+def by_kind(phrases: Iterable[Phrase]) -> dict[str, tuple[str, ...]]:
+    """Phrases by the kind of vehicle that the vocabulary says they name, or that they are said to need."""
+    found: dict[str, tuple[str, ...]] = {}
+    for one in phrases:
+        kind = one.needs[0] if one.needs else kind_told(one.text)
+        found[kind] = found.get(kind, ()) + (one.text,) * one.weight
+    return found
+
+
+def kind_told(text: str) -> str:
+    """The kind of vehicle that a name of one says: "Ford Explorer" -> "suv"; "car" where no word says another."""
+    return kind_of(text, text.partition(" ")[2] or None)[0]

@@ -11,6 +11,7 @@ from mini.generator.grammar import clause_of
 from mini.generator.labels import plain
 from mini.generator.records import Group, slots_of
 from mini.generator.world import WORDS, Crash, Leg
+from sgcad_core.kinds import FOUR, T
 from sgcad_core.language import values
 
 NUMBERS = ("zero", *values("number_word"), "eleven", "twelve")
@@ -144,7 +145,7 @@ def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     """`a T-intersection`, `a four-leg intersection`, or the plain word."""
     if not held_out and rng.random() < MORE:
         return "a " + plain(more.phrase(rng, more.JUNCTION[crash.layout]))
-    return "a " + _one(rng, clauses_words.JUNCTION["four" if crash.layout == "four" else "t"])
+    return "a " + _one(rng, clauses_words.JUNCTION[FOUR if crash.layout == FOUR else T])
 
 
 def person(rng: Random) -> dict[str, str]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from random import Random
 
 from mini.answers import COMPASS as COMPASS
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, ROAD
 from sgcad_core.language import values
 
 _WORD_OF = {point: word for word, point in values("compass").items()}
@@ -30,7 +30,7 @@ class Leg:
     turns_in: list[str] = field(default_factory=list)
     twltl: bool = False
     median: str = "none"
-    kind: str = "road"
+    kind: str = ROAD
     control: str = "none"
     curve: str = "none"
     limit: int | None = None

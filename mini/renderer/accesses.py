@@ -11,13 +11,13 @@ from mini.generator.world import Access
 from mini.renderer.lines import Band, Ground, Points
 from mini.renderer.masks import rounded
 from mini.renderer.pen import Pen
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, ROAD
 
 REACH = 14.0
 """Metres of a closed stub beyond the curb."""
 BEYOND = 8.0
 """Metres of pavement beyond a mouth, cut off again: where its rounded end lies."""
-HALF = {DRIVEWAY: 3.0, "road": 3.8}
+HALF = {DRIVEWAY: 3.0, ROAD: 3.8}
 CLEAR = 3.0
 """Metres between an open access and the junction's corner."""
 

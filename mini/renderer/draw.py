@@ -24,7 +24,7 @@ from mini.renderer.pen import Pen
 from mini.renderer.poses import Stage, Track
 from mini.renderer.road_marks import RoadMarks
 from mini.renderer.traffic import Manner, draw_tracks
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, T
 
 QUEUED = 5.0
 """Metres of road more, either way, for each that runs into one ahead, so that where it came from is on the sheet."""
@@ -122,7 +122,7 @@ def _sheet(rng: Random, crash: Crash) -> tuple[Pen, Ground]:
             else (long, long)
         )
     else:
-        size = (long, int(long * rng.uniform(0.45 if crash.layout in ("t", DRIVEWAY) else 0.65, 1.0)))
+        size = (long, int(long * rng.uniform(0.45 if crash.layout in (T, DRIVEWAY) else 0.65, 1.0)))
         size = size if rng.random() < 0.75 else size[::-1]
     scale = max(size) / (2 * half) if plain else min(size) / (2 * half) * rng.uniform(1.0, 1.15)
     return Pen(rng, *size, scale, turn, (0.0, 0.0)), ground

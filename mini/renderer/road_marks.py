@@ -15,6 +15,7 @@ from mini.renderer.boxes import Pose, Size, overlap
 from mini.renderer.lines import STEP, Band, Ground, Points
 from mini.renderer.masks import outline, rounded
 from mini.renderer.pen import Color, Pen
+from sgcad_core.kinds import ROAD
 
 TURN_STEPS = {
     "left": ("left",),
@@ -125,7 +126,7 @@ class RoadMarks:
             places.append(places[-1] + self.rng.uniform(0.4, 0.35 * lane))
         for band in bands:
             s = np.arange(self.ground.setback(band.leg.bearing, self.corner + 1.5), band.length, 1.0)
-            if len(s) < 3 or band.leg.kind != "road":
+            if len(s) < 3 or band.leg.kind != ROAD:
                 continue
             for side, curb, sign in (("right", band.right, 1), ("left", band.left, -1)):
                 for run in accesses.beside(self.pen, self.ground, self.crash.accesses, band, side, s):
@@ -136,7 +137,7 @@ class RoadMarks:
     # -------------------------------------------------------------- lines
     def _center(self, band: Band, start: float) -> None:
         leg, pen = band.leg, self.pen
-        if not leg.two_way or leg.kind != "road":
+        if not leg.two_way or leg.kind != ROAD:
             return
         s = np.arange(start, band.length, STEP)
         if len(s) < 3:
@@ -189,7 +190,7 @@ class RoadMarks:
     def _lanes(self, band: Band, start: float) -> None:
         leg, pen = band.leg, self.pen
         s = np.arange(start, band.length, STEP)
-        if len(s) < 3 or leg.kind != "road":
+        if len(s) < 3 or leg.kind != ROAD:
             return
         for k in range(1, leg.lanes_in):
             uses = (leg.turns_in[k - 1], leg.turns_in[k]) if leg.turns_in else ("", "")
@@ -227,7 +228,7 @@ class RoadMarks:
     def _one_way(self, band: Band, start: float, arrows: bool) -> None:
         """Arrows on a one-way road, without which nobody could tell; on a plain one the vehicles mostly do."""
         leg = band.leg
-        if leg.kind != "road" or leg.two_way or (arrows and leg.turns_in):
+        if leg.kind != ROAD or leg.two_way or (arrows and leg.turns_in):
             return
         if self.ground.plain and self.rng.random() < 0.4:
             return

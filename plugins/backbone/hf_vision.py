@@ -14,7 +14,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
-from plugins.backbone import hf_run, hf_size
+from plugins.backbone import hf_gguf, hf_run, hf_size
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.interfaces import Backbone, Decoder
@@ -30,7 +30,9 @@ class HfVision(Backbone):
 
     gives_logits: ClassVar[bool] = True
     version: ClassVar[str] = "2"
-    model: str = Field(min_length=1, description="folder (also from the project's root) or id")
+    model: str = Field(
+        min_length=1, description="folder or .gguf file (also from the project's root), package:NAME/FILE.gguf, or id"
+    )
     revision: str | None = None
     device: str = Field("auto", description="auto, cpu, cuda:0, ...; device_map goes first")
     device_map: str | dict[str, int | str] | None = Field(None, description="spread over devices; needs accelerate")
@@ -59,7 +61,7 @@ class HfVision(Backbone):
         """Fingerprint of the folder of weights; empty for an id, whose revision is a field."""
         with self._lock:
             if self._stamp is None:
-                self._stamp = folder_stamp(self.model)
+                self._stamp = hf_gguf.digest(self.model) if hf_gguf.is_gguf(self.model) else folder_stamp(self.model)
             return self._stamp
 
     def load(self) -> None:
@@ -113,7 +115,7 @@ class HfVision(Backbone):
                 self._running = None  # a loop that has ended holds its model no longer
                 self._running = hf_run.shared(
                     stamp,
-                    self.model,
+                    str(hf_gguf.unpacked(self.model)) if hf_gguf.is_gguf(self.model) else self.model,
                     self.revision,
                     hf_run.options(self.dtype, self.attn_implementation, self.device_map),
                     device=self.device,

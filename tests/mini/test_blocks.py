@@ -13,6 +13,7 @@ from mini.generator.crash import sample_crash
 from mini.generator.records import Group, group, slots_of
 from mini.generator.report import make_report
 from mini.generator.writer import Writer
+from tests.effort import many
 from tests.mini.reports import only, sentences, text_report
 
 seeds = st.integers(0, 10**6)
@@ -65,7 +66,7 @@ def test_frames_stand_on_both_sides_of_the_split_and_use_known_slots(options: Gr
 
 def test_left_turns_are_coded_of_those_who_turn_left() -> None:
     told = 0
-    for seed in range(4000):
+    for seed in range(many(1500, 4000)):
         report = text_report(seed)
         turning = {actor.id for actor in report.crash.actors if actor.maneuver == "turn_left"}
         start = 0
@@ -74,7 +75,7 @@ def test_left_turns_are_coded_of_those_who_turn_left() -> None:
             if "critical" in sentence and "this vehicle turning left" in sentence:
                 told += 1
                 assert facts & {f"man.{name}" for name in turning}, sentence
-    assert told > 8
+    assert told > many(3, 8)
 
 
 @pytest.mark.parametrize("held_out", [False, True])

@@ -10,6 +10,7 @@ from mini.generator.records import group
 from mini.generator.report import make_report
 from mini.generator.settled import VAGUE
 from mini.generator.world import WORDS
+from tests.effort import many
 from tests.mini.reports import only, sentences, text_report
 
 
@@ -100,7 +101,7 @@ def test_the_one_that_is_pushed_is_the_one_that_was_struck(monkeypatch: pytest.M
 
 def test_who_goes_along_a_bend_is_not_told_to_by_an_error() -> None:
     bends = 0
-    for seed in range(3000):
+    for seed in range(many(1500, 3000)):
         report = text_report(seed, length=0.0)
         for actor in (a for a in report.crash.actors if a.maneuver == "negotiating_curve"):
             told = [text for text, facts in sentences(report) if f"man.{actor.id}" in facts]

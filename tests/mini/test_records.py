@@ -11,7 +11,7 @@ from mini.generator import labels, records
 from mini.generator.records import Group, Phrase, group, slots_of
 from sgcad_core.errors import ConfigError
 
-FILES = ("codes", "contact", "critical", "motion", "noise", "road", "scene", "turning", "words")
+FILES = ("codes", "contact", "critical", "motion", "noise", "road", "scene", "turning", "vehicles", "words")
 LISTS = [(name, heading) for name in FILES for heading in records.records(name)]
 RUN = 4
 """Words in a row that no further phrase may share with held-out ones alone."""
@@ -53,7 +53,7 @@ def runs(clauses: Iterable[str]) -> set[tuple[str, ...]]:
 
 def test_every_file_of_phrases_is_read() -> None:
     found = {file.name.removesuffix(".yaml") for file in files("mini.generator").joinpath("phrases").iterdir()}
-    assert found == {*FILES, "labels"}
+    assert found == {*FILES, "labels", "incidents"}, "tests/mini/test_gist.py reads incidents"
 
 
 @pytest.mark.parametrize(("name", "heading"), LISTS)

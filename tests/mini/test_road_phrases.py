@@ -14,7 +14,7 @@ from mini.generator import clauses_road, clauses_scene, lane_lists, words, write
 from mini.generator.grammar import unmark
 from mini.generator.records import group
 from mini.generator.report import make_report
-from mini.generator.settled import AXIS, ROAD
+from mini.generator.settled import AXIS, ROAD_HINT
 from mini.generator.world import WORDS, Crash, Leg
 from tests.mini.reports import sentences
 
@@ -105,8 +105,8 @@ def test_roads_that_are_told_are_noted_and_axes_where_a_direction_stands() -> No
     seen = 0
     for text, facts, _ in _sentences(range(400)):
         lanes = {fact.partition(".")[2] for fact in facts if fact.startswith("lanes.")}
-        roads = {fact.partition(".")[2] for fact in facts if fact.startswith((ROAD, AXIS))}
-        seen += any(fact.startswith(ROAD) for fact in facts)
+        roads = {fact.partition(".")[2] for fact in facts if fact.startswith((ROAD_HINT, AXIS))}
+        seen += any(fact.startswith(ROAD_HINT) for fact in facts)
         assert lanes <= roads or "section" in text or "layout" in facts, (
             text
         )  # "a five-lane intersection" names no road
@@ -151,7 +151,7 @@ def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monke
         ways = {frozenset((leg.lanes_in, leg.lanes_out)) for leg in crash.legs}
         assert ways == {frozenset((0, lanes)) if one_way else frozenset((lanes,))}
         axes = {leg.bearing % 4 for leg in crash.legs}
-        assert facts == {f"{key}.{axis}" for key in ("lanes", ROAD) for axis in axes}
+        assert facts == {f"{key}.{axis}" for key in ("lanes", ROAD_HINT) for axis in axes}
     assert found == {"Twice", "Once"}
 
 
@@ -202,5 +202,5 @@ def test_the_limit_of_the_other_road_is_laid_on_it(monkeypatch: pytest.MonkeyPat
             if text.startswith("QQ"):
                 told += 1
                 (axis,) = {fact.partition(".")[2] for fact in facts if fact.startswith("limit.")}
-                assert f"{ROAD}.{axis}" in facts
+                assert f"{ROAD_HINT}.{axis}" in facts
     assert told > 30

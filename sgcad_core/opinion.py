@@ -1,0 +1,42 @@
+"""What a second reader says of a crash beside the rules, and how it is weighed. Plain records: knows no reader."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pydantic import Field
+
+from sgcad_core.frozen import Record
+
+Value = bool | str
+LEARNED = "learned"
+"""In a config's `second_opinion`: the reader that learned where the rules err (`sgcad_core.narrative.learned`)."""
+WEIGHTS = Path(__file__).parent / "narrative" / "learned.npz"
+"""What that reader learned."""
+
+
+class Weights(Record):
+    """How one field is decided where both readers differ (`sgcad_core.narrative.fusion`), and `agree`: how often both
+    are right where they do not (None: as sure as the second reader is)."""
+
+    differ: float = 0.0
+    slope: float = 1.0
+    told: float = 0.0
+    agree: float | None = Field(0.9, ge=0, le=1)
+
+
+class Heard(Record):
+    """The model's value of a field and its probability."""
+
+    value: Value
+    p: float = Field(ge=0, le=1)
+
+
+class Opinion(Record):
+    """What the second reader says, and how it is weighed against the rules. Fields without weights are the rules'."""
+
+    heard: Mapping[str, Heard] = {}
+    weights: Mapping[str, Weights] = {}
+    takes: float = Field(0.5, ge=0, le=1)
+    """Probability from which on another value than the rules' is taken."""

@@ -1,0 +1,37 @@
+"""What a model could give away of the texts that it learned from."""
+
+from random import Random
+
+import pytest
+import torch
+
+from benchmarks.memorized import LIMIT, drawn, longest_run
+from mini.generator.incidents import make_incident
+from mini.gist import gist_row
+from mini.rows import collate
+from mini.tokens import Coder, load_tokenizer
+from mini.train import answer_tokens
+from sgcad_core import settings
+
+WEIGHTS = settings.ROOT / "mini" / "weights"
+
+
+def test_the_longest_run_is_found_wherever_it_lies() -> None:
+    assert longest_run("xx the AV was stopped yy", "before the AV was stopped at") == " the AV was stopped "
+    assert longest_run("nothing in common", "zzzz") == ""
+
+
+def test_nothing_of_a_text_is_what_a_row_asks_for() -> None:
+    coder = Coder(load_tokenizer(WEIGHTS))
+    asked = set(answer_tokens(coder).tolist())
+    for seed in range(60):
+        told = make_incident(seed)
+        batch = collate([gist_row(coder, told, Random(seed))], coder)
+        assert set(batch.wanted.tolist()) <= asked, "a text's token was a target, so it could be learned by heart"
+
+
+@pytest.mark.slow
+def test_the_shipped_weights_continue_no_text() -> None:
+    torch.set_num_threads(1)
+    texts = [make_incident(seed).text for seed in range(4)]
+    assert max(len(longest_run(one, "\n".join(texts))) for one in drawn(WEIGHTS, texts)) < LIMIT
