@@ -1,8 +1,9 @@
 """How well are incident reports drawn whose vehicles have no numbers? Prints the measures of three groups.
 
     python -m benchmarks.incidents --dev CASES TRUTH [--pool POOL.jsonl] --out OUT [--sample N] [--score-only]
+                                   [--config CONFIG.yaml]
 
-Runs `sgcad evaluate` with the template config over the cases and scores what it leaves
+Runs `sgcad evaluate` with a config, the template one unless told otherwise, over the cases and scores what it leaves
 (benchmarks/incident_scores.py). A pool's line is a report with its codes: {"id", "text", "contact", "subject", "other",
 "road"}. Of the pool the reports whose id's SHA-256 is a multiple of six are *blind*: nobody reads them, and only their
 totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their hashes fall; blind and
@@ -74,10 +75,10 @@ def write_cases(incidents: Iterable[Incident], folder: Path) -> None:
         (case / "report.txt").write_text(incident.text, encoding="utf-8")
 
 
-def run_cases(cases: Path, runs: Path) -> None:
-    """All case folders with the template config; cases that fail are results."""
+def run_cases(cases: Path, runs: Path, config: Path = CONFIG) -> None:
+    """All case folders with a config; cases that fail are results."""
     command = [sys.executable, "-c", "from flows.cli import main; main()", "evaluate", str(cases)]
-    subprocess.run([*command, "--config", str(CONFIG), "--out", str(runs)], check=False)  # noqa: S603 - our own command
+    subprocess.run([*command, "--config", str(config), "--out", str(runs)], check=False)  # noqa: S603 - our own command
 
 
 def table(incidents: Sequence[Incident], runs: Path) -> list[str]:
@@ -111,6 +112,7 @@ def main() -> None:
     parser.add_argument("--pool", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--sample", type=int)
+    parser.add_argument("--config", type=Path, default=CONFIG, help="whose runs are scored (template.yaml)")
     parser.add_argument("--only", default="", help="a genre, such as sgo")
     parser.add_argument("--score-only", action="store_true", help="score what --out holds from before")
     args = parser.parse_args()
@@ -120,8 +122,8 @@ def main() -> None:
         parser.error("nothing to measure: give --dev CASES TRUTH, --pool POOL.jsonl, or both")
     write_cases(incidents, args.out / "cases")
     if not args.score_only:
-        run_cases(args.out / "cases", args.out / "runs")
-    print("\n".join(table(incidents, args.out / "runs" / CONFIG.stem)))  # noqa: T201 - a command prints
+        run_cases(args.out / "cases", args.out / "runs", args.config)
+    print("\n".join(table(incidents, args.out / "runs" / args.config.stem)))  # noqa: T201 - a command prints
 
 
 if __name__ == "__main__":

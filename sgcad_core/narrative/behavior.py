@@ -11,6 +11,7 @@ from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
+from sgcad_core.narrative.limits import FROM_STOP_MPH
 from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.roadside import with_roadside
 from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, Maneuver, NearCrash, RoadSpec
@@ -18,8 +19,6 @@ from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Ev
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
 """Length of what such a vehicle tows, hitch included, metres."""
 _LONGEST_M = 30.0
-_FROM_STOP_MPH = 12
-"""After 7 m at 2 m/s^2."""
 _SHIFTS: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
 """From a ramp these are merges: the lane that one changes to is that of the road."""
 _MOST_ACTORS, _MOST_CONTACTS = 12, 8
@@ -81,7 +80,7 @@ def _speed_mph(v: VehicleFacts) -> int | None:
     """As told; who starts from a stop is slow at the contact; else the planner's choice."""
     if v.standing:
         return None
-    return v.speed_mph or (_FROM_STOP_MPH if v.from_stop else None)
+    return v.speed_mph or (FROM_STOP_MPH if v.from_stop else None)
 
 
 def _length(v: VehicleFacts) -> float | None:

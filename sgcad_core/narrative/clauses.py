@@ -44,6 +44,8 @@ _SUBJECT = rule("clauses.subject")
 _VERB = rule("clauses.verb")
 _PARTICIPLE = rule("clauses.participle")
 _PREPOSITION = rule("clauses.preposition")
+_STANDS_BESIDE = rule("clauses.stands_beside")
+_RESUMES = rule("clauses.resumes")
 _ASIDE = rule("clauses.aside")
 _BESIDE = rule("clauses.beside")
 _REPORTS = rule("clauses.reports")
@@ -111,11 +113,20 @@ def segments(told: Iterable[Statement], who: Roster) -> tuple[Segment, ...]:
 def _cut(told: Statement, who: Roster) -> list[Segment]:
     starts = subject_starts(told, who)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
-    return [
+    found = [
         Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number, begin)
         for (_, begin, subjects), end in zip(starts, ends, strict=True)
         if subjects
     ]
+    return [*_opening(told, starts), *found]
+
+
+def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
+    """What a participle tells of the subject that follows it: "While turning right, V1 was struck"."""
+    before = told.text[: starts[0][0]] if starts else ""
+    if not before or not starts[0][2] or MENTION.search(before) or not rule("clauses.opening").fullmatch(before):
+        return []
+    return [Segment(starts[0][2], before.lower().strip(" ,"), told.role, told.number, 0)]
 
 
 def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
@@ -126,12 +137,37 @@ def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[s
     if pronoun and told.subject:
         everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
         starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
+    inside = 0
     for m in _subjects(text):
+        if m.start() < inside:
+            continue
+        inside = m.end() + _place_length(text[m.end() :])
         subjects = _whom(m, who)
         stranger = m.group("stranger") or (not subjects and m.group("one") in who.bystanders)
         if (subjects or stranger) and _is_subject(text, m):
-            starts.append((m.start(), m.end(), subjects))
-    return starts
+            resumed = _resumed(text, m, starts)
+            starts += [(m.start(), m.end(), subjects), *resumed]
+        else:
+            inside = 0
+    return sorted(starts, key=lambda start: start[0]) if starts else starts
+
+
+def _place_length(behind: str) -> int:
+    """How long the words are that say where a subject is, before its verb: who is named in them is no subject."""
+    place = rule("clauses.located").match(behind)
+    within = place is not None and "," not in place.group() and " and " not in place.group()
+    return place.end() if place and within and _VERB.match(" " + behind[place.end() :]) else 0
+
+
+def _resumed(
+    text: str, aside: re.Match[str], before: list[tuple[int, int, tuple[str, ...]]]
+) -> list[tuple[int, int, tuple[str, ...]]]:
+    """Where the subject goes on behind one that only stands beside it: "passed V3 parked there and turned left"."""
+    if not before or not _BESIDE.search(text[max(0, aside.start() - 60) : aside.start()]):
+        return []
+    stop = next((m.start() for m in _SUBJECT.finditer(text, aside.end())), len(text))
+    onward = _RESUMES.search(text, aside.end(), stop)
+    return [(onward.start(), onward.end(), before[-1][2])] if onward else []
 
 
 def _subjects(text: str) -> Iterator[re.Match[str]]:
@@ -158,7 +194,9 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
     if _BESIDE.search(before):
-        return bool(rule("clauses.relative").match(behind))
+        if rule("clauses.of_neighbor").search(before) and behind.startswith(" that "):
+            return False
+        return bool(rule("clauses.relative").match(behind) or _STANDS_BESIDE.match(behind))
     if _DRIVER_OF.search(before):
         return _acts(behind)
     if _PREPOSITION.search(before):

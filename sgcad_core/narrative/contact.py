@@ -17,7 +17,7 @@ from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, st
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
-from sgcad_core.narrative.zones import Zone, area_of, plain
+from sgcad_core.narrative.zones import Zone, area_by, area_if_told, area_of, plain
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,8 @@ class Blow:
     """They collided: the text names no striker."""
     noun: bool = False
     """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
+    summary: bool = False
+    """No more than who collided with whom, wherever in the text: it says nothing of when."""
 
     @property
     def cue(self) -> Cue:
@@ -66,7 +68,7 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
 def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Contacts of which a report says no more than who collided with whom."""
     named = ((t, touch) for t in told for touch in involved(plain(t, who)))
-    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True)
+    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True, summary=True)
              for t, m in named)  # fmt: skip
     return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
 
@@ -93,10 +95,6 @@ def _touch(t: Touch, told: Statement) -> Blow:
     return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
 
 
-def _maybe(words: str | None) -> Zone | None:
-    return area_of(words) if words else None
-
-
 def _blow(
     told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
 ) -> Blow | None:
@@ -107,9 +105,11 @@ def _blow(
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
-    thing = says.THING_WAS.search(before) if passive else None
+    thing = (says.THING_WAS.search(before) or says.PERSON_WAS.search(before)) if passive else None
     if thing:
         return _thing_hit(told, thing, scope, m.group())
+    if not passive and who.counted and (moves := says.THING_MOVES.search(before)):
+        return _hit_by_thing(told, moves, scope, m.group(), who)
     subjects = _subjects(told, before, m, starts)
     if not subjects:
         return None
@@ -128,7 +128,17 @@ def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> 
     by = says.BY.search(scope)
     if not by:
         return None
-    return Blow(by["v"], thing["object"].lower(), _maybe(by["area"]), None, told.number, told.role, False, verb.lower())
+    return Blow(
+        by["v"], thing["object"].lower(), area_if_told(by["area"]), None, told.number, told.role, False, verb.lower()
+    )
+
+
+def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, who: Roster) -> Blow | None:
+    """ "The gate closed and made contact with the front of V1"."""
+    whom, area = _object(told, "", scope, who)
+    if whom not in who.ids or whom is None:
+        return None
+    return Blow(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
 
 
 def _is_noun(before: str, word: str, behind: str) -> bool:
@@ -160,7 +170,8 @@ def _subject_area(before: str, subject: str) -> Zone | None:
     found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
     if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
-    return None
+    own = rule("contact.own_area").search(before)
+    return area_of(own["area"]) if own else None
 
 
 def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
@@ -176,6 +187,8 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
         return None
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "front", other_area or "back"
+    if rule("contact.backs_into").match(verb):
+        area = area or "back"
     if pair and area is None:
         area, other_area = pair
     return Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
@@ -193,26 +206,28 @@ def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str |
     m = says.ACTIVE_OBJECT.match(scope)
     thing = says.OBJECT.match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
-        area = _maybe(m["area"]) or _area_behind(scope[m.end() :])
+        area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, who), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
         only = says.THE_AREA.match(scope)
-        return _the_other(told, actor, who), _maybe(only["area"]) if only else _area_behind(scope) or _damaged(
+        return _the_other(told, actor, who), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
             told, who
         )
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
-        return late.group(), _maybe(named["area"]) if named else _area_behind(scope[late.end() :])
+        return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
     anything = says.ANY_OBJECT.match(scope) if who.counted else None
     return (anything["object"].lower(), None) if anything else (None, None)
 
 
 def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
-    """The vehicle that "it" means: of two the other one, else the first of the sentence that is not the actor."""
-    return who.other(actor) or next((v for v in MENTION.findall(told.text) if v != actor and v in who.ids), None)
+    """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
+    subject = next((v for v in who.ids[:1] if who.counted and v != actor), None)
+    named = (v for v in MENTION.findall(told.text) if v != actor and v in who.ids)
+    return who.other(actor) or next(named, subject)
 
 
 def _damaged(told: Statement, who: Roster) -> Zone | None:
@@ -242,7 +257,7 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
     other = by["v"] if by else who.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
-    other_area = _maybe(by["area"]) if by else _by_area(scope)
+    other_area = area_if_told(by["area"]) if by else area_by(scope)
     own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
     other_area = other_area or (area_of(own["area"]) if own else None)
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
@@ -255,20 +270,15 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
     return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
 
 
-def _by_area(scope: str) -> Zone | None:
-    m = rule("contact.by_area").search(scope)
-    return area_of(m["area"]) if m else None
-
-
 def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
     """ "V1 and V2 collided front to front"."""
     against = says.AGAINST.search(scope)
     if against:
-        zones = {against["v1"]: _maybe(against["a1"]), against["v2"]: _maybe(against["a2"])}
+        zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
         first, second = zones.get(subjects[0]), zones.get(subjects[1])
         return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
     pair = says.PAIRED.search(scope)
-    first, second = (_maybe(pair["a1"]), _maybe(pair["a2"])) if pair else (None, None)
+    first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
     if not pair:
         both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
         first = second = area_of(both["area"]) if both else None

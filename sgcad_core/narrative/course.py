@@ -90,8 +90,9 @@ def courses_told(told: Sequence[Statement], cut: Sequence[Segment], who: Roster)
 
 
 def _of_the_impact(told: Statement) -> Statement:
-    """ "The impact caused V1 to rotate" as a deed of V1."""
+    """ "The impact caused V1 to rotate" as a deed of V1; "V1 after striking V2 rotated" as one of V1 alone."""
     text = rule("course_rest.caused").sub(_caused, told.text)
+    text = rule("course_rest.after_striking").sub(r"\g<who>", text)
     return told if text == told.text else told._replace(text=text)
 
 

@@ -18,6 +18,8 @@ _EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
+_ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
+"""Ways of moving that are no maneuver of their own, and may be waited for."""
 
 
 def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
@@ -37,9 +39,16 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
     for deed in (*of_role("deed"), *told_now):
         for m in deed.finditer(text):
             before = text[max(0, m.start() - 60) : m.start()]
-            hoped = motion.ordered and deed.yields["deed"] in _HOPED and _LATER.search(before)
+            hoped = motion.ordered and _only_hoped(deed.yields["deed"], before)
             if not _NOT.search(before[-30:]) and not hoped:
                 _note_deed(motion, deed, m, (weight, number, at + m.end()))
+
+
+def _only_hoped(kind: str, before: str) -> bool:
+    """Whether the words before a deed say that it was waited for, prepared or meant, not done."""
+    if kind in _HOPED and _LATER.search(before):
+        return True
+    return kind in _ONWARD and bool(rule("deeds.unmoved").search(before))
 
 
 def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:

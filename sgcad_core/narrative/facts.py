@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from sgcad_core.narrative.conditions import Conditions
 from sgcad_core.narrative.draft import AREAS, Draft, Settled, end_of
 from sgcad_core.narrative.gaps import Gap
+from sgcad_core.narrative.limits import FROM_STOP_MPH
 from sgcad_core.narrative.maneuvers import meant_turn, started_from_stop
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.near_crash import NearFacts
@@ -38,7 +39,7 @@ class VehicleFacts:
     maneuver: Maneuver = "straight"
     maneuver_stated: bool = False
     lane: int | None = None
-    """1 = at the right curb."""
+    """1 = at the right curb; where counted from the left -1 = the leftmost."""
     lane_word: str | None = None
     """left, right, middle, left_turn, right_turn."""
     speed_mph: int | None = None
@@ -110,14 +111,23 @@ _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet
 def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
     """One vehicle's facts put together."""
     meant = meant_turn(motion)
+    from_stop = started_from_stop(motion, settled.maneuvers[v.id])
+    over = from_stop and settled.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, settled, v.id)
     return VehicleFacts(
         id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
         heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
         maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
-        lane=motion.lane, lane_word=motion.lane_word, speed_mph=settled.speeds.get(v.id),
+        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
-        meant=meant.maneuver if meant else None, from_stop=started_from_stop(motion, settled.maneuvers[v.id]),
+        meant=meant.maneuver if meant else None, from_stop=from_stop,
     )  # fmt: skip
+
+
+def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
+    """Whether the told speed is that of the approach to a stop from which the vehicle then started."""
+    cue = settled.sources.get(f"{vehicle} speed")
+    stops = [d.number for d in motion.deeds if d.kind == "stopped"]
+    return cue is not None and bool(stops) and cue.number <= max(stops)
 
 
 def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
@@ -154,7 +164,7 @@ def _subject_first(
 def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
     """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
-    beside = others(draft.blows, draft.who.ids)
+    beside = others(draft.blows, draft.who.ids, sum(v.beside for v in draft.who.vehicles))
     contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
     if draft.who.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.forms import is_form
 from sgcad_core.narrative.text import Sentence
 
 _FEWEST_WORDS = 12
@@ -25,6 +26,8 @@ class Gap(NamedTuple):
     missing: tuple[str, ...]
     roads_too: bool = False
     """Whether the text does not even tell of roads."""
+    unread: bool = False
+    """Whether a crash is told that the rules cannot read: another reader may."""
 
 
 _NO_CRASH = Gap("the narrative tells no crash", ("a crash: who touched whom or what",))
@@ -57,7 +60,7 @@ def without_actors(text: str, sentences: Sequence[Sentence]) -> Gap:
     """Why a text names no vehicle."""
     if _blacked_out(sentences):
         return Gap("the account of the crash is blacked out", ("an account that is not redacted",), True)
-    if sentences and all(s.role == "formal" for s in sentences):
+    if (sentences or is_form(text)) and all(s.role == "formal" for s in sentences):
         what = "the text gives no account of the crash, only what the report says of itself"
         return Gap(what, ("what happened, in the narrative",), True)
     if sentences and not rule("gaps.crash_word").search(text):
@@ -73,4 +76,4 @@ def untold(text: str, met: Iterable[bool]) -> Gap | None:
     if not rule("gaps.crash_word").search(text):
         return _NO_CRASH
     return Gap("the narrative's crash cannot be read: no contact of the report's subject is told",
-               ("who struck whom or what", "with which sides"))  # fmt: skip
+               ("who struck whom or what", "with which sides"), unread=True)  # fmt: skip

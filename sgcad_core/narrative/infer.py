@@ -13,7 +13,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
-from sgcad_core.narrative.maneuvers import Decision, changed_lanes_after_turn, decide
+from sgcad_core.narrative.maneuvers import Decision, changed_lanes_after_turn, decide, turned_before
 from sgcad_core.narrative.motion import Heard, Motion
 from sgcad_core.narrative.relative import contact_prefers, relative
 from sgcad_core.narrative.sides import join_contacts
@@ -30,7 +30,9 @@ def settle(draft: Draft) -> Settled:
         _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(draft, out, v)))
         if motion.speeds_mph:
             out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
+    _turned_headings(draft, out)
     _still_moving(draft, out, pairs)
+    _change_hands(draft, out, pairs)
     _mend_headings(draft, out, pairs)
     _complete_headings(draft, out, pairs)
     out.exits = {v: e for v in draft.who.ids if (e := _exit(draft.motions[v], out, v)) is not None}
@@ -45,6 +47,40 @@ def _still_moving(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
         cue = out.sources.get(f"{v} maneuver")
         if out.maneuvers[v] == "stopped" and cue and rule("near_events.came_to_stop").match(cue.words):
             out.maneuvers[v] = "slowing"
+
+
+def _turned_headings(draft: Draft, out: Settled) -> None:
+    """Who had turned before the crash heads where it is told to go since, else where the turn led."""
+    for v, motion in draft.motions.items():
+        turn = turned_before(motion, out.maneuvers[v])
+        if turn is None or v not in out.headings:
+            continue
+        since = [h for h in motion.headings if h.cue.number > turn.number]
+        if since:
+            out.headings[v], out.sources[f"{v} heading"] = since[-1].value, since[-1].cue
+        elif motion.exits:
+            out.headings[v] = motion.exits[-1]
+            out.sources[f"{v} heading"] = motion.sources[f"exit {motion.exits[-1]}"]
+        else:
+            out.headings[v] = turned(out.headings[v], 90 if turn.kind == "turn_right" else -90)
+            out.stated.discard(v)
+
+
+def _change_hands(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
+    """Of a change of lane to a hand that nobody tells: towards the flank by which the two touched, away from a lane
+    that is told."""
+    for v in draft.who.ids:
+        if out.maneuvers[v] != "lane_change_left" or v in out.told_maneuvers:
+            continue
+        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+        own, other = (hit.actor_area, hit.other_area) if hit and hit.actor == v else (
+            (hit.other_area, hit.actor_area) if hit else (None, None))  # fmt: skip
+        if (
+            "right" in (own or "").split("/")
+            or "left" in (other or "").split("/")
+            or draft.motions[v].lane_word == "left"
+        ):
+            out.maneuvers[v] = "lane_change_right"
 
 
 def _stated_headings(draft: Draft, out: Settled) -> None:

@@ -30,7 +30,7 @@ def lane_of(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> in
 def _stated_lane(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:
     """As told; "the right lane" of who does not turn right is the rightmost through lane, likewise the left one."""
     if v.lane:
-        return min(v.lane, count)
+        return min(v.lane, count) if v.lane > 0 else max(1, count + 1 + v.lane)
     straight = "turn" not in v.maneuver and v.meant is None
     if straight and v.lane_word == "right":
         return _first(turns, _THROUGH) or 1

@@ -275,5 +275,5 @@ def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:
 def _lane_used(v: VehicleFacts) -> int:
     """The least number of lanes in a direction where a vehicle is in that lane."""
     if v.lane:
-        return min(v.lane, 6)
+        return min(abs(v.lane), 6)
     return {"left": 2, "middle": 3}.get(v.lane_word or "", 1)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 FASTEST_MPH = 120.0
 """The most that is read as a vehicle's speed and driven; the fastest of known reports has 100."""
+FROM_STOP_MPH = 12
+"""Who has just started from a stop, where it is not told: after 7 m at 2 m/s^2."""
 MILES = 0.621
 BEYOND = "limit: "
 """How such a note begins."""

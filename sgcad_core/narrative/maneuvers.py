@@ -94,8 +94,12 @@ def _stands(states: list[Deed]) -> Maneuver:
 def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
     """The maneuver of a vehicle that moves: a turn, meant before or made, else a change of lane, else straight on."""
     turns = [d for d in since if d.kind in _TURNS]
-    if turns:
+    if turns and not _went_on(turns[-1], since):
         return _as_told(turns[-1])
+    since = [d for d in since if d.number > turns[-1].number] if turns else since
+    if not turns and (begun := _begun_turn(motion, since)):
+        return _as_told(begun)
+    since = _within_road(since)
     for kind in dict.fromkeys((*_CHANGES, *_PLAIN)):
         if deed := next((d for d in since if d.kind == kind), None):
             return Decision(kind, deed=deed)
@@ -106,6 +110,39 @@ def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
         return Decision("lane_change_left", False, deed)
     slowing = next((d for d in since if d.kind == "slowing"), None)
     return Decision("slowing" if slowing else "straight", deed=slowing or (since[-1] if since else None))
+
+
+def turned_before(motion: Motion, maneuver: Maneuver) -> Deed | None:
+    """The turn that an account in order tells as over before what its vehicle did in the crash; None where none is."""
+    turns = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 3]
+    if not motion.ordered or not turns or maneuver in (*_TURNS, "u_turn"):
+        return None
+    last = max(turns, key=lambda d: d.when)
+    return last if _went_on(last, [d for d in motion.deeds if d.when > last.when]) else None
+
+
+def _within_road(acts: list[Deed]) -> list[Deed]:
+    """Without crossings of the middle of the road that are changes of lane by the same words: "over the lane line"."""
+    changes = {d.when for d in acts if d.kind == "lane_change"}
+    return [d for d in acts if d.kind != "crossing_centerline" or d.when not in changes]
+
+
+def _went_on(turn: Deed, since: list[Deed]) -> bool:
+    """Whether a turn was over: it is told so, or a later sentence has the vehicle on its way again."""
+    if any(d.kind == "turn_done" and d.when > turn.when for d in since):
+        return True
+    later = [d for d in since if d.number > turn.number]
+    return any(d.kind in ("straight", *_CHANGES) or rule("deeds.on_its_way").match(d.words) for d in later)
+
+
+def _begun_turn(motion: Motion, since: list[Deed]) -> Deed | None:
+    """A turn that was begun, broken off by a stop, and gone on with."""
+    turns = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 3]
+    if not turns or not since or not any(d.kind == "moved_on" for d in since):
+        return None
+    acts = [d for d in motion.deeds if d.when > turns[-1].when and d.when < since[0].when and d.kind in _MOVING]
+    begun = rule("deeds.begun_turn").search(turns[-1].words)
+    return turns[-1] if begun and not acts else None
 
 
 def changed_lanes_after_turn(motion: Motion) -> bool:

@@ -68,6 +68,7 @@ class Motion:
     kin: list[tuple[int, Kin, str | None, str]] = field(default_factory=list)
     """(weight, relation, other vehicle if named, word: ahead, behind, ...)."""
     lane: int | None = None
+    """1 = at the right curb; -1 = the leftmost."""
     lane_word: str | None = None
     speeds_mph: list[Heard] = field(default_factory=list)
     origin: Access | None = None

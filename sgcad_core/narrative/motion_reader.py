@@ -91,7 +91,8 @@ def _until_hit(text: str) -> str:
     """The part before the blow: what follows it is the effect, not the approach."""
     for m in HIT.finditer(text):
         if not rule("motion_reader.no_hit").search(text[: m.start()]):
-            return text[: m.start()]
+            moving = rule("motion_reader.moving_hit").match(m.group())
+            return text[: m.end() if moving else m.start()]
     return text
 
 

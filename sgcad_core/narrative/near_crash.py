@@ -55,7 +55,7 @@ class NearFacts:
     evasions: tuple[tuple[str, EvasiveManeuver], ...] = ()
     clearance_m: float | None = None
     stated: bool = True
-    """False: two come together, and neither a contact nor how it was avoided is told."""
+    """False: two come together, and how they did not touch is not told."""
 
 
 def near_miss(told: Sequence[Statement], cut: Sequence[Segment], who: Roster, *, of_study: bool) -> NearMiss | None:
@@ -64,9 +64,12 @@ def near_miss(told: Sequence[Statement], cut: Sequence[Segment], who: Roster, *,
     `of_study`: what a study watched is told because two came near each other, whether the text says so or not.
     """
     missed = near_misses(told, who)
-    if not missed or not (of_study or not any(rule("near_events.crash").search(t.text) for t in told)):
-        together = of_study and len(who.ids) > 1 and not any(map(tells_hit, told))
-        return NearMiss() if together else None
+    no_crash = of_study or not any(rule("near_events.crash").search(t.text) for t in told)
+    if not missed or not no_crash:
+        denied = [t for t in told if rule("near_events.denied").search(t.text)]
+        silent = not any(tells_hit(t) for t in told if t not in denied)
+        together = silent and (of_study or (no_crash and denied))
+        return NearMiss() if together and len(who.ids) > 1 else None
     first = missed[0]
     pair = (first.actor, first.other)
     clearance = next(((m, t) for t in told if t.role in _READ and (m := told_clearance_m(t.text))), None)

@@ -22,8 +22,8 @@ class OtherFacts:
     word: str
 
 
-def others(blows: Iterable[Blow], vehicles: tuple[str, ...]) -> tuple[OtherFacts, ...]:
-    """Everybody and everything that is hit and has no number, each word once, in order."""
+def others(blows: Iterable[Blow], vehicles: tuple[str, ...], parked: int = 0) -> tuple[OtherFacts, ...]:
+    """Everybody and everything that is hit and has no number, each word once, in order; `parked`: O ids taken."""
     words: list[str] = []
     for blow in blows:
         if blow.other not in vehicles and blow.other not in words and blow.role not in ("interview", "injury"):
@@ -31,7 +31,7 @@ def others(blows: Iterable[Blow], vehicles: tuple[str, ...]) -> tuple[OtherFacts
     found: list[OtherFacts] = []
     for word in words:
         letter, kind = _kind(word)
-        number = sum(f.id.startswith(letter) for f in found) + 1
+        number = sum(f.id.startswith(letter) for f in found) + 1 + (parked if letter == "O" else 0)
         found.append(OtherFacts(f"{letter}{number}", kind, word))
     return tuple(found)
 

@@ -1,6 +1,7 @@
 """Takes what says who somebody was, not how the crash went, out of a narrative.
 
-Sex, age, names, licence, health and injury data are of no use to a scenario and never reach a prompt.
+Sex, age, names, licence, health and injury data, numbers of reports, badges and plates are of no use to a scenario and
+never reach a prompt.
 Motion is never touched: a sentence goes only if it tells of persons alone. Knows no crash facts.
 """
 
@@ -14,6 +15,7 @@ from sgcad_core.narrative.traced import Traced, joined
 _AGE = rule("privacy.age")
 _SEX = rule("privacy.sex")
 _NAME = rule("privacy.name")
+_IDENTIFIER = rule("privacy.identifier")
 _PERSON_ONLY = rule("privacy.person_only")
 _CRASH = rule("privacy.crash")
 _PLURAL = {"was": "were", "is": "are", "has": "have", "does": "do", "wasn't": "weren't"}
@@ -35,6 +37,7 @@ def redacted(text: Traced) -> Traced:
     """`redact` of a text whose characters know their places."""
     out = joined(list(_parts_without_persons(text.split(_SENTENCE_END))))
     out = out.sub(_AGE, lambda m: f"{m.group('the') or 'a '}person ").sub(_NAME, "a person")
+    out = out.sub(_IDENTIFIER, lambda m: f"{m['what']} (number left out)")
     out = out.sub(_SEX, lambda m: _person(m.group(0), m.group(1))).sub(rule("privacy.person_before_role"), r"\1")
     for pronoun in of_role("personal_pronoun"):
         out = out.sub(pronoun, pronoun.yields["to"])

@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from sgcad_core.edits import Edit
 from sgcad_core.facts import Fact
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
@@ -27,6 +28,7 @@ from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
+from sgcad_core.narrative.forms import account
 from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
@@ -63,6 +65,8 @@ class Reading:
     """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
+    edits: tuple[Edit, ...] = ()
+    """What people said otherwise; all of the above then follows them (`sgcad_core.narrative.mended`)."""
 
 
 def read(narrative: str | Traced) -> Reading:
@@ -101,8 +105,8 @@ class Events(NamedTuple):
 
 
 def normalise(narrative: Traced) -> Traced:
-    """One spelling for everything; characters keep their places."""
-    return normalised(narrative)
+    """Of a form the account alone, in one spelling; characters keep their places."""
+    return normalised(account(narrative))
 
 
 def sentences(text: Traced) -> tuple[Sentence, ...]:
@@ -140,7 +144,9 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     near = None if struck else near_miss(named.statements, cut, who, of_study=of_study)
     hits = near.blows if near else struck
     subject = who.ids[0] if who.ids else None
-    met = (b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids))
+    met = (
+        b.number for b in hits if subject in (b.actor, b.other) and {b.actor, b.other} <= set(who.ids) and not b.summary
+    )
     moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, next(met, None))
     deeds = cut_by_deeds(named.statements, who)
     course = CoursesRead() if near else courses_told(named.statements, deeds, who)
@@ -168,7 +174,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
 
 def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
     """What keeps the text from being drawn."""
-    gap = foreign(narrative) or several(narrative)
+    gap = foreign(account(Traced.of(narrative)).text) or several(narrative)
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
     if crash.near_crash or (tells_study(narrative) and not any(map(tells_hit, named.statements))):

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, field
 
 from sgcad_core.language import rule, values
-from sgcad_core.narrative.makes import kind_of
+from sgcad_core.narrative.makes import BODY_WORDS, kind_of
 from sgcad_core.narrative.traced import Traced, joined
 
 _PHRASE = rule("references.phrase")
@@ -183,6 +183,24 @@ def number_actors(text: Traced) -> Traced:
     return joined(blocks, "\n\n")
 
 
+def number_parked(text: Traced) -> Traced:
+    """A numbered text with the one parked vehicle that somebody hits and that has no number given the next one."""
+    named = list(rule("references.parked").finditer(text.text))
+    hits = {m.start("who") for m in rule("references.parked_hit").finditer(text.text)}
+    hit = next((m.start() for m in named if m.start() in hits), None)
+    if hit is None or not numbers_somebody(text.text):
+        return text
+    number = max(int(m.group()[1:]) for m in rule("common.vehicle").finditer(text.text)) + 1
+    return text.sub(rule("references.parked"), lambda m: _parked(m, f"V{number}", m.start() - hit))
+
+
+def _parked(match: re.Match[str], id: str, behind: int) -> str:
+    """The number; where it is hit first (`behind` 0) with the words that describe it; another one stays as it is."""
+    if behind == 0:
+        return f"an unnumbered {match['what']} ({id}), which was parked"
+    return id if behind > 0 and match["det"].lower() == "the" else match.group()
+
+
 def _numbered(block: Traced, numbering: _Numbering) -> Traced:
     pieces: list[Traced] = []
     at = 0
@@ -227,7 +245,7 @@ class _Numbering:
         actor.at = self.at
         actor.stands = actor.stands or phrase.stands
         actor.announced = actor.announced and self.announcing
-        actor.heads.add(phrase.head)
+        actor.heads |= {phrase.head, *(m for m in phrase.modifiers if m in BODY_WORDS)}
         actor.part = actor.part or phrase.part
         return self._written(phrase, actor, known is None)
 

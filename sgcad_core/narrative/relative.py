@@ -73,13 +73,15 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
 def _add_contact(score: dict[int, float], out: Settled, a: str, b: str, blow: Blow) -> None:
     """What the sides that touched say about the headings before any turn."""
     area = {blow.actor: blow.actor_area, blow.other: blow.other_area}
-    expected = contact_turn(end_of(area[a]), end_of(area[b]))
+    one, two = end_of(area[a]), end_of(area[b])
+    leads = [out.maneuvers[v] == "backing" and zone == "back" for v, zone in ((a, one), (b, two))]
+    expected = contact_turn("front" if leads[0] else one, "front" if leads[1] else two)
     if expected is None:
         return
-    one, two = end_of(area[a]), end_of(area[b])
+    expected += 180 * sum(leads)  # who backs leads with its back, and heads the other way
     bent = expected + bend_deg(out.maneuvers[a], one, two) - bend_deg(out.maneuvers[b], two, one)
     for q in QUARTERS:
-        score[q] += 1.5 * (1 - apart(q, bent) / 90)
+        score[q] += (1.5 if one and two else 1.2) * (1 - apart(q, bent) / 90)
 
 
 def contact_turn(area_a: Area | None, area_b: Area | None) -> float | None:

@@ -102,6 +102,8 @@ def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Ar
             return side_hit(-at_contact), "front"
         return "front", side_hit(-at_contact)
     if area_a is None:
+        if _standing(out, a) and not _standing(out, b) and area_b in ("left", "right"):
+            return _flank_facing(area_b, turn), area_b
         if (
             {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING)
             and area_b in ("left", "right")
@@ -112,6 +114,11 @@ def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Ar
     if {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING) and area_a in ("left", "right") and apart(turn, 0) <= 45:
         return area_a, "right" if area_a == "left" else "left"
     return (area_a, side_hit(-at_contact)) if area_a == "front" else (area_a, "front")
+
+
+def _flank_facing(flank: Area, turn: float) -> Area:
+    """The flank of one that stands which faces the told flank of one that passes it."""
+    return flank if apart(turn, 180) <= 45 else "right" if flank == "left" else "left"
 
 
 def _standing(out: Settled, vehicle: str) -> bool:

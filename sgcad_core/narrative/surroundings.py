@@ -40,7 +40,11 @@ def read_lane(motion: Motion, text: str) -> None:
         if _OTHER_LANE.search(text[: m.start()]) and not _IN_LANE.search(text[: m.start()]):
             continue
         number = m.group("n") or m.group("num")
-        if number:
+        nth = m.group("nth") or m.group("nth2")
+        if nth:
+            counted = values("ordinal").get(nth.lower(), 2)
+            motion.lane = counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
+        elif number:
             motion.lane = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
         elif m.group("ord"):
             motion.lane = values("ordinal")[m.group("ord").lower()]

@@ -10,7 +10,7 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
-from sgcad_core.narrative.references import number_actors
+from sgcad_core.narrative.references import number_actors, number_parked
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.study import named_in_full
 from sgcad_core.narrative.traced import Traced, joined
@@ -133,7 +133,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    blocks = [block for block in number_actors(named_in_full(text)).split_at("\n\n") if block.text]
+    blocks = [block for block in number_parked(number_actors(named_in_full(text))).split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):
             found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))

@@ -61,11 +61,14 @@ class Traced(NamedTuple):
         return Traced("".join([*text, self.text[at:]]), starts, ends)
 
     def _between(self, begin: int, end: int) -> tuple[int, int]:
-        """Where the characters [begin, end) stand; of none, the point between their neighbours."""
+        """Where the characters [begin, end) stand; of none, the point between their neighbours, or what these share."""
         if end > begin:
             return self.starts[begin], self.ends[end - 1]
-        point = self.ends[begin - 1] if begin else self.starts[0] if self.text else 0
-        return point, point
+        if not begin:
+            first = self.starts[0] if self.text else 0
+            return first, first
+        before = self.ends[begin - 1]
+        return min(before, self.starts[begin] if begin < len(self.text) else before), before
 
     def split(self, pattern: Pattern) -> list[Traced]:
         """`pattern.split(text)` of a pattern without groups."""
@@ -141,6 +144,25 @@ def placed(text: str, where: Runs) -> Traced:
         starts += range(there, last) if same else [there] * (then - here)
         ends += range(there + 1, last + 1) if same else [last] * (then - here)
     return Traced(text, starts, ends)
+
+
+SPACES = 2
+"""So few characters that are left out are spaces."""
+
+
+def redactions(where: Runs) -> list[dict[str, int]]:
+    """Places of a text at which others words were written, of its `runs`: [start, end) here (empty: words were left
+    out) and how many characters stood there."""
+    found: list[dict[str, int]] = []
+    last = 0
+    behind = (*where[1:], (-1, 0, 0)) if where else ()
+    for (here, there, end), (then, _, _) in zip(where, behind, strict=True):
+        if here and there - last > SPACES:  # what stands before the first character is space
+            found.append({"start": here, "end": here, "removed": there - last})
+        if then >= 0 and then - here != end - there:
+            found.append({"start": here, "end": then, "removed": end - there})
+        last = end
+    return found
 
 
 def shown(text: Traced, start: int, end: int) -> tuple[int, int]:

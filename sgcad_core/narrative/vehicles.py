@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
@@ -22,6 +22,8 @@ _NO_MODEL = rule("vehicles.no_model")
 
 
 _STOP = rule("vehicles.stop")
+_BESIDE = rule("references.unnumbered")
+"""A mark that `references.number_parked` leaves, since no report writes so."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,8 @@ class Identity:
     """Whether it was numbered here, not by the report."""
     described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
     """Every description of it, in order."""
+    beside: bool = False
+    """Whether it only stands by the road in a report that numbers the others, and has no number there."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +64,9 @@ class Roster:
 
     def other(self, vehicle: str) -> str | None:
         """The other one of two vehicles."""
-        rest = [v for v in self.ids if v != vehicle]
-        return rest[0] if len(rest) == 1 else None
+        rest = [v for v in self.vehicles if v.id != vehicle]
+        numbered = [v for v in rest if not v.beside] or rest
+        return numbered[0].id if len(numbered) == 1 else None
 
     @property
     def counted(self) -> bool:
@@ -82,9 +87,9 @@ class Roster:
         found: dict[str, str] = {}
         for v in self.vehicles:
             letter = _LETTERS.get(v.kind, "V") if v.counted else "V"
-            letter = "A" if v.animal else letter
+            letter = "O" if v.beside else "A" if v.animal else letter
             counts[letter] = counts.get(letter, 0) + 1
-            found[v.id] = f"{letter}{counts[letter]}" if v.counted else v.id
+            found[v.id] = f"{letter}{counts[letter]}" if v.counted or v.beside else v.id
         return found
 
     def resolve(self, sentence: str) -> str:
@@ -124,6 +129,7 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
     found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
+    found = tuple(replace(v, beside=any(_BESIDE.search(c.words) for c in v.described)) for v in found)
     return Roster(found, _aliases(found))
 
 

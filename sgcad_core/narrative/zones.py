@@ -59,3 +59,14 @@ def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
     starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
     owner = starts[-1][0] if starts else told.subject
     return f"the {match['area']} of {owner}" if owner else match.group()
+
+
+def area_if_told(words: str | None) -> Zone | None:
+    """The area of a phrase; None without one."""
+    return area_of(words) if words else None
+
+
+def area_by(scope: str) -> Zone | None:
+    """The area in "by the front", behind a verb of hitting."""
+    found = rule("contact.by_area").search(scope)
+    return area_of(found["area"]) if found else None

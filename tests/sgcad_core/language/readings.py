@@ -18,6 +18,8 @@ from sgcad_core.language.data import Language
 ROOT = Path(__file__).parents[3]
 SENTENCES = Path(__file__).with_name("readings.yaml")
 """Role -> sentence -> keys of the role's rules that read it, in their order."""
+FACTS = Path(__file__).with_name("facts.yaml")
+"""Rule -> sentence -> field -> value that the whole reader draws from that sentence by that rule."""
 _CODE = ("sgcad_core", "plugins", "mini", "flows")
 
 
@@ -44,6 +46,13 @@ def sentences() -> dict[str, dict[str, list[str]]]:
     """The sentences of the file."""
     found: dict[str, dict[str, list[str]]] = yaml.safe_load(SENTENCES.read_text(encoding="utf-8"))
     return found
+
+
+@lru_cache(maxsize=1)
+def facts_of_sentences() -> list[tuple[str, str, dict[str, object]]]:
+    """(rule, sentence, facts) of the file of facts."""
+    found: dict[str, dict[str, dict[str, object]]] = yaml.safe_load(FACTS.read_text(encoding="utf-8"))
+    return [(id, sentence, facts) for id, told in found.items() for sentence, facts in told.items()]
 
 
 def reading_faults(language: Language) -> list[str]:

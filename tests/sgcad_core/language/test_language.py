@@ -14,10 +14,12 @@ from sgcad_core.language import data, of_role, rule, slot, values, words
 from sgcad_core.language.data import Language, language
 from sgcad_core.language.examples import class_faults, faults, parsed, reads, rule_faults, written
 from sgcad_core.language.records import RuleRecord, rule_record, word_class
+from sgcad_core.narrative.reading import read
 from tests.sgcad_core.language.readings import (
     ROOT,
     asked_for,
     classes_asked_for,
+    facts_of_sentences,
     reading_faults,
     roles_asked_for,
     sentences,
@@ -42,6 +44,20 @@ def test_every_rule_and_word_class_reads_its_examples() -> None:
 
 def test_sentences_are_read_by_the_rules_told_for_them() -> None:
     assert reading_faults(language()) == []
+
+
+@pytest.mark.parametrize(("id", "sentence", "facts"), facts_of_sentences())
+def test_the_whole_reader_draws_the_fact_of_a_rule_from_a_sentence(
+    id: str, sentence: str, facts: dict[str, object]
+) -> None:
+    drawn = {fact.field: fact.value for fact in read(sentence).facts if fact.rule == id}
+    assert {field: list(value) if isinstance(value, tuple) else value for field, value in drawn.items()} == facts
+
+
+def test_every_light_weather_and_surface_has_a_sentence_that_gives_its_fact() -> None:
+    covered = {id for id, _, _ in facts_of_sentences()}
+    of_conditions = {id for role in ("light", "weather", "surface") for id in language().roles[role]}
+    assert of_conditions - covered == set()
 
 
 def test_every_role_that_is_asked_in_order_has_sentences() -> None:

@@ -130,3 +130,8 @@ def test_every_fact_of_a_course_has_its_sentence() -> None:
     assert text[braked.start : braked.end] == "The driver of Vehicle #1 braked."
     assert (facing.value, facing.basis) == (270.0, "text")
     assert text[facing.start : facing.end] == "Vehicle #1 came to rest facing west."
+
+
+@pytest.mark.parametrize("told", ["after striking Vehicle #2 rotated", "after colliding with Vehicle #2, then rotated"])
+def test_what_follows_a_contact_told_again_is_the_strikers_deed(told: str) -> None:
+    assert impacts(f"{HIT} Vehicle #1 {told} clockwise and then contacted a utility pole.") == [("V1", "pole")]

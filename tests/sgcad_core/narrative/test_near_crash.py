@@ -43,6 +43,36 @@ def test_a_crash_is_no_near_crash(text: str) -> None:
     assert read(text).crash.near_crash is None
 
 
+WAYS = "V1 was traveling north on a two-lane road. V2 was traveling south. "
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        WAYS + "They did not touch and there was no crash.",
+        "V1 and V2 did not touch and there was no crash. V1 was traveling north, V2 south.",
+        WAYS + "V1 braked and did not make contact with V2. No collision occurred.",
+        WAYS + "There was no contact between the vehicles.",
+    ],
+)
+def test_where_nobody_touched_no_contact_is_made_up(text: str) -> None:
+    crash = read(text).crash
+    assert crash.near_crash is not None
+    assert not crash.near_crash.stated
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        WAYS + "V1 struck V2. V3 was parked. V1 did not touch V3.",
+        WAYS + "The driver of V1 did not touch the brakes. V1 collided with V2.",
+        WAYS + "This crash was severe. There was no contact between V1 and V3.",
+    ],
+)
+def test_a_contact_that_is_denied_of_others_leaves_the_crash(text: str) -> None:
+    assert read(text).crash.near_crash is None
+
+
 @pytest.mark.parametrize(("words", "clearance_m"), [
     ("coming within 2 feet of it", 0.61), ("missing it by one foot", 0.3), ("coming within 300 feet of it", None),
 ])  # fmt: skip

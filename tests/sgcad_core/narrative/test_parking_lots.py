@@ -86,7 +86,8 @@ def test_a_parked_car_stands_square_to_the_aisle_in_a_stall() -> None:
     assert math.sin(parked.heading_rad[0]) == pytest.approx(0.0, abs=1e-6)
     assert parked.x_m[0] == pytest.approx(3.6 + 5.5 / 2, abs=0.05)
     assert made.declared is not None
-    assert net.layout is None
+    assert net.layout is not None
+    assert {leg.beside for leg in net.layout.legs} == {("parking",)}
 
 
 def test_one_who_backs_out_stands_in_his_stall_first_and_strikes_with_his_back() -> None:

@@ -72,7 +72,8 @@ def _says(fact, said):
         return str(fact.value).lower()[:4] in said or last == "make"
     if last in ("striker", "struck"):
         return bool(re.search(r"str[ui]ck|strik|hit|impact|contact|colli|rear-end|sideswip|clip|push|bump|ram|t-boned|"
-                              r"into|slap|met|together|broadsid", said))  # fmt: skip
+                              r"into|slap|met|together|broadsid|scrap|graz|kick|tapp|caught|rubb|"
+                              r"brush|(?:ran|rolled|drove) over", said))  # fmt: skip
     return True
 
 

@@ -46,6 +46,15 @@ def test_splitting_and_joining_gives_what_strings_give(text):
     assert Traced.of(text).strip("a ").text == text.strip("a ")
 
 
+def test_what_is_put_in_between_swapped_letters_keeps_the_order_of_places():
+    swapped, swap = Traced.of("aabb"), re.compile("(a)(b)")
+    for _ in range(2):
+        swapped = swapped.sub(swap, r"\2\1")
+    put_in = swapped.sub(re.compile("(?<=a)(?=b)"), "-")
+    assert list(put_in.starts) == sorted(put_in.starts)
+    assert list(put_in.ends) == sorted(put_in.ends)
+
+
 def test_only_what_changes_of_a_match_loses_its_place():
     edited = Traced.of("at 30mph.").sub(re.compile(r"(\d+)(mph)"), r"\1 \2")
     assert edited.text == "at 30 mph."
