@@ -22,12 +22,15 @@ from flows.server import prefect_server
 from flows.terminal import escape
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
+from sgcad_core.scratch import left, scratch
 
 PACKAGES = (
     "prefect", "mlflow", "torch", "transformers", "eclipse-sumo", "libsumo", "scenariogeneration", "lancedb",
 )  # fmt: skip
 LOW_MB = 2000
 STALE_S = 24 * 3600
+CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.workers")
+"""Modules that only ever run as another command's child."""
 
 
 class Trouble(Exception):
@@ -173,27 +176,37 @@ def _database(out: Path) -> str:
 
     tracker = cast("Tracker", plugin_class("tracker", "mlflow")())
     result = {"status": "generated", "seconds": {}}
-    with tempfile.TemporaryDirectory(prefix="sgcad-doctor-") as place:
-        case = Path(place) / "config" / "case"
+    with scratch("doctor") as place:
+        case = place / "config" / "case"
         (case / "attempts").mkdir(parents=True)
         tracker.log_case("doctor", {}, case, result)
     return "MLflow can log a run to sqlite"
 
 
 def _leftovers(out: Path) -> str:
-    servers = [str(p.pid) for p in _orphans()]
-    if servers:
-        raise Trouble(f"Prefect servers of killed commands still run; end them: kill {' '.join(servers)}")
+    processes = [str(p.pid) for p in _orphans()]
     partial = [str(p) for p in out.glob(f"*/{store.PARTIAL}*")] if out.is_dir() else []
-    if partial:
-        return f"{len(partial)} half-written case folders of killed or running batches; the next batch clears them"
-    return "no orphaned Prefect server, no half-written case"
+    counted = {"half-written case folders": len(partial), "temporary folders": len(left())}
+    found = [f"{count} {what}" for what, count in counted.items() if count]
+    lying = f"{' and '.join(found)} of killed or running batches; the next batch clears them" if found else ""
+    if processes:
+        ended = f"processes of killed commands still run; end them: kill {' '.join(processes)}"
+        raise Trouble(f"{ended}; {lying}" if lying else ended)
+    if lying:
+        return lying
+    return "no orphaned process, no half-written case, no temporary folder"
 
 
 def _orphans() -> Iterator[psutil.Process]:
+    """Our processes that no command waits for. In a container the command itself may be process 1."""
+    try:
+        if any(part in " ".join(psutil.Process(1).cmdline()) for part in ("sgcad", "prefect", "flows.")):
+            return
+    except psutil.Error:
+        return
     for process in psutil.process_iter(["pid", "ppid", "cmdline"]):
         line = process.info["cmdline"] or []
-        if "prefect.server.api.server:create_app" in line and process.info["ppid"] == 1:
+        if process.info["ppid"] == 1 and any(one in line for one in CHILDREN):
             yield process
 
 

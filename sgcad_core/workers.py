@@ -5,14 +5,15 @@
 
 The process starts at the first call and serves all later ones, since imports (libsumo: 0.5 s) are what
 costs; a call after a death starts a new one. Arguments and results are pickled. An SgcadError that the
-function raises is raised here; any other end of the process (signal, uncaught exception, timeout) is
-SimulationFailed with the last lines of its error stream. Thread-safe: calls of one worker wait in line.
+function raises is raised here; any other end of the process (signal, uncaught exception) is ProcessDied, a
+timeout SimulationFailed, with the last lines of its error stream. Thread-safe: calls of one worker wait in line.
 
 Knows no simulator. What the function prints goes to the error stream (file descriptor 2).
 """
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import pickle
@@ -29,12 +30,14 @@ from collections.abc import Callable
 from typing import IO, Any
 
 from sgcad_core import settings
-from sgcad_core.errors import SgcadError, SimulationFailed
+from sgcad_core.errors import ProcessDied, SgcadError, SimulationFailed
 
 START_S = 60.0
 """Longest start: imports on a busy machine with a cold disk."""
 _HEADER = struct.Struct("!Q")
 _LAST_WORDS = 2000
+_COLLECTED = 20_000
+"""So many objects more than went, and the worker's garbage is collected: trees of files make many that go by count."""
 
 
 class Worker:
@@ -47,7 +50,7 @@ class Worker:
         self._killed = False
 
     def call(self, *args: Any, timeout_s: float = 60.0) -> Any:
-        """`target(*args)` over there. Raises SimulationFailed (death, timeout) or the function's SgcadError."""
+        """`target(*args)` over there. Raises ProcessDied, SimulationFailed (timeout) or the function's SgcadError."""
         with self._lock:
             process = self._alive()
             if self._killed:
@@ -56,7 +59,8 @@ class Worker:
                 done, result = process.ask(args, timeout_s)
             except _Died as death:
                 self._process = None
-                raise SimulationFailed(f"{self.target}: {process.end(str(death))}") from death
+                kind = SimulationFailed if str(death) else ProcessDied  # a reason is given where the time was over
+                raise kind(f"{self.target}: {process.end(str(death))}") from death
         if done:
             return result
         raise result
@@ -191,6 +195,7 @@ def _serve(target: str) -> None:
     os.dup2(2, 1)  # prints of the function and of C++ libraries must not mix with the answers
     function = _load(target)
     _write(answers, "ready")
+    gc.set_threshold(_COLLECTED)
     while True:
         header = sys.stdin.buffer.read(_HEADER.size)
         if len(header) < _HEADER.size:
@@ -202,6 +207,9 @@ def _serve(target: str) -> None:
             answer = (False, fault)
         sys.stdout.flush()
         _write(answers, answer)
+        if not gc.get_freeze_count():  # what the first call imported stays: the collector need not walk it each time
+            gc.collect()
+            gc.freeze()
 
 
 def _load(target: str) -> Callable[..., Any]:

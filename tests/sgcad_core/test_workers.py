@@ -94,3 +94,9 @@ def test_threads_share_one_worker(worker):
 def test_an_unknown_target_is_simulation_failed():
     with pytest.raises(SimulationFailed, match="no_such_module"):
         Worker("no_such_module:f").call()
+
+
+def test_what_the_first_call_leaves_is_not_walked_by_the_collector_again(worker):
+    frozen = worker("frozen")
+    assert frozen.call() == 0
+    assert frozen.call() > 1000

@@ -1,5 +1,6 @@
 """Functions that the worker tests run in a process of their own."""
 
+import gc
 import os
 import signal
 import sys
@@ -36,3 +37,8 @@ def say(text):
 
 def refuse():
     raise InvalidOutput("bad net", [Finding(source="s", what="bad")])
+
+
+def frozen():
+    """How many objects the garbage collector passes over for good."""
+    return gc.get_freeze_count()

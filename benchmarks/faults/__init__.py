@@ -1,0 +1,1 @@
+"""Faults on purpose: commands killed at random points, disks filled, services ended; then the same command again."""
