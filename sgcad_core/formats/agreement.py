@@ -8,7 +8,7 @@ import numpy as np
 
 from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads import XodrRoads, roads_of
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
 from sgcad_core.records import Finding
@@ -30,7 +30,7 @@ def network_disagreements(graph: LaneGraph, xodr: str) -> list[Finding]:
     Raises InvalidOutput where the .xodr is none.
     """
     index = lane_index(xodr)
-    return [*_unmatched(graph, index), *_apart(graph, index, XodrRoads(xodr))]
+    return [*_unmatched(graph, index), *_apart(graph, index, roads_of(xodr))]
 
 
 def _unmatched(graph: LaneGraph, index: RoadIndex) -> Iterator[Finding]:

@@ -7,11 +7,9 @@ two-way left-turn lanes to through cars, and of several lanes of a road that lea
 
 from __future__ import annotations
 
-import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Literal, NamedTuple
 
 from sgcad_core.errors import ConfigError
@@ -24,6 +22,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
 from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
+from sgcad_core.scratch import scratch
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]
@@ -92,8 +91,8 @@ def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[
 
 
 def _read_as_map(xodr: str) -> tuple[str, str]:
-    with tempfile.TemporaryDirectory(prefix="sgcad-back-") as folder:
-        file = Path(folder) / "road.xodr"
+    with scratch("back") as folder:
+        file = folder / "road.xodr"
         file.write_text(xodr, encoding="utf-8")
         try:
             network = compile_network(plain_of_map(file))

@@ -62,6 +62,21 @@ def box_gaps(first: Floats, first_size: Size, second: Floats, second_size: Size)
     return best
 
 
+def gaps_where_near(first: Floats, first_size: Size, second: Floats, second_size: Size, near_m: float = 0.0) -> Floats:
+    """As `box_gaps` where that is at most `near_m` (0 or more); inf where circles around the boxes tell that it is not.
+
+    Of two ways over the ground most poses lie far apart, and two centers are told apart in a fifth of the time.
+    """
+    # a gap g along the best axis leaves corners no more than g * sqrt(2) apart
+    reach = (math.hypot(*first_size) + math.hypot(*second_size)) / 2 + 1.5 * near_m + 1e-6
+    dx, dy = second[:, 0] - first[:, 0], second[:, 1] - first[:, 1]
+    near = np.flatnonzero(dx * dx + dy * dy <= reach * reach)
+    gaps = np.full(len(dx), np.inf)
+    if len(near):
+        gaps[near] = box_gaps(first[near], first_size, second[near], second_size)
+    return gaps
+
+
 def overlap(first: Box, second: Box) -> bool:
     """Whether two boxes share a point (touching counts)."""
     gap = box_gaps(np.array([first[:3]]), (first[3], first[4]), np.array([second[:3]]), (second[3], second[4]))

@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.distances import box_distances
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.geometry.plane import gaps_where_near
 from sgcad_core.records import Floats
 
 CELL_M = 0.25
@@ -49,7 +49,7 @@ def box_distance(first: Track, second: Track) -> Floats:
 
 def overlaps(first: Track, second: Track) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Whether the boxes share a point, one value an instance."""
-    return box_gaps(first.pose, first.size, second.pose, second.size) <= 0
+    return gaps_where_near(first.pose, first.size, second.pose, second.size) <= 0
 
 
 # ------------------------------------------------------------------ time to collision
@@ -109,7 +109,11 @@ def _presence(track: Track, origin: Floats, shape: tuple[int, int]) -> tuple[Flo
     highs = np.minimum(((place + reach - origin) // CELL_M).astype(int) + 1, shape)
     east, north = (origin[k] + (np.arange(shape[k]) + 0.5) * CELL_M for k in (0, 1))
     cos, sin = np.cos(track.pose[:, 2]), np.sin(track.pose[:, 2])
-    for k in np.flatnonzero((highs > lows).all(axis=1)):
+    moved = np.append(True, (np.diff(track.pose, axis=0) != 0.0).any(axis=1))
+    last = np.append(np.flatnonzero(moved)[1:], len(moved)) - 1  # who stands is looked at once
+    for k, stays in zip(np.flatnonzero(moved), last, strict=True):
+        if (highs[k] <= lows[k]).any():
+            continue
         window = slice(lows[k, 0], highs[k, 0]), slice(lows[k, 1], highs[k, 1])
         dx, dy = east[window[0]] - place[k, 0], north[window[1]] - place[k, 1]
         c, s, t = cos[k], sin[k], track.t_s[k]
@@ -117,7 +121,7 @@ def _presence(track: Track, origin: Floats, shape: tuple[int, int]) -> tuple[Flo
         covered &= np.abs((-dx * s)[:, None] + dy * c) <= half[1]
         first = entered[window]
         first[covered & (first > t)] = t
-        left[window][covered] = t  # times rise
+        left[window][covered] = track.t_s[stays]  # times rise
     return entered, left
 
 

@@ -15,14 +15,14 @@ import numpy as np
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.crash_seen import STEP_S, Crash, Driven
-from sgcad_core.metrics.truth_motion import STILL, STILL_M, STRAIGHT_DEG, TURNED_DEG, TURNS
+from sgcad_core.metrics.truth_motion import STILL_M, shown
 from sgcad_core.told_course import RestTold
+from sgcad_core.units import MPS_PER_MPH
 
 COURSE_FIELDS = (
     "maneuver_any", "lane_told", "speed_told", "evasion", "no_evasion", "lost_control", "rest", "rest_facing",
     "rest_where", "rest_side", "spin", "later_impacts",
 )  # fmt: skip
-MPH = 0.44704
 ASIDE_M = 0.8
 """Sideways of one's lane from here on: a change of lane, a line that is crossed."""
 BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
@@ -81,14 +81,10 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 # ------------------------------------------------------------------ fields
 def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
     """Every kind, told from the path up to the first contact; None for `other`."""
-    kind, moved, turned = label.maneuver, one.moved_m(), one.turned_deg()
+    kind, moved = label.maneuver, one.moved_m()
     aside = float(one.aside[-1] - one.aside[0])
-    if kind in STILL:
-        return moved < STILL_M
-    if kind in TURNS:
-        return turned * TURNS[kind] > TURNED_DEG
-    if kind == "straight":
-        return moved >= STILL_M and abs(turned) < STRAIGHT_DEG
+    if (told := shown(kind, moved, one.turned_deg())) is not None:
+        return told
     if kind == "negotiating_curve":
         return moved >= STILL_M
     if kind == "slowing":
@@ -124,7 +120,7 @@ def _lane(label: VehicleLabel, one: Driven) -> bool | None:
 
 def _speed(label: VehicleLabel, one: Driven) -> bool:
     """Driven at some time up to the contact, to 5 % or 0.5 m/s; a standing vehicle has none."""
-    told = (label.speed_mph or 0.0) * MPH
+    told = (label.speed_mph or 0.0) * MPS_PER_MPH
     return bool((np.abs(one.speed - told) <= max(0.05 * told, 0.5)).any())
 
 

@@ -102,7 +102,7 @@ def _heading_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path]) -> flo
 def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch: Touch | None) -> float | None:
     """Turning, standing and going straight, told from the path before first contact; other kinds are not judged."""
     kind = vehicle.get("manoeuvre_resolved") or vehicle.get("manoeuvre")
-    if kind not in TURNS and kind not in STILL and kind != "straight":
+    if shown(kind, 0.0, 0.0) is None:
         return None
     path = paths.get(vehicle["id"])
     if path is None:
@@ -110,11 +110,16 @@ def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch
     pose = path.pose[path.t_s <= touch.t_s] if touch else path.pose
     moved = float(np.hypot(*(pose[-1, :2] - pose[0, :2])))
     turned = math.degrees(float(wrap_angle(np.diff(pose[:, 2])).sum()))
+    return float(bool(shown(kind, moved, turned)))
+
+
+def shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
+    """Whether a way from first to last place and a turn (counterclockwise) show a maneuver; None: they cannot tell."""
     if kind in STILL:
-        return float(moved < STILL_M)
-    if kind == "straight":
-        return float(moved >= STILL_M and abs(turned) < STRAIGHT_DEG)
-    return float(turned * TURNS[kind] > TURNED_DEG)
+        return moved_m < STILL_M
+    if kind in TURNS:
+        return turned_deg * TURNS[kind] > TURNED_DEG
+    return moved_m >= STILL_M and abs(turned_deg) < STRAIGHT_DEG if kind == "straight" else None
 
 
 def _relative_turn(paths: Mapping[str, Path]) -> int:

@@ -6,9 +6,11 @@ Works on a scene in which everybody else is placed. Knows behaviors, scenes and 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from sgcad_core.planner.casting import pair_of
-from sgcad_core.planner.resting import Rests, leaving
+from sgcad_core.planner.resting import IMPACTS, Impact, Rests, leaving
+from sgcad_core.planner.runouts import MISSED
 from sgcad_core.planner.scene import Scene
 from sgcad_core.planner.things import Strike, strike_things
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -16,6 +18,16 @@ from sgcad_core.roads.surface import road_surface
 from sgcad_core.specs import BehaviorSpec, Contact
 from sgcad_core.told_course import Courses, CourseTold
 
+
+class Ended(NamedTuple):
+    """What of the course behind the first contact could not be had, in words and as a cost: 1 and more a told part."""
+
+    notes: tuple[str, ...]
+    missed: float
+
+
+_ASIDE = 0.3
+"""Of a side's length: what a vehicle knocks over and pushes along is not between it and the next thing."""
 _THINGS = ("object", "pedestrian", "bicycle")
 
 
@@ -31,30 +43,38 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     for number, contact in enumerate(contacts[1:], 1):
         if contact.struck in things and contact.striker not in things:
             goes_on = any(c.striker == contact.striker for c in contacts[number + 1 :])
-            found.append(Strike(actors[contact.struck], contact.striker, contact.striker_area, goes_on))
+            before = sum(strike.by == contact.striker for strike in found)
+            aside = _ASIDE * (-1) ** before if goes_on or before else 0.0
+            found.append(Strike(actors[contact.struck], contact.striker, contact.striker_area, goes_on, aside))
             things.remove(contact.struck)
     return found
 
 
 def run_out(
-    scene: Scene, behavior: BehaviorSpec, contacts: Sequence[Contact], courses: Courses, graph: LaneGraph
-) -> list[str]:
-    """Bring the wrecks to rest as told, by way of the things that they strike; notes on what cannot be.
+    scene: Scene,
+    behavior: BehaviorSpec,
+    contacts: Sequence[Contact],
+    courses: Courses,
+    graph: LaneGraph,
+    impacts: Sequence[Impact] = IMPACTS,
+) -> Ended:
+    """Bring the wrecks to rest as told, by way of the things that they strike.
 
-    `contacts`: those that can come about, the first one first.
+    `contacts`: those that can come about, the first one first. `impacts`: friction and restitution that are tried.
     """
     strikes = strikes_of(behavior, contacts)
     told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
     first = [pair_of(contact) for contact in contacts[:1]]
     scene.again = frozenset(pair for contact in contacts[1:] if (pair := pair_of(contact)) in first)
     if not told and not strikes and not scene.again:
-        return []
+        return Ended((), 0.0)
     for strike in strikes:
         told[strike.by] = leaving(told.get(strike.by, CourseTold()))
-    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes))
+    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
     rests.fit()
-    missed = strike_things(scene, strikes, rests.surface, rests.cost)
-    return [*missed, *rests.missed(), *_rollovers(told)]
+    unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
+    notes = (*unreached, *rests.missed(), *_rollovers(told))
+    return Ended(notes, rests.cost() + MISSED * len(unreached))
 
 
 def _rollovers(told: Courses) -> Iterator[str]:

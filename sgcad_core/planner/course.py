@@ -22,10 +22,10 @@ from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
 from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
+from sgcad_core.units import MPS_PER_MPH
 
 _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
-_MPH = 0.44704
 _SMOOTH_MPS = 26.0
 _OVER_M = 1.0
 """A way that comes nearer to a crosswalk's center line leads over it."""
@@ -113,7 +113,7 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
     lane = lanes[route.start]
-    usual = actor.speed_mph * _MPH if actor.speed_mph else lane.speed_mps
+    usual = actor.speed_mph * MPS_PER_MPH if actor.speed_mph else lane.speed_mps
     smooth = min(usual, _SMOOTH_MPS) * math.sqrt(LATERAL_MPS2 / gentle_mps2)
     return _measured(graph, route, lane, pieces, (tuple(notes), smooth))
 

@@ -53,13 +53,14 @@ class Released(NamedTuple):
 
 def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None) -> None:
     """Ground friction over a step; more of it where the body would not stand in the time that is left."""
-    if one.stands:
+    vx, vy, spin = one.vx, one.vy, one.spin
+    if vx == vy == spin == 0.0:
         return
-    speed = one.speed
+    speed = math.hypot(vx, vy)
     target = 0.0
     if speed > 0.0:
         c, s = math.cos(one.heading), math.sin(one.heading)
-        along, across = (one.vx * c + one.vy * s) / speed, (one.vy * c - one.vx * s) / speed
+        along, across = (vx * c + vy * s) / speed, (vy * c - vx * s) / speed
         way = run.along_mps2 if run else drag.along
         side = across if run is None else max(-1.0, min(1.0, across / _STIFF_RAD))
         brake = math.hypot(way * along, drag.across * across)
@@ -70,14 +71,16 @@ def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None =
             ahead, left = way * along * more * step, drag.across * side * (more if run is None else 1.0) * step
             if run:
                 left = math.copysign(min(abs(left), abs(across) * speed), left)
-            one.vx -= ahead * c - left * s
-            one.vy -= ahead * s + left * c
+            one.vx = vx - (ahead * c - left * s)
+            one.vy = vy - (ahead * s + left * c)
             if run and speed > _STEERS_MPS:
                 target = _steered(run.bend_per_m, speed, drag.across) * along * speed
+    if target == spin:
+        return
+    off = spin - target
     turning = _turning_mps2(one, drag) * (run.turning if run else 1.0)
-    turning = max(turning, abs(one.spin - target) / left_s) * step
-    off = one.spin - target
-    one.spin = target if abs(off) <= turning else one.spin - math.copysign(turning, off)
+    turning = max(turning, abs(off) / left_s) * step
+    one.spin = target if abs(off) <= turning else spin - math.copysign(turning, off)
 
 
 def _steered(bend: float, speed: float, across_mps2: float) -> float:
@@ -91,32 +94,55 @@ def _turning_mps2(one: Body, drag: Drag) -> float:
     return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 
-def run_out(released: Released, drag: Drag, runs: Sequence[RunOut], end_s: float, step: float) -> Floats:
-    """(m, n, 3) poses of a body that runs out in n ways, a step apart, from its release to rest at `end_s`."""
-    one = released.body
-    way, bend, turning = (np.array([getattr(r, name) for r in runs]) for name in RunOut._fields[1:])
-    turning = _turning_mps2(one, drag) * turning
-    x, y, heading, vx, vy, spin = (np.full(len(runs), v) for v in (one.x, one.y, one.heading, one.vx, one.vy, one.spin))
-    found = []
-    for k in range(max(round((end_s - released.at_s) / step), 1)):
-        left_s = max(end_s - released.at_s - k * step, 0.1)
-        x, y, heading = x + vx * step, y + vy * step, heading + spin * step
-        c, s, speed = np.cos(heading), np.sin(heading), np.hypot(vx, vy)
-        moving = np.maximum(speed, 1e-9)
-        along, across = (vx * c + vy * s) / moving, (vy * c - vx * s) / moving
-        side = np.clip(across / _STIFF_RAD, -1.0, 1.0)
-        brake = np.hypot(way * along, drag.across * across)
-        more = np.maximum(1.0, speed / (left_s * np.maximum(brake, 1e-6)))
-        stands = brake * more * step >= speed
-        ahead = way * along * more * step
-        left = np.sign(side) * np.minimum(np.abs(drag.across * side * step), np.abs(across) * speed)
-        vx = np.where(stands, 0.0, vx - ahead * c + left * s)
-        vy = np.where(stands, 0.0, vy - ahead * s - left * c)
-        most = _STEERED_SHARE * drag.across / np.maximum(speed, 1.0) ** 2
-        steers = ~stands & (speed > _STEERS_MPS)
-        target = np.where(steers, np.clip(bend, -most, most) * along * speed, 0.0)
-        off = spin - target
-        by = np.maximum(turning, np.abs(off) / left_s) * step
-        spin = np.where(np.abs(off) <= by, target, spin - np.sign(off) * by)
-        found.append(np.column_stack((x, y, heading)))
-    return np.array(found)
+def run_out(
+    released: Sequence[Released],
+    drags: Sequence[Drag],
+    runs: Sequence[Sequence[RunOut]],
+    end_s: float,
+    step: float,
+) -> list[Floats]:
+    """(m, n, 3) poses of each body that runs out in n ways, a step apart, from its release to rest at `end_s`.
+
+    The bodies are released at one time and know nothing of each other: the ways of all are told in one row.
+    """
+    counts = [len(ways) for ways in runs]
+    state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
+    turns = [_turning_mps2(one.body, drag) for one, drag in zip(released, drags, strict=True)]
+    way, bend, share = np.array([run[1:] for ways in runs for run in ways]).T
+    wheels = way, bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
+    at_s = released[0].at_s
+    found = np.empty((max(round((end_s - at_s) / step), 1), len(way), 3))
+    for k in range(len(found)):
+        left_s = max(end_s - at_s - k * step, 0.1)
+        state = _run_on(state, wheels, left_s, step)
+        found[k] = state[:3].T
+    return np.split(found, np.cumsum(counts)[:-1], axis=1)
+
+
+def _moving(one: Body) -> tuple[float, ...]:
+    return one.x, one.y, one.heading, one.vx, one.vy, one.spin
+
+
+def _run_on(state: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
+    """(6, n) place, heading, velocity and spin a step later; `wheels`: braking, bend, turning and grip of each way."""
+    way, bend, turning, grip = wheels
+    moved = state[:3] + state[3:] * step
+    vx, vy, spin = state[3:]
+    c, s, speed = np.cos(moved[2]), np.sin(moved[2]), np.hypot(vx, vy)
+    moving = np.maximum(speed, 1e-9)
+    along, across = (vx * c + vy * s) / moving, (vy * c - vx * s) / moving
+    side = np.minimum(np.maximum(across / _STIFF_RAD, -1.0), 1.0)
+    pull = way * along
+    brake = np.hypot(pull, grip * across)
+    more = np.maximum(1.0, speed / (left_s * np.maximum(brake, 1e-6)))
+    stands = brake * more * step >= speed
+    ahead = pull * more * step
+    left = np.copysign(np.minimum(np.abs(grip * side * step), np.abs(across) * speed), side)
+    most = _STEERED_SHARE * grip / np.maximum(speed, 1.0) ** 2
+    steers = ~stands & (speed > _STEERS_MPS)
+    target = np.where(steers, np.minimum(np.maximum(bend, -most), most) * along * speed, 0.0)
+    off = spin - target
+    by = np.maximum(turning, np.abs(off) / left_s) * step
+    turned = np.where(np.abs(off) <= by, target, spin - np.copysign(by, off))
+    slowed = (np.where(stands, 0.0, vx - ahead * c + left * s), np.where(stands, 0.0, vy - ahead * s - left * c))
+    return np.concatenate((moved, (*slowed, turned)))

@@ -27,6 +27,7 @@ from sgcad_core.planner.choices import (
     slides,
     spins,
 )
+from sgcad_core.planner.drifting import line_of, profile
 from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
@@ -43,7 +44,7 @@ from sgcad_core.planner.role import (
     line_m,
     usual_speed,
 )
-from sgcad_core.planner.rolling import easiest, offset, rolled, swung, tightest
+from sgcad_core.planner.rolling import easiest, offset, offsets, rolled, swung, tightest
 from sgcad_core.planner.standing import any_angle, askew, beside_the_way, stand_offs, steps_aside
 from sgcad_core.specs import Area
 
@@ -102,17 +103,21 @@ class Option:
 
 
 def options(role: Role) -> list[Option]:
-    """All ways of an actor, cheapest first."""
-    parts: Iterable[tuple[Drift, Pacing, Twist]]
+    """All ways of an actor, cheapest first; the same ones whenever a role is asked: their motions are made once."""
+    known: list[Option] | None = role.kept.get("options")
+    if known is None:
+        known = role.kept["options"] = _sorted(role, _parts(role))
+    return list(known)
+
+
+def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
     if role.actor.kind == "object":
-        parts = product(beside_the_way(role), (Pacing(0.0),), any_angle(role))
-    elif is_standing(role):
-        parts = product(stand_offs(role), (Pacing(0.0),), askew(role))
-    elif role.actor.kind == "pedestrian":
-        parts = product(steps_aside(), pacings(role), (Twist(0.0),))
-    else:
-        parts = product(drifts(role), pacings(role), skids(role))
-    return _sorted(role, parts)
+        return product(beside_the_way(role), (Pacing(0.0),), any_angle(role))
+    if is_standing(role):
+        return product(stand_offs(role), (Pacing(0.0),), askew(role))
+    if role.actor.kind == "pedestrian":
+        return product(steps_aside(), pacings(role), (Twist(0.0),))
+    return product(drifts(role), pacings(role), skids(role))
 
 
 def aimed(role: Role) -> list[Option]:
@@ -161,10 +166,7 @@ def driving(option: Option) -> Motion:
     """A motion along the road with the option's changes."""
     role, place = option.role, option.role.place.station_m
     drift, pace = option.drift, _pace(role, option)
-    line = _steered(_line_of(role.course.path, drift, place), option, pace)
-    if option.dodge is not None:
-        line = line.moved(_profile(line.s_m, option.dodge))
-    line, path, drivable = _boxed(role, line)
+    line, path, drivable = _lines(option, pace)
     time, station = drive(line, pace, place, (path, role.course.path))
     drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
@@ -175,6 +177,19 @@ def driving(option: Option) -> Motion:
     if pace.brakes and pace.slow_at_m is not None:
         penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
+
+
+def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
+    """As `_boxed`. Where no speed bends the line, all ways to drive it share one: it is what a motion costs most."""
+    role, base, place = option.role, option.role.course.path, option.role.place.station_m
+    of = option.drift, option.dodge, place, role.size, role.actor.kind, role.actor.maneuver
+    if (bends := bool(option.twist.angle_rad) and not option.twist.skids) or of not in base.derived:
+        line = _steered(line_of(base, option.drift, place), option, pace)
+        made = _boxed(role, line if option.dodge is None else line.moved(profile(line.s_m, option.dodge)))
+        if bends:
+            return made
+        base.derived[of] = made
+    return base.derived[of]
 
 
 def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
@@ -190,8 +205,8 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
 
 def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
     """Whether a line is far off the road at places from which the shortest approach may begin."""
-    left = [offset(role.course.path, line, station)[1] for station in stations_m]
-    return max(left) > role.course.left_edge_m + _VERGE_M or -min(left) > role.course.right_edge_m + _VERGE_M
+    left = offsets(role.course.path, line, stations_m)[1]
+    return bool(left.max() > role.course.left_edge_m + _VERGE_M or -left.min() > role.course.right_edge_m + _VERGE_M)
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:
@@ -241,23 +256,6 @@ def _object_on(option: Option, base: Path, time_s: Floats, station_m: Floats) ->
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     free = np.zeros(len(path.s_m))
     return Motion(path, time_s, station_m, option.role.size, free, -math.inf, standing=True, fixed=True)
-
-
-def _line_of(base: Path, drift: Drift, place_m: float) -> Path:
-    if drift.ahead_m:
-        heading = float(base.poses([place_m])[0, 2])
-        c, s = math.cos(heading), math.sin(heading)
-        by = np.array([drift.ahead_m * c - drift.left_m * s, drift.ahead_m * s + drift.left_m * c])
-        return base.displaced(ramp(base.s_m, drift.end_m - drift.length_m, drift.length_m)[:, None] * by)
-    return base.moved(_profile(base.s_m, drift)) if drift.left_m or drift.before_m else base
-
-
-def _profile(s_m: Floats, drift: Drift) -> Floats:
-    rise = ramp(s_m, drift.end_m - drift.length_m, drift.length_m)
-    if drift.back:
-        rise = rise - ramp(s_m, drift.end_m, drift.length_m)
-    profile: Floats = drift.before_m + drift.left_m * rise
-    return profile
 
 
 def _skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:

@@ -34,6 +34,8 @@ class Encounter(NamedTuple):
 
 
 Ways = tuple[Sequence[Option], Sequence[Option]]
+Known = dict[tuple[Option, Option], Meeting | None]
+"""How combinations meet that were tried: later stages have many of the earlier ones again."""
 
 
 def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None) -> Encounter | None:
@@ -42,33 +44,36 @@ def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None)
     A stage is both actors' options and how many of their combinations are tried.
     """
     best: Encounter | None = None
+    known: Known = {}
     for (first, second), most in stages:
-        best = _best(first, second, wanted, most, best)
+        best = _best(_pairs(first, second, most), wanted, best, known)
         if best is not None and best.cost < _GOOD:
             break
     return best
 
 
 def _best(
-    first: Sequence[Option],
-    second: Sequence[Option],
-    wanted: tuple[Area, Area] | None,
-    most: int,
-    best: Encounter | None,
+    pairs: Iterable[tuple[Option, Option]], wanted: tuple[Area, Area] | None, best: Encounter | None, known: Known
 ) -> Encounter | None:
-    """The better of the encounter known so far and those among `most` combinations."""
-    for a, b in _pairs(first, second, most):
+    """The better of the encounter known so far and those among some combinations."""
+    for a, b in pairs:
         if best is not None and a.cost + b.cost >= best.cost:
             continue
-        one, two = a.motion_with(b), b.motion_with(a)
-        if not one.drivable or not two.drivable:
-            continue
-        found = meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
+        if (a, b) not in known:
+            known[a, b] = _meeting(a, b, wanted)
+        found = known[a, b]
         if found is not None and (best is None or a.cost + b.cost + found.cost < best.cost):
             best = Encounter(a, b, found)
             if found.cost < _CONTENT:
                 break
     return best
+
+
+def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting | None:
+    one, two = a.motion_with(b), b.motion_with(a)
+    if not one.drivable or not two.drivable:
+        return None
+    return meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
 
 
 def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:

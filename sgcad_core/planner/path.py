@@ -8,6 +8,7 @@ radians; x east, y north.
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -43,15 +44,29 @@ class Path:
 
     def poses(self, s_m: ArrayLike) -> Floats:
         """(m, 3) x, y, heading at stations, clamped to the ends; cubic (Hermite) between points."""
-        at = np.clip(np.asarray(s_m, dtype=float), self.s_m[0], self.s_m[-1])
-        i = np.clip(np.searchsorted(self.s_m, at) - 1, 0, len(self.s_m) - 2)
-        step = self.s_m[i + 1] - self.s_m[i]
-        t = (at - self.s_m[i]) / step
-        t2, t3 = t * t, t * t * t
+        station = self.s_m
+        at = np.minimum(np.maximum(np.asarray(s_m, dtype=float), station[0]), station[-1])
+        i = np.minimum(np.maximum(station.searchsorted(at) - 1, 0), len(station) - 2)
+        step = self._steps[i]
+        t = (at - station[i]) / step
+        t2 = t * t
+        t3 = t2 * t
+        eased = (3 * t2 - 2 * t3)[:, None]
         p, m = self._columns, self._slopes
-        ends = (2 * t3 - 3 * t2 + 1)[:, None] * p[i] + (3 * t2 - 2 * t3)[:, None] * p[i + 1]
-        bent: Floats = ends + step[:, None] * ((t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[i + 1])
+        j = i + 1
+        bent: Floats = (1 - eased) * p[i] + eased * p[j]
+        bent += step[:, None] * ((t3 - 2 * t2 + t)[:, None] * m[i] + (t3 - t2)[:, None] * m[j])
         return bent
+
+    @cached_property
+    def derived(self) -> dict[Hashable, tuple[Path, Path, bool]]:
+        """What was made of this line, by what it was made for: whoever makes it keeps it here."""
+        return {}
+
+    @cached_property
+    def _steps(self) -> Floats:
+        """(n - 1,) metres of station from each point to the next."""
+        return np.diff(self.s_m)
 
     @cached_property
     def _columns(self) -> Floats:
@@ -66,14 +81,26 @@ class Path:
 
     def lengths(self) -> Floats:
         """(n,) true distance along the line at each point, metres from its first."""
+        return self._lengths
+
+    @cached_property
+    def _lengths(self) -> Floats:
         return arc_lengths(self.points)
 
     def curvature(self) -> Floats:
         """(n,) curvature of the line (not of a box that skids on it), 1/m, left positive."""
-        return np.gradient(self.tangents(), self.lengths())
+        return self._curvature
+
+    @cached_property
+    def _curvature(self) -> Floats:
+        return np.gradient(self._tangent, self._lengths)
 
     def tangents(self) -> Floats:
         """(n,) unwrapped heading of the line (not of a box that skids on it), radians."""
+        return self._tangent
+
+    @cached_property
+    def _tangent(self) -> Floats:
         return _tangents(self.points)
 
     def moved(self, left_m: ArrayLike) -> Path:
@@ -84,7 +111,7 @@ class Path:
 
     def _directions(self, half_m: float) -> Floats:
         """(n,) heading of the line, averaged over a stretch: a line far inside a bend must not fold."""
-        angle = _tangents(self.points)
+        angle = self._tangent
         shifts = np.linspace(-half_m, half_m, 5)
         mean: Floats = np.mean([np.interp(self.s_m + d, self.s_m, angle) for d in shifts], axis=0)
         return mean
@@ -92,7 +119,7 @@ class Path:
     def displaced(self, by_m: Floats) -> Path:
         """The line moved by (n, 2) metres east and north, point by point; stations stay."""
         points = self.points + by_m
-        slip = self.heading_rad - _tangents(self.points)
+        slip = self.heading_rad - self._tangent
         return replace(self, points=points, heading_rad=_tangents(points) + slip)
 
     def reversed(self) -> Path:
@@ -154,13 +181,14 @@ def tamed(line: Path, most_per_m: float) -> Path:
 
     As tight as before where the widest window is not enough.
     """
-    points = line.points
+    points, curvature = line.points, line.curvature()
     for window_m in _WINDOWS_M:
-        over = np.abs(np.gradient(_tangents(points), arc_lengths(points))) > most_per_m
+        over = np.abs(curvature) > most_per_m
         if not over.any():
             break
         half = np.clip(window_m - _TAPER * np.maximum(_steps_to(over) * STEP_M - window_m, 0.0), 0.0, None)
         points = _rounded(points, _even(half / STEP_M))
+        curvature = np.gradient(_tangents(points), arc_lengths(points))
     return line if points is line.points else line.displaced(points - line.points)
 
 

@@ -8,42 +8,34 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath import run_out, strikes_of
+from sgcad_core.planner.attempts import Unfolded, least_missed
 from sgcad_core.planner.bystanders import stand_clear, strike_later
-from sgcad_core.planner.casting import course_of, facing_other, is_declared, other_of, seen_s
+from sgcad_core.planner.casting import course_of, is_declared, other_of, seen_s
+from sgcad_core.planner.conflict import Conflicts
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.motion import LEAD_S, STEP_S, gentle_mps2
-from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
-from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
+from sgcad_core.planner.pairing import Encounter
 from sgcad_core.planner.parting import parted
-from sgcad_core.planner.place import Place, meeting_places, place_near, preferred_station
+from sgcad_core.planner.place import Place, place_near, preferred_station
+from sgcad_core.planner.resting import Impact
 from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
-from sgcad_core.planner.walkers import crosswalk_station, walking_courses
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, NearCrash, size_m
-from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
+from sgcad_core.specs import BehaviorSpec, Contact, NearCrash, size_m
+from sgcad_core.told_course import NOTHING_TOLD, Courses
 
 _FURTHER_S = 3.0
 """More time behind the first contact where somebody goes on far."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
-_TRIES = (16, 26, 24, 400)
-"""Combinations of options tried in each stage of the search."""
-_LAST_TRIES = 90
-"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
-_ONE_TURNS = 24
-"""Combinations tried in which one of both comes as usual and the other one turns its side to it."""
-_LANELESS = ("pedestrian", "object")
-_THINGS = ("object", "pedestrian", "bicycle")
-_SPEED_SHOWS_S = 0.3
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 
@@ -77,20 +69,17 @@ def plan(
     """
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
-    cast = _Cast(behavior, lines, tractors(behavior), may_skid, by_force, told=courses)
+    conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)
+    cast = _Cast(behavior, lines, tractors(behavior), courses, [note for line in lines.values() for note in line.notes])
     contacts, near = cast.contacts, behavior.near_crash
-    scene = cast.encounter(contacts[0]) if contacts else cast.near_crash(near) if near else None
-    scene = scene or Scene(round((LEAD_S[0] + AFTER_S) / STEP_S) + 1, round(LEAD_S[0] / STEP_S))
-    for contact in contacts[1:]:
-        cast.later(scene, contact)
-    cast.rest(scene)
-    scene.settle()
-    cast.notes += run_out(scene, behavior, contacts, courses, graph)
-    observed = scene.first_contact()
+    found = conflicts.of(contacts[0]) if contacts else cast.near_crash(near, conflicts) if near else None
+    cast.notes += conflicts.notes
+    done = least_missed(found, lambda encounter, impacts: cast.unfolded(encounter, graph, impacts))
+    observed = done.scene.first_contact()
     realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     return Plan(
-        trajectories=scene.trajectories(tuple(a.id for a in behavior.actors)), contact=observed,
-        realised=realised, notes=tuple(dict.fromkeys(cast.notes)), oddity=round(cast.oddity, 3) if realised else 0.0,
+        trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors)), contact=observed,
+        realised=realised, notes=tuple(dict.fromkeys(done.notes)), oddity=round(done.oddity, 3) if realised else 0.0,
     )  # fmt: skip
 
 
@@ -101,16 +90,12 @@ class _Cast:
     behavior: BehaviorSpec
     courses: dict[str, Course]
     tractors: dict[str, str]
-    may_skid: bool = False
-    by_force: bool = True
-    told: Courses = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    told: Courses
+    notes: list[str]
     oddity: float = 0.0
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
-        for course in self.courses.values():
-            self.notes += course.notes
 
     @cached_property
     def things(self) -> frozenset[str]:
@@ -133,93 +118,28 @@ class _Cast:
                 self.notes.append(f"contact of {c.striker} and {c.struck} left out: they cannot meet")
         return found
 
+    # -------------------------------------------------------------- the whole course
+    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> Unfolded:
+        """All that follows from an encounter, and how far it is from what is told; this cast stays as it is."""
+        cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
+        lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
+        scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
+        for contact in cast.contacts[1:]:
+            cast.later(scene, contact)
+        cast.rest(scene)
+        scene.settle()
+        ended = run_out(scene, self.behavior, cast.contacts, self.told, graph, impacts)
+        return Unfolded(scene, (*cast.notes, *ended.notes), cast.oddity, ended.missed)
+
     # -------------------------------------------------------------- the first contact
-    def encounter(self, contact: Contact) -> Scene | None:
-        """The scene with the declared pair in contact; None where they cannot be brought together."""
-        found = self._conflict(contact)
-        return None if found is None else self._staged(found)
-
-    def near_crash(self, near: NearCrash) -> Scene | None:
-        """The scene of a conflict with its evasion; None where the two cannot be brought near, or not be parted."""
-        found, notes = parted(self._course_of(near.conflict) if self.usable((near.conflict,)) else None, near)
+    def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
+        """A conflict with its evasion; None where the two cannot be brought near, or not be parted."""
+        course = conflicts.as_they_drive(near.conflict) if self.usable((near.conflict,)) else None
+        found, notes = parted(course, near)
         self.notes += notes
-        return self._staged(found) if found else None
-
-    def _course_of(self, conflict: Contact) -> Encounter | None:
-        """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
-        a, b = self._roles(conflict)
-        ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
-        sides = (conflict.striker_area, conflict.struck_area)
-        return search(ordinary, sides) or search(ordinary, None) or self._conflict(conflict)
-
-    def _conflict(self, contact: Contact) -> Encounter | None:
-        """How the declared pair comes to touch; None where they cannot be brought together."""
-        a, b = self._roles(contact)
-        wanted = (contact.striker_area, contact.struck_area)
-        found = search(self._stages(a, b), wanted)
-        if found is None and self.by_force:
-            found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
-        if found is None:
-            found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
-            self.notes.append(cannot(contact, found))
         return found
 
-    def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
-        ways = {f: (self._options(a, b, f), self._options(b, a, f)) for f in (options, aimed)}
-        yield ways[options], _TRIES[0]
-        yield ways[aimed], _TRIES[1]
-        plain = self._options(a, b, plainly), self._options(b, a, plainly)
-        yield (plain[0], ways[aimed][1]), _ONE_TURNS
-        yield (ways[aimed][0], plain[1]), _ONE_TURNS
-        yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
-        if self.by_force:
-            yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
-
-    def _roles(self, contact: Contact) -> tuple[Role, Role]:
-        a, b = self.actors[contact.striker], self.actors[contact.struck]
-        if a.maneuver in ("stopped", "parked") and b.maneuver in ("stopped", "parked"):
-            a = self._set_rolling(a, b)
-        places = self._places(a, b)
-        pair = [
-            Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
-                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()))
-            for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
-        ]  # fmt: skip
-        first, second = pair
-        return facing_other(first, second), facing_other(second, first)
-
-    def _set_rolling(self, a: Actor, b: Actor) -> Actor:
-        mover = b if a.kind == "object" else a
-        self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
-        self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
-        return self.actors[a.id]
-
-    def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:
-        for one, other in ((a, b), (b, a)):
-            if one.kind in _LANELESS and other.kind not in _LANELESS:
-                here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
-                return here, here
-        pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
-        return meeting_places(pair[0], pair[1])
-
-    def _station_for(self, one: Actor, driver: Actor) -> float:
-        """Where on a driver's course a pedestrian or an object is met."""
-        course, length = self.courses[driver.id], size_m(driver)[0]
-        if one.kind == "pedestrian":
-            return crosswalk_station(driver, course, length, one)
-        return preferred_station(driver, course, length)
-
-    def _options(self, role: Role, other: Role, ways: Callable[[Role], list[Option]]) -> list[Option]:
-        if role.actor.kind != "pedestrian" or other.actor.kind in _LANELESS:
-            return ways(role)
-        found = []
-        for cost, course, place in walking_courses(other.course, other.place.station_m, role.side):
-            walk = replace(role, course=course, place=place)
-            found += [replace(option, extra_cost=cost) for option in ways(walk)]
-        return sorted(found, key=lambda option: option.cost)
-
-    def _staged(self, found: Encounter) -> Scene:
+    def staged(self, found: Encounter) -> Scene:
         """Both actors on the world clock, with what they tow, colliding."""
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))

@@ -10,7 +10,7 @@ Deterministic; a fixed number of simulations at most.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -25,14 +25,15 @@ from sgcad_core.planner.scene import Scene
 from sgcad_core.roads.surface import RoadSurface
 from sgcad_core.told_course import Courses, CourseTold, RestTold
 
-IMPACTS = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
+Impact = tuple[float, float]
+IMPACTS: Sequence[Impact] = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
 """Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where
 they graze each other, more friction where they lock."""
 _BLOW_S = 0.3
 """After the first touch the bodies have parted or slide together; then drivers and wheels count."""
 _COARSE_S = 0.1
-_WHOLE = 7
-"""Choices that are simulated whole, at most."""
+_WHOLE = 3
+"""Choices that are simulated whole, at most, beyond one for each friction and restitution."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Within the allowed by so much is as good as can be."""
 _TOLD = 1.0
@@ -56,6 +57,8 @@ class Rests:
     surface: RoadSurface
     rolling: frozenset[str] = frozenset()
     """Vehicles that are to reach something: of two ways the one that leads further is taken."""
+    impacts: Sequence[Impact] = IMPACTS
+    """Friction and restitution that are tried."""
 
     def fit(self) -> None:
         """Choose, and settle the scene so."""
@@ -63,15 +66,17 @@ class Rests:
             return
         best, least = self._choice(), self.cost()
         ways: list[BlowWays] = []
-        for number in range(_WHOLE):
+        for number in range(len(self.impacts) + _WHOLE):
             if least <= self._well:
                 break
-            if number < len(IMPACTS):
-                ways.append(self._ways(*IMPACTS[number]))
+            if number < len(self.impacts):
+                ways.append(self._ways(*self.impacts[number]))
             left = [w for w in ways if w.best()]
             if not left:
                 continue
             way = min(left, key=lambda w: w.predicted())
+            if number >= len(self.impacts) and way.predicted() >= least:
+                break
             choice = way.choice()
             self._take(choice)
             way.learn(choice, {name: self.scene.tracks[name].poses[-1] for name in way.vehicles})
@@ -95,8 +100,14 @@ class Rests:
             for name in self.scene.tracks
             if (course := self.told.get(name, CourseTold())) is not None
             and name in struck
-            and (not course.rest.empty or course.spin or name in again)
+            and (not course.rest.empty or course.spin or name in again or name in self._makes_way)
         }
+
+    @cached_property
+    def _makes_way(self) -> frozenset[str]:
+        """Who is struck first by one that is to reach something, and must not stand in its way."""
+        first = {name for touch in self.scene.touches[:1] for name in (touch.first, touch.second)}
+        return frozenset(first if first & self.rolling else ())
 
     # -------------------------------------------------------------- choices
     def _choice(self) -> Choice:
@@ -115,17 +126,18 @@ class Rests:
         wreck = scene.wreck()
         wreck.settle(until)
         found = BlowWays(friction, restitution, bool(scene.again))
-        for name, course in self.wanted.items():
-            mover = wreck.named[name]
-            if mover.free and not mover.fixed:
-                drag = scene.drag(scene.tracks[name])
-                runs = all_runs(until * STEP_S, drag.across)
-                end_s = (scene.count - 4) * STEP_S
-                ways = run_out(Released(mover.body, until * STEP_S), drag, runs, end_s, _COARSE_S)
-                odd = oddities(runs, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
-                found.vehicles[name] = VehicleWays(
-                    runs, ways, odd, partial(self._costs, name, course), scene.tracks[name].size
-                )
+        free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
+        if not free:
+            return found
+        at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
+        drags = [scene.drag(scene.tracks[name]) for name in free]
+        runs = [all_runs(at_s, drag.across) for drag in drags]
+        released = [Released(wreck.named[name].body, at_s) for name in free]
+        each = run_out(released, drags, runs, end_s, _COARSE_S)
+        for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
+            odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
+            judge = partial(self._costs, name, self.wanted[name])
+            found.vehicles[name] = VehicleWays(mine, ways, odd, judge, scene.tracks[name].size)
         return found
 
     # -------------------------------------------------------------- how well
@@ -148,14 +160,16 @@ class Rests:
         ):
             if error is not None:
                 total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
-        if course.spin and course.rest.facing_deg is None:
-            turned = ends[:, 2] - self._came_rad(name)
-            way = 1.0 if course.spin == "counterclockwise" else -1.0
-            wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
-            total += np.minimum(np.abs(way * turned - wanted) / (2 * wanted), 1.5) * (
-                1.0 if course.spin_deg else way * turned < wanted
-            )
-        return total
+        return total + self._unspun(name, course, ends) if course.spin else total
+
+    def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
+        """(n,) costs of turning otherwise than told: by other degrees, or to the other hand."""
+        turned = ends[:, 2] - self._came_rad(name)
+        way = 1.0 if course.spin == "counterclockwise" else -1.0
+        wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
+        off = np.minimum(np.abs(way * turned - wanted) / (2 * wanted), 1.5)
+        told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
+        return told
 
     def _came_rad(self, name: str) -> float:
         """An actor's heading at the first contact, as its motion had it."""

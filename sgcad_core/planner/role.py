@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple
 
 from sgcad_core.geometry.plane import SIDES, Size
 from sgcad_core.metrics.rest import compass_rad
@@ -16,8 +17,8 @@ from sgcad_core.planner.course import Course
 from sgcad_core.planner.place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.specs import Actor, Area, Surface
 from sgcad_core.told_course import CourseTold
+from sgcad_core.units import MPS_PER_MPH
 
-MPH = 0.44704
 IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
@@ -47,6 +48,11 @@ class Role:
     """The report tells that somebody lost control."""
     told: CourseTold = field(default_factory=CourseTold)
     """What the report tells of its evasion."""
+
+    @cached_property
+    def kept(self) -> dict[str, Any]:
+        """What was made for this role and is asked for again."""
+        return {}
 
     @property
     def glances(self) -> bool:
@@ -118,7 +124,7 @@ def usual_speed(role: Role) -> float:
     actor = role.actor
     top = {"pedestrian": 1.5, "bicycle": 5.5}.get(actor.kind, min(role.course.limit_mps, 26.0))
     if actor.speed_mph:
-        return max(actor.speed_mph * MPH, 1.0)
+        return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
         return 2.5
     return min(top, 11.0) if actor.maneuver in TURNING else top

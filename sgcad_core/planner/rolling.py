@@ -70,9 +70,15 @@ def swung(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path
 
 def offset(line: Path, other: Path, place_m: float) -> tuple[float, float]:
     """How far ahead and to the left of a line another one is at the same station, metres."""
-    x, y, heading = (float(v) for v in line.poses([place_m])[0])
-    dx, dy = (float(v) for v in other.poses([place_m])[0, :2] - (x, y))
-    c, s = math.cos(heading), math.sin(heading)
+    ahead, left = offsets(line, other, np.array([place_m]))
+    return float(ahead[0]), float(left[0])
+
+
+def offsets(line: Path, other: Path, places_m: Floats) -> tuple[Floats, Floats]:
+    """As `offset`, at (n,) stations."""
+    pose = line.poses(places_m)
+    dx, dy = (other.poses(places_m)[:, :2] - pose[:, :2]).T
+    c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
     return dx * c + dy * s, dy * c - dx * s
 
 

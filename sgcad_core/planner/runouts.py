@@ -12,9 +12,12 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sgcad_core.geometry.plane import Floats, Size, box_gaps
+from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.ground import RunOut
+
+Ints = NDArray[np.int_]
 
 _BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
 """Of the friction: from rolling on with bent wheels to four locked ones."""
@@ -25,6 +28,10 @@ _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 _EACH_BEND = 3
 """Of the ways of each of two that meet again so many are looked at, for each steering."""
 _PARTED_M = 0.06
+_SOON = 40
+"""Steps of the ways in which two are looked at: 4 s, later they are where they stay."""
+_IN_EACH_OTHER_M = 0.25
+"""Ways on which two boxes would lie so deep in each other are none: they push each other elsewhere."""
 MISSED = 1.5
 """Cost of a told second contact that does not come about."""
 UNUSUAL = 0.02
@@ -83,24 +90,39 @@ class BlowWays:
         """The most promising way of each vehicle that was not tried; () where none is left."""
         if self.known is None:
             each = [v.costs() for v in self.vehicles.values()]
-            meets = self.again and len(each) == 2
-            self.known = self._meeting(each[0], each[1]) if meets else tuple(int(np.argmin(costs)) for costs in each)
+            self.known = tuple(int(np.argmin(costs)) for costs in each)
+            if len(each) == 2 and (self.again or self._in_each_other(self.known)):
+                self.known = self._of_two(each[0], each[1])
         return () if self.known in self.tried else self.known
 
-    def _meeting(self, first: Floats, second: Floats) -> tuple[int, ...]:
-        """The cheapest pair of ways that part and meet again, among the best of each."""
+    def _of_two(self, first: Floats, second: Floats) -> tuple[int, ...]:
+        """The cheapest pair of ways that keep clear of each other once parted, or that meet again, as told."""
         a, b = self.vehicles.values()
-        mine, theirs = (_various(v.runs, costs) for v, costs in ((a, first), (b, second)))
+        most = _EACH_BEND if self.again else 1
+        mine, theirs = (_various(v.runs, costs, most) for v, costs in ((a, first), (b, second)))
         pairs = [(int(i), int(j)) for i in mine for j in theirs if (int(i), int(j)) not in self.tried]
         if not pairs:
             return ()
         i, j = np.array(pairs).T
-        steps = len(a.ways)
-        gaps = box_gaps(a.ways[:, i].reshape(-1, 3), a.size, b.ways[:, j].reshape(-1, 3), b.size).reshape(steps, -1)
-        apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
-        meets = (apart & (gaps <= 0.0)).any(axis=0)
-        best = int(np.argmin(first[i] + second[j] + MISSED * ~meets))
+        gaps = self._gaps(i, j)
+        if self.again:
+            apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
+            missed = ~(apart & (gaps <= 0.0)).any(axis=0)
+        else:
+            missed = gaps.min(axis=0) < -_IN_EACH_OTHER_M
+        best = int(np.argmin(first[i] + second[j] + MISSED * missed))
         return pairs[best]
+
+    def _in_each_other(self, known: tuple[int, ...]) -> bool:
+        """Whether two ways lead through each other."""
+        return bool(self._gaps(np.array(known[:1]), np.array(known[1:])).min() < -_IN_EACH_OTHER_M)
+
+    def _gaps(self, first: Ints, second: Ints) -> Floats:
+        """(m, n) gaps of the two boxes on n pairs of ways, metres; inf of those far apart."""
+        a, b = self.vehicles.values()
+        mine, theirs = a.ways[:_SOON, first], b.ways[:_SOON, second]
+        found = gaps_where_near(mine.reshape(-1, 3), a.size, theirs.reshape(-1, 3), b.size, _PARTED_M)
+        return found.reshape(len(mine), -1)
 
     def predicted(self) -> float:
         """What the most promising ways cost."""
@@ -120,12 +142,12 @@ class BlowWays:
         self.known = None
 
 
-def _various(runs: Sequence[RunOut], costs: Floats) -> list[int]:
+def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
     """The cheapest ways of each steering."""
     by_bend: dict[float, list[int]] = {}
     for i in np.argsort(costs, kind="stable"):
         by_bend.setdefault(runs[int(i)].bend_per_m, []).append(int(i))
-    return [i for same in by_bend.values() for i in same[:_EACH_BEND]]
+    return [i for same in by_bend.values() for i in same[:most]]
 
 
 def all_runs(from_s: float, grip_mps2: float) -> list[RunOut]:

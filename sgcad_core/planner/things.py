@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sgcad_core.geometry.plane import SIDES, Floats, Size, box_gaps
+from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.motion import STEP_S, Motion, stand
 from sgcad_core.planner.path import Path
 from sgcad_core.planner.scene import Scene, Track
@@ -22,12 +22,14 @@ from sgcad_core.specs import Actor, Area, size_m
 
 _AFTER_S = 0.45
 """The first blow is over by then."""
-_LEAST_MPS = 1.0
-"""A slower blow is hardly one."""
+_LEAST_MPS = 2.6
+"""A slower blow is hardly one, and a file whose vertices lie 0.11 m apart cannot show it."""
 _DEPTH_M = 0.05
 """How deep the way of the box leads into the thing at the sample of the blow."""
 _GIVES_WAY_KG = 60.0
 """Of what a vehicle goes on from: a breakaway post, a sign, a piece of fence."""
+_ALL_TOLD = 1.0
+"""A rest that costs less misses nothing that is told."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
 _OFF_ROAD_M = 0.3
 _OUTWARD_MPS = 0.5
@@ -45,6 +47,8 @@ class Strike:
     side: Area | None
     goes_on: bool
     """Whether the same vehicle strikes something else later."""
+    aside: float = 0.0
+    """How far left of the middle of the side, as a share of it: what is struck in a row stands to both hands."""
 
 
 def strike_things(
@@ -78,7 +82,7 @@ def _placed(scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[
         scene.settle()
         if _is_struck(scene, strike) and (best is None or cost() < best[0]):
             best = (cost(), track)
-        done = best is not None and strike.goes_on
+        done = best is not None and (strike.goes_on or best[0] < _ALL_TOLD)
         del scene.tracks[strike.thing.id]
         scene.touches = before
         for name, poses in base.items():
@@ -114,7 +118,7 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface) -> list[Floats]:
     """(3,) poses on the wreck's way, best first: off the road before on it, the told side before others."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track)
-    found = [(rank, pose) for k in samples for rank, pose in _beside(track, int(k), strike.side, size)
+    found = [(rank, pose) for k in samples for rank, pose in _beside(track, int(k), strike, size)
              if _is_free(scene, strike, pose, size, int(k))]  # fmt: skip
     if not found:
         return []
@@ -141,7 +145,7 @@ def _last_begun(blows: Sequence[float]) -> float:
     return max(blows)
 
 
-def _beside(track: Track, k: int, told: Area | None, size: Size) -> Iterator[tuple[int, Floats]]:
+def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[int, Floats]]:
     """(rank, pose) of the thing before each side of the box that goes outward at a sample; the told one ranks first."""
     x, y, heading = track.poses[k]
     by = track.poses[k] - track.poses[k - 1]
@@ -152,8 +156,11 @@ def _beside(track: Track, k: int, told: Area | None, size: Size) -> Iterator[tup
             continue
         reach = track.size[number % 2] / 2 + size[0] / 2 - min(_DEPTH_M, outward * STEP_S)
         leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
-        rank = 0 if side == told or (told is None and leads) else 1 if leads else 2
-        yield rank, np.array([x + reach * math.cos(out), y + reach * math.sin(out), out])
+        rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
+        left = strike.aside * track.size[1 - number % 2]
+        yield rank, np.array([
+            x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), out,
+        ])  # fmt: skip
 
 
 def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int) -> bool:
@@ -161,6 +168,6 @@ def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int)
     for name, track in scene.tracks.items():
         last = until - 1 if name == strike.by else len(track.poses)
         there = np.repeat(pose[None], last, axis=0)
-        if last and float(box_gaps(there, size, track.poses[:last], track.size).min()) <= 0.0:
+        if last and float(gaps_where_near(there, size, track.poses[:last], track.size).min()) <= 0.0:
             return False
     return True

@@ -41,14 +41,22 @@ def _names(signals: Sequence[tuple[Element, Element]]) -> Iterator[Finding]:
             yield _finding("a signal's id is no number", "signal", name, "number the signals: readers expect it")
 
 
+MOST_LANES = 1000
+
+
 def lanes_of(element: Element) -> set[int]:
     """Lane ids of the <validity> elements of a signal or an object."""
     return {
         lane
         for entry in element.iterfind("validity")
-        for lane in range(int(number(entry, "fromLane")), int(number(entry, "toLane")) + 1)
+        for lane in range(_lane(entry, "fromLane"), _lane(entry, "toLane") + 1)
         if lane != 0
     }
+
+
+def _lane(entry: Element, name: str) -> int:
+    """A lane's number; beyond MOST_LANES no road has one, and a file may say any."""
+    return int(max(-MOST_LANES, min(MOST_LANES, number(entry, name))))
 
 
 # ------------------------------------------------------------------ signals

@@ -34,11 +34,12 @@ class Pose(NamedTuple):
 
 
 def number(element: Element, name: str) -> float:
-    """A number attribute; 0 where it is missing or none. The schema finds fault with such files."""
+    """A number attribute; 0 where it is missing, none or not finite. The schema finds fault with such files."""
     try:
-        return float(element.get(name, 0))
+        value = float(element.get(name, 0))
     except ValueError:
         return 0.0
+    return value if math.isfinite(value) else 0.0
 
 
 def geometries(road: Element) -> list[Element]:

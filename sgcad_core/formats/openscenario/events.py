@@ -23,7 +23,7 @@ from sgcad_core.formats.openscenario.lane_motion import LaneMotion, Shift, lane_
 from sgcad_core.formats.openscenario.occasions import Occasions
 from sgcad_core.formats.openscenario.pacing import pieces
 from sgcad_core.formats.openscenario.parts import Happening, at_once, group, number, positions, world_position
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads import roads_of
 from sgcad_core.formats.openscenario.synchrony import Synchrony, synchrony
 from sgcad_core.formats.openscenario.vertices import path_rows
 from sgcad_core.formats.openscenario.way import LanePlace
@@ -224,7 +224,7 @@ class EventActor:
 
 def event_actors(moves: Sequence[Trajectory], ahead_m: Sequence[float], handover: Handover) -> list[EventActor]:
     """The motions of origins as events, in their order."""
-    roads = XodrRoads(handover.xodr) if handover.xodr else None
+    roads = roads_of(handover.xodr) if handover.xodr else None
     contact, plainly = handover.contact, handover.plainly
     pair = {contact.actor: contact.other, contact.other: contact.actor} if contact else {}
     occasions = Occasions({move.actor: move for move in moves}, pair, plainly.clock)

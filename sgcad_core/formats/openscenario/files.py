@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from sgcad_core.errors import BadInput
@@ -12,7 +11,7 @@ from sgcad_core.formats.openscenario.catalogs import CatalogFolders, located, re
 from sgcad_core.formats.openscenario.motion import MAX_S
 from sgcad_core.formats.openscenario.player import DT_S, Played, perform
 from sgcad_core.formats.openscenario.read import Book, Node, read_root
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads import roads_of
 from sgcad_core.formats.openscenario.variation import Given, parameter_sets, scenario_file
 
 
@@ -59,13 +58,8 @@ def play_file(
     """
     root = read_scenario(variation)
     xodr, missing = _map_of(root, variation.file.parent, maps)
-    roads = _roads(xodr) if xodr is not None else None
+    roads = roads_of(xodr) if xodr is not None else None
     return perform(root, roads, dt_s, until_s, missing), xodr
-
-
-@lru_cache(maxsize=4)
-def _roads(xodr: str) -> XodrRoads:
-    return XodrRoads(xodr)
 
 
 def _map_of(root: Node, folder: Path, maps: Sequence[Path]) -> tuple[str | None, str]:

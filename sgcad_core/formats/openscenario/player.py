@@ -19,7 +19,7 @@ from sgcad_core.formats.openscenario.entity import bodies_of, selections_of
 from sgcad_core.formats.openscenario.init import initialize
 from sgcad_core.formats.openscenario.motion import EPSILON, MAX_S, BoxShape, Pose
 from sgcad_core.formats.openscenario.read import Node, read_root
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads import XodrRoads, roads_of
 from sgcad_core.formats.openscenario.scene import Scene
 from sgcad_core.formats.openscenario.signals import SignalPlan
 from sgcad_core.formats.openscenario.story import Storyboard
@@ -52,7 +52,7 @@ def play(xosc: str, xodr: str | None = None, dt_s: float = DT_S) -> tuple[Trajec
     files are remembered (validators and simulators play the same one), so the arrays are read-only. Raises
     InvalidOutput; Unsupported, which is one, for what the player lacks.
     """
-    return perform(read_root(xosc), None if xodr is None else XodrRoads(xodr), dt_s).trajectories
+    return perform(read_root(xosc), None if xodr is None else roads_of(xodr), dt_s).trajectories
 
 
 def perform(

@@ -6,7 +6,7 @@ At junctions the straightest way is taken unless a route says otherwise. Knows n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +33,12 @@ class Apart(NamedTuple):
 
     ahead_m: float
     left_m: float
+
+
+@lru_cache(maxsize=4)
+def roads_of(xodr: str) -> XodrRoads:
+    """The roads of a .xodr, with what was measured on them before; the last few files are remembered."""
+    return XodrRoads(xodr)
 
 
 class XodrRoads:

@@ -8,6 +8,7 @@ APART_M / 0.05 s = 2.2 m/s that is nothing. Knows no XML.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -25,6 +26,8 @@ TURN_RAD = (-0.11, 0.8)
 (headings go along the shortest arc), although esmini drops them."""
 NEAREST = 8
 """How many rows before one are tried as its neighbor."""
+_TOGETHER = 64
+"""Rows whose distances to all before them are told in one computation."""
 STAND_S = 1.0 + 1e-3
 """Shortest standstill between two motions that a player keeps as such."""
 BLOW_M = 0.075
@@ -80,15 +83,17 @@ class _Stretch:
         """
         end = len(self.poses) - 1
         neighbors = self._neighbors(final)
-        errors = self._errors([(k, row) for row in range(1, end + 1) for k in neighbors[row]])
-        least, before = np.full(end + 1, np.inf), np.zeros(end + 1, int)
-        least[0] = 0.0
-        for row in range(1, end + 1):
+        plain = 1  # as long as every row may follow the one before, nothing is nearer to the motion than all rows
+        while plain <= end and neighbors[plain][-1:] == [plain - 1]:
+            plain += 1
+        errors = self._errors([(k, row) for row in range(plain, end + 1) for k in neighbors[row]])
+        least, before = [0.0] * plain + [math.inf] * (end + 1 - plain), [0, *range(plain - 1), *[0] * (end + 1 - plain)]
+        for row in range(plain, end + 1):
             for k in neighbors[row]:
                 if (error := least[k] + errors[k, row]) <= least[row]:  # of equals the nearest
                     least[row], before[row] = error, k
         rows = [end]
-        while (row := int(before[rows[-1]])) > 0:
+        while (row := before[rows[-1]]) > 0:
             rows.append(row)
         return rows[::-1]
 
@@ -97,8 +102,11 @@ class _Stretch:
         end = len(self.poses) - 1
         reached, found = np.arange(end + 1) == 0, [list[int]()]
         for row in range(1, end + 1):
+            if row % _TOGETHER == 1:
+                some = slice(row, row + _TOGETHER)
+                apart = _apart(self.poses[None, : some.stop], self.poses[some, None])
             closes = final and row == end
-            reach = np.flatnonzero(reached[:row] & (closes | _apart(self.poses[:row], self.poses[row])))
+            reach = np.flatnonzero(reached[:row] & (closes | apart[(row - 1) % _TOGETHER, :row]))
             found.append((reach if closes else reach[-NEAREST:]).tolist())
             reached[row] = bool(found[row])
         return found
@@ -119,8 +127,10 @@ class _Stretch:
         away = self._centers(even) - self._centers(self.poses)[rows]
         squares = away * away
         found = dict.fromkeys(pairs, 0.0)
-        for pair, end, count in zip(far.tolist(), ends.tolist(), counts.tolist(), strict=True):
-            found[pair[0], pair[1]] = float(squares[end - count : end].sum())
+        for count in np.unique(counts):
+            same = np.flatnonzero(counts == count)
+            sums = squares[(ends[same] - count)[:, None] + np.arange(count)].reshape(len(same), -1).sum(axis=1)
+            found.update(zip(map(tuple, far[same].tolist()), sums.tolist(), strict=True))
         return found
 
     def _centers(self, poses: Floats) -> Floats:
@@ -165,9 +175,10 @@ def _standstills(poses: Floats) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
-def _apart(poses: Floats, other: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Whether no player merges poses (n, 3) with a later one."""
-    dx, dy, turn = (other - poses).T
+def _apart(poses: Floats, other: Floats) -> NDArray[np.bool_]:
+    """Whether no player merges poses (..., 3) with a later one."""
+    by = other - poses
+    dx, dy, turn = by[..., 0], by[..., 1], by[..., 2]
     return np.asarray((dx * dx + dy * dy >= APART_M**2) | (turn <= TURN_RAD[0]) | (turn >= TURN_RAD[1]), dtype=np.bool_)
 
 

@@ -8,7 +8,6 @@ lanes) is read here. Knows no crash.
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from sgcad_core.formats.sumo.plain_xml import BESIDE, CENTER_LANE_CLASS
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
+from sgcad_core.scratch import scratch
 
 TIMEOUT_S = 120.0
 MOST_EDGES = 110
@@ -52,8 +52,8 @@ def plain_of_map(file: Path) -> PlainXml:
 
 def _parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
     """Nodes, edges and connections as netconvert reads them, completed where it passes over what an .xodr says."""
-    with tempfile.TemporaryDirectory(prefix="sgcad-map-") as folder:
-        parts = _converted(file, flags, Path(folder))
+    with scratch("map") as folder:
+        parts = _converted(file, flags, folder)
     try:
         nodes, edges, links = (parse_xml(text, file.name) for text in parts)
         if file.name.endswith(".xodr"):

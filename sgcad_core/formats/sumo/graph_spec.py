@@ -16,8 +16,9 @@ from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Connection, Direction, Edge, Floats, LaneGraph, road_of
 from sgcad_core.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
+from sgcad_core.units import MPS_PER_MPH
 
-MPH_PER_MPS = 1 / 0.44704
+MPH_PER_MPS = 1 / MPS_PER_MPH
 CONTROLS: Mapping[str, NodeControl] = {
     "traffic_light": "signal", "traffic_light_right_on_red": "signal", "traffic_light_unregulated": "signal",
     "allway_stop": "all_way_stop", "priority_stop": "stop",

@@ -1,28 +1,36 @@
 """SUMO's netconvert as a process: plain XML in, road network out.
 
 Nothing in the plain XML is trusted: the schema is checked first (negative lane numbers crash netconvert),
-and a death by signal is a result, not an exception. Knows no plugin.
+and a death by its own fault is a result, not an exception. What others did to it (a kill, a full disk) says nothing of
+the network and is an exception: the case fails, and is tried again. Knows no plugin.
 """
 
 from __future__ import annotations
 
 import re
+import shutil
+import signal
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from sgcad_core import settings
-from sgcad_core.errors import ConfigError, InvalidOutput
+from sgcad_core.errors import ConfigError, InvalidOutput, SimulationFailed
 from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.limited import run_limited
 from sgcad_core.records import PlainXml, RoadNetwork
+from sgcad_core.scratch import scratch
 from sgcad_core.specs import RoadSpec
 
 TIMEOUT_S = 60.0
+LEAST_FREE = 1 << 20
+"""Bytes in the temporary folder below which a failure is the disk's; a network takes some 0.1 MB."""
 MAP_MEMORY_MB, MAP_FILE_MB = 16_000, 4_000
 """Of a user's map: a city of a million people takes 6 GB."""
+REMEMBERED = 6
+"""Networks that a process keeps, half a megabyte each."""
+_compiled: dict[tuple[str, PlainXml, RoadSpec | None], RoadNetwork] = {}
 XSD_RETURNCODE = 1
 """As netconvert's own for input that it refuses."""
 FLAGS = (
@@ -38,14 +46,25 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
     """Compile plain XML to .net.xml and valid OpenDRIVE, about 0.1 s.
 
     Bad content leaves net_xml and xodr None, `log` says why and `returncode` is not 0 (negative: the
-    signal netconvert died of; 124: it took longer than 60 s). Raises MissingTool only.
+    signal netconvert died of; 124: it took longer than 60 s). Raises MissingTool, SimulationFailed (killed, disk full).
+    The last few that compiled are remembered: who changes an actor of a case has its network already.
     """
     if findings := xsd_findings(plain):
         log = "\n".join(f.line() for f in findings)
         return RoadNetwork(plain=plain, spec=spec, log=log, returncode=XSD_RETURNCODE)
-    with tempfile.TemporaryDirectory(prefix="sgcad-net-") as folder:
-        code, log = _run(plain, Path(folder))
-        net = _read(Path(folder) / "road.net.xml")
+    key = (str(settings.netconvert()), plain, spec)
+    found = _compiled.pop(key, None) or _compile(plain, spec)
+    if found.returncode == 0:
+        _compiled[key] = found
+        for oldest in list(_compiled)[:-REMEMBERED]:
+            _compiled.pop(oldest, None)
+    return found
+
+
+def _compile(plain: PlainXml, spec: RoadSpec | None) -> RoadNetwork:
+    with scratch("net") as folder:
+        code, log = _run(plain, folder)
+        net = _read(folder / "road.net.xml")
     if code != 0 or not net:
         return RoadNetwork(plain=plain, spec=spec, log=log or "netconvert wrote no network", returncode=code or 1)
     try:
@@ -70,8 +89,20 @@ def _call(arguments: Sequence[str], folder: Path) -> tuple[int, str]:
         done = run_limited([str(settings.netconvert()), *arguments], folder, environment, TIMEOUT_S)
     except subprocess.TimeoutExpired:
         return 124, f"netconvert took longer than {TIMEOUT_S:g} s"
+    _check_left_alone(done.returncode, folder)
     said = (done.stderr + b"\n" + done.stdout).decode("utf-8", "replace")
     return done.returncode, "\n".join(line for line in map(str.strip, said.splitlines()) if line)
+
+
+def _check_left_alone(code: int, folder: Path) -> None:
+    """Raise SimulationFailed where netconvert was ended from outside, or had no room to write."""
+    if -code in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
+        raise SimulationFailed(
+            f"netconvert was ended by {signal.Signals(-code).name}, from outside or for want of memory: see to memory "
+            "and run again"
+        )
+    if code and shutil.disk_usage(folder).free < LEAST_FREE:
+        raise SimulationFailed(f"netconvert ended with {code} and {folder.parent} is full: make room and run again")
 
 
 def _read(file: Path) -> str | None:
@@ -83,8 +114,7 @@ def _read(file: Path) -> str | None:
 
 def net_of_xodr(xodr: str) -> tuple[str, str]:
     """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
-    with tempfile.TemporaryDirectory(prefix="sgcad-back-") as name:
-        folder = Path(name)
+    with scratch("back") as folder:
         (folder / "road.xodr").write_text(xodr, encoding="utf-8")
         code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
         net = _read(folder / "road.net.xml") if code == 0 else None

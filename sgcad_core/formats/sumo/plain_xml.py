@@ -34,8 +34,8 @@ from sgcad_core.roads.road_geometry import (
 )
 from sgcad_core.roads.road_spec import spec_findings
 from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
+from sgcad_core.units import MPS_PER_MPH
 
-MPS_PER_MPH = 0.44704
 SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, "circle": 20}
 """Where the report states no limit."""
 CIRCLE = "circle"

@@ -10,7 +10,7 @@ import pytest
 
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.truth import Made, compare, truth_figures
-from sgcad_core.metrics.truth_motion import Path, first_touch
+from sgcad_core.metrics.truth_motion import Path, first_touch, shown
 from sgcad_core.roads.lane_graph import road_counts
 
 SHARED = File(__file__).resolve().parents[4] / "shared"
@@ -157,3 +157,14 @@ def test_lanes_are_counted_as_the_whole_reader_counts_them():
     shape="0,0 9,0"/><lane id="a_1" index="1" disallow="passenger" speed="9" length="9" shape="0,3 9,3"/></edge>
     </net>"""
     assert lanes_between(net) == {("x", "y"): 1}
+
+
+@pytest.mark.parametrize(("kind", "moved_m", "turned_deg", "verdict"), [
+    ("stopped", 1.9, 0.0, True), ("parked", 2.0, 0.0, False), ("straight", 2.0, 29.0, True),
+    ("straight", 9.0, -31.0, False), ("turn_left", 9.0, 12.1, True), ("turn_left", 9.0, -12.1, False),
+    ("turn_right", 9.0, -12.1, True), ("u_turn", 9.0, -90.0, False), ("merge", 9.0, 0.0, None), (None, 0.0, 0.0, None),
+])  # fmt: skip
+def test_a_way_and_a_turn_show_a_maneuver(
+    kind: str | None, moved_m: float, turned_deg: float, verdict: bool | None
+) -> None:
+    assert shown(kind, moved_m, turned_deg) is verdict

@@ -18,9 +18,10 @@ from sgcad_core.planner.motion import LEAD_S
 from sgcad_core.planner.scene import AFTER_S
 from sgcad_core.roads.lane_graph import road_of
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
+from tests.effort import many
 
 STEP_S = 0.05
-EXAMPLES = 20
+EXAMPLES = many(20, 200)
 LONGEST_S = LEAD_S[1] + AFTER_S + 3.0
 """A lead, the usual time behind the contact, and more for who runs on far."""
 KINDS, MANEUVERS, AREAS = ActorKind.__args__, Maneuver.__args__, Area.__args__
@@ -173,7 +174,7 @@ def test_nearly_every_drawn_crash_is_realised():
 
 @pytest.mark.slow
 def test_97_percent_of_many_drawn_crashes_are_realised():
-    assert share_realised(range(1000, 1600)) >= 0.97
+    assert share_realised(range(1000, 1000 + many(150, 600))) >= 0.97
 
 
 def turned(track, k: int) -> float:

@@ -119,7 +119,12 @@ def test_many_ways_at_once_end_where_each_alone_ends(bend, turning) -> None:
     drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 2.0, bend, turning), 0.01, 4.0
     one = body((1.0, 2.0, 0.3), CAR, 1450.0)
     one.vx, one.vy, one.spin = 11.0, 2.0, 0.8
-    together = run_out(Released(one, 0.0), drag, [run, RunOut(0.0, 6.0)], end, step)[-1][0]
+    other, slides = body((9.0, 2.0, 1.3), (9.0, 2.5), 9000.0), Drag(2.0, 5.0)
+    other.vx, other.spin = -4.0, 0.2
+    released = [Released(other, 0.0), Released(one, 0.0)]
+    both = run_out(released, [slides, drag], [[RunOut(0.0, 1.0)], [run, RunOut(0.0, 6.0)]], end, step)
+    assert [ways.shape[1] for ways in both] == [1, 2]
+    together = both[1][-1][0]
     for k in range(round(end / step)):
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
         slow(one, drag, step, max(end - k * step, 0.1), run)

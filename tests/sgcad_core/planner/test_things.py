@@ -73,3 +73,13 @@ def test_the_rest_is_still_looked_for(where) -> None:
     told = {"V1": CourseTold(rest=RestTold(where=where))}
     found, _ = touches(crash(thing(1)), courses=told)
     assert ("O1", "V2") in found
+
+
+def test_a_thing_is_struck_so_fast_that_a_file_shows_it() -> None:
+    behavior = crash(thing(1))
+    made = plan(behavior, network("four_leg"))
+    track = next(t for t in made.trajectories if t.actor == "V2")
+    post = next(t for t in made.trajectories if t.actor == "O1")
+    gaps = box_gaps(poses(track), (4.7, 1.8), poses(post), (0.4, 0.4))
+    hit = int(np.flatnonzero(gaps <= 0)[0])
+    assert np.hypot(*(poses(track)[hit - 1, :2] - poses(track)[hit - 2, :2])) > 0.11

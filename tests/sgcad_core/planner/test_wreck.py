@@ -146,7 +146,7 @@ def crashes(draw) -> tuple[Mover, ...]:
     for i in range(draw(st.integers(2, 4))):
         angle = i * 1.7 + draw(st.floats(0, 0.8))
         away = draw(st.floats(14, 30)) if i else 0.0
-        speed = draw(st.floats(3, 30)) if i else 0.0
+        speed = draw(st.floats(5, 30)) if i else 0.0  # who comes in the last second is not at rest at the end
         at = (away * math.cos(angle), away * math.sin(angle), draw(st.floats(-3, 3)))
         size = draw(st.sampled_from([CAR, (9.0, 2.5), (0.5, 0.6), (2.2, 0.8)]))
         mass = None if i == 1 and draw(st.booleans()) else draw(st.floats(70, 9000))
@@ -159,12 +159,24 @@ def crashes(draw) -> tuple[Mover, ...]:
 @given(crashes())
 def test_nothing_lies_in_anything_and_all_that_was_touched_comes_to_rest(movers):
     poses, _ = settled(*movers)
-    assert deepest(movers, poses) < 0.15, "0.096 m were seen: a step of 10 ms at the closing speeds of these is 0.3 m"
+    assert deepest(movers, poses) < 0.06
     touched = tuple(m for m in movers if m.hit is not None or m.fixed)
     if len(touched) > 1:
         assert deepest(touched, poses, slice(-1, None)) <= 0
     for m in touched:
         assert np.abs(np.diff(poses[m.name][-3:], axis=0)).max() < 0.02
+
+
+def test_a_light_body_between_two_heavy_ones_lies_in_neither():
+    """Squeezed from both sides: the impulses of one step go back and forth until nobody approaches anybody."""
+    movers = (
+        mover("P", (0.0, 0.0, 0.0), (0.0, 0.0), size=(2.2, 0.8), mass=70.0),
+        mover("A", (-20.0, 0.3, 0.0), (20.0, 0.0), size=(9.0, 2.5), mass=8000.0),
+        mover("B", (20.5, -0.3, math.pi), (-20.0, 0.0), size=(9.0, 2.5), mass=8000.0),
+    )
+    poses, touches = settled(*movers)
+    assert {frozenset((t.first, t.second)) for t in touches} >= {frozenset("PA"), frozenset("PB")}
+    assert deepest(movers, poses) < 0.06
 
 
 @settings(max_examples=30, deadline=None)

@@ -12,6 +12,7 @@ from lxml import etree
 
 from sgcad_core import settings as paths
 from sgcad_core.formats.opendrive.check import xodr_findings
+from sgcad_core.formats.opendrive.check_control import lanes_of
 from sgcad_core.formats.opendrive.geometry import Pose, arc_lengths_of, end_pose, hermite
 from sgcad_core.formats.opendrive.index import lane_index
 from tests.sgcad_core.formats.road_samples import NAMED, compiled
@@ -135,3 +136,14 @@ def test_asams_checkers_find_nothing(tmp_path):
     command = [str(QC), str(paths.ROOT / "deploy" / "qc.py"), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("odd", ["INF", "-INF", "nan", "1e400", "x"])
+def test_a_lane_whose_number_is_none_is_no_traceback(odd):
+    xodr = compiled("stop").xodr
+    assert lane_index(xodr.replace('<lane id="-1"', f'<lane id="{odd}"')).roads.keys() == lane_index(xodr).roads.keys()
+
+
+def test_a_signal_for_a_billion_lanes_takes_no_memory():
+    told = etree.fromstring('<signal><validity fromLane="-1e300" toLane="1e300"/></signal>')
+    assert len(lanes_of(told)) == 2000

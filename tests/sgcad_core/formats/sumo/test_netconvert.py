@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import stat
+import subprocess
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from sgcad_core import settings as paths
-from sgcad_core.errors import InvalidOutput
+from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.formats.sumo import netconvert
 from sgcad_core.formats.sumo.net_xml import parse_net, segments
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records import PlainXml
+from tests.effort import many
 from tests.sgcad_core.formats.road_samples import NAMED, any_spec, compiled, random_spec
 
 
@@ -75,7 +77,7 @@ def test_a_compiler_that_dies_or_hangs_is_a_result(script, code, tmp_path, monke
 
 @pytest.mark.slow
 @given(any_spec)
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=many(12, 40), deadline=None, suppress_health_check=list(HealthCheck))
 def test_any_spec_compiles_to_valid_files_or_yields_findings(spec):
     try:
         plain = plain_xml(spec)
@@ -95,3 +97,17 @@ def test_any_spec_compiles_to_valid_files_or_yields_findings(spec):
 def test_wild_networks_are_valid_opendrive(seed):
     spec = random_spec(1000 + seed)
     assert xodr_findings(compile_network(plain_xml(spec), spec).xodr) == []
+
+
+@pytest.mark.parametrize(("code", "match"), [(-9, "ended by SIGKILL.*run again"), (-15, "ended by SIGTERM")])
+def test_a_netconvert_that_others_ended_says_nothing_of_the_network(monkeypatch, code, match):
+    monkeypatch.setattr(netconvert, "run_limited", lambda *_: subprocess.CompletedProcess([], code, b"", b""))
+    with pytest.raises(SimulationFailed, match=match):
+        compile_network(plain_xml(NAMED["stop"]))
+
+
+def test_a_full_temporary_folder_says_nothing_of_the_network(monkeypatch):
+    monkeypatch.setattr(netconvert, "run_limited", lambda *_: subprocess.CompletedProcess([], 1, b"", b""))
+    monkeypatch.setattr(netconvert, "LEAST_FREE", 1 << 62)
+    with pytest.raises(SimulationFailed, match="is full: make room and run again"):
+        compile_network(plain_xml(NAMED["stop"]))
