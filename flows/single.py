@@ -1,4 +1,4 @@
-"""One case in words: who hits whom on which sides and when, whether the report declares it so, and what was assumed.
+"""One case in words: who hits whom, what of the report the scenario lacks, and what was assumed.
 
 Pure functions on the content of result.json; knows no file.
 """
@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-MAX_ASSUMED = 12
-FIELDS = {"start_speed_mph": "speed", "exit_road": "leaves by", "start_lane": "lane", "final_speed_mph": "last speed"}
-"""What some fields are called for people; the others by their own names."""
-UNITS = {"start_speed_mph": " mph", "final_speed_mph": " mph", "speed_limit_mph": " mph"}
+from sgcad_core.result import counts_of
+
+MAX_LINES = 12
+"""Of notes, and of what is lacking or assumed; all of it stands in result.json."""
 
 
 def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -21,7 +21,34 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
     result = results[0]
     told = [contact(result)] if result["collision"]["declared"] or result["collision"]["observed"] else []
     near = [approach(result["near_crash"])] if result.get("near_crash") else []
-    return [*told, *near, *(f"note: {note}" for note in result["notes"][:MAX_ASSUMED]), *assumed(result["facts"])]
+    return [*told, *near, *account_lines(result), *(f"note: {note['text']}" for note in result["notes"][:MAX_LINES])]
+
+
+def account_lines(result: Mapping[str, Any]) -> list[str]:
+    """What the report tells and the scenario has and lacks, and what was assumed."""
+    account = counts_of(result)
+    if account is None:
+        return []
+    found = [
+        f"told {account['told']}, has {account['has']}, lacking {account['lacking']}, assumed {account['assumed']}"
+    ]
+    found += [f"lacking: {line}" for line in _lines(account, "lacks")[:MAX_LINES]]
+    assumed = _lines(account, "assumed")
+    more = f"; and {len(assumed) - MAX_LINES} more" if len(assumed) > MAX_LINES else ""
+    return found + ([f"assumed: {'; '.join(assumed[:MAX_LINES])}{more}"] if assumed else [])
+
+
+def lacking_in_words(account: Mapping[str, Any], most: int) -> str:
+    """The first things that lack, in one line."""
+    lines = _lines(account, "lacks")
+    return "; ".join(lines[:most]) + (f"; and {len(lines) - most} more" if len(lines) > most else "")
+
+
+def _lines(account: Mapping[str, Any], kind: str) -> list[str]:
+    items = [item for item in account["items"] if item["kind"] == kind]
+    if kind == "assumed":
+        return [item["text"] for item in items]
+    return [f"{item['text']} ({item['reason']})" if item["reason"] else item["text"] for item in items]
 
 
 def contact(result: Mapping[str, Any]) -> str:
@@ -50,19 +77,3 @@ def approach(near: Mapping[str, Any]) -> str:
 
 def _declared(told: Mapping[str, Any]) -> str:
     return f"the {told['striker_area']} of {told['striker']} hits the {told['struck_area']} of {told['struck']}"
-
-
-def assumed(facts: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What neither the text nor a drawing nor a model told: the values that were taken instead."""
-    found = [_fact(fact) for fact in facts if fact["basis"] == "default"]
-    if not found:
-        return []
-    more = f"; and {len(found) - MAX_ASSUMED} more" if len(found) > MAX_ASSUMED else ""
-    return [f"assumed, since the report does not tell: {'; '.join(found[:MAX_ASSUMED])}{more}"]
-
-
-def _fact(fact: Mapping[str, Any]) -> str:
-    *owner, name = str(fact["field"]).split(".")
-    about = owner[-1] if owner else ""
-    value = str(fact["value"]).replace("_", " ")
-    return " ".join(filter(None, [about, FIELDS.get(name, name.replace("_", " ")), value])) + UNITS.get(name, "")

@@ -65,6 +65,7 @@ def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
     """Final figures of a case: its status, the collision, the network, seconds, grounding, all metrics."""
     network = {k: v for k, v in (result.get("network") or {}).items() if k != "segments"}
     collision, near = result.get("collision") or {}, result.get("near_crash") or {}
+    person = result.get("person") or {}
     figures = {status: float(result["status"] == status) for status in STATUSES}
     figures |= {
         "collision_declared": float(bool(collision.get("declared"))),
@@ -73,7 +74,12 @@ def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
         "near_crash_declared": float(bool(near)),
         "near_crash_realised": float(bool(near.get("realised"))),
         "actors": float(len(result.get("actors") or ())),
+        "person_facts": float(person.get("facts", 0)),
+        "person_disagreed": float(person.get("disagreed", 0)),
     }
+    account = {k: v for k, v in (result.get("account") or {}).items() if k not in ("verdict", "items")}
+    figures |= {f"account_{name}": float(count) for name, count in account.items()}
+    figures["account_whole"] = float((result.get("account") or {}).get("verdict") == "whole")
     parts = {"network": network, "attempts": result.get("attempts"), "seconds": result.get("seconds")}
     figures |= numbers(parts) | numbers({"grounding": result.get("grounding")})
     metrics = read_json(case_dir / "metrics.json") or {}

@@ -14,7 +14,8 @@ from pydantic import Field, PrivateAttr
 
 from plugins.tracker import mlflow_ready
 from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
-from plugins.tracker.mlflow_store import CONFIG, Parent, Store, store_of
+from plugins.tracker.headline import arm_note, case_note, experiment_note, headline, prefect_links
+from plugins.tracker.mlflow_store import CONFIG, NOTE, Parent, Store, store_of
 from sgcad_core.experiment import Arm
 from sgcad_core.interfaces import Tracker
 from sgcad_core.records import Generation, Query
@@ -47,6 +48,7 @@ class MlflowTracker(Tracker):
         shared = {"sgcad.dataset": arm.dataset.digest[:16]}
         shared |= {"mlflow.source.git.commit": arm.git_commit} if arm.git_commit else {}
         parent.begin(about, shared, _dataset(arm))
+        parent.store.describe(experiment_note())
         self._begun[arm.config] = parent
 
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
@@ -55,10 +57,12 @@ class MlflowTracker(Tracker):
         parent = store.parent(config_name, given)
         if config_name in self._begun:
             parent.watch(self.system_metrics_s)
-        tags = {CONFIG: config_name, "sgcad.status": result["status"]}
+        account = (result.get("account") or {}).get("verdict", "none")
+        tags = {CONFIG: config_name, "sgcad.status": result["status"], "sgcad.account": account}
         made = parent.new_case(case_dir.name, tags, time.time() - sum((result.get("seconds") or {}).values()))
         run = str(made.info.run_id)
         self._runs[config_name, case_dir.name] = (store, run)
+        store.tag(run, self._about(case_dir, result))
         # While the run is empty: MLflow reads all that it has to say how it ended.
         store.client.set_terminated(run, "FAILED" if result["status"] == "failed" else "FINISHED")
         store.log(run, _steps(case_dir, result), given)
@@ -67,11 +71,26 @@ class MlflowTracker(Tracker):
         if config_name in self._begun and time.monotonic() > parent.next_update:
             _update(parent)
 
+    def _about(self, case_dir: Path, result: Mapping[str, Any]) -> dict[str, str]:
+        """A case's description, and where Prefect shows it."""
+        links = prefect_links(case_dir)
+        tags = {"sgcad.prefect": links["Prefect flow run"]} if "Prefect flow run" in links else {}
+        page = self.page(case_dir.parent.name, case_dir.name)
+        return tags | {NOTE: case_note(case_dir, result, page.removeprefix("/"))}
+
     def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
         """One span in the case's run; call it after `log_case`."""
         if (config_name, case) in self._runs:
             store, run = self._runs[config_name, case]
             _span(store, run, case, query, generation)
+
+    def page(self, config_name: str, case: str) -> str:
+        """The run's page; of a database that no server is known for, what comes after the server's address."""
+        if (config_name, case) not in self._runs:
+            return ""
+        store, run = self._runs[config_name, case]
+        base = self.uri.rstrip("/") if self.uri.startswith(("http://", "https://")) else ""
+        return f"{base}/#/experiments/{store.experiment_id}/runs/{run}"
 
     def end(self, arm: Arm, finished: bool) -> None:
         """Final means from all cases that the parent has, whichever process logged them; the parent is closed."""
@@ -83,7 +102,7 @@ class MlflowTracker(Tracker):
         if finished:
             mlflow.flush_trace_async_logging()
             _update(parent)
-        parent.end(finished)
+        parent.end("FINISHED" if finished else "FAILED" if arm.fault else "KILLED")
 
     def identity(self, out: Path) -> str:
         """The experiment's number and time of making, from the database itself."""
@@ -104,7 +123,8 @@ class MlflowTracker(Tracker):
 
 def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, float]]:
     """Final figures and the machine's at step 0, attempts at theirs."""
-    steps = {0: case_figures(case_dir, result) | _machine()}
+    figures = case_figures(case_dir, result)
+    steps = {0: headline(figures) | figures | _machine()}  # MLflow's comparison opens on what was logged first
     for step, figures in attempt_figures(case_dir):
         steps.setdefault(step, {}).update({f"attempt_{name}": value for name, value in figures.items()})
     return steps
@@ -125,7 +145,9 @@ def _machine() -> dict[str, float]:
 def _update(parent: Parent) -> None:
     """Read the cases' figures and log their means; the more it costs, the rarer it is done."""
     started = time.monotonic()
-    parent.log_means(means(parent.figures()))
+    found = means(parent.figures())
+    parent.log_means(found)
+    parent.tag({NOTE: arm_note(parent.name, found)})
     now = time.monotonic()
     parent.next_update = now + max(UPDATE_S, (now - started) / UPDATE_SHARE)
 

@@ -7,12 +7,11 @@ neither use nor mend. So it is built under another name and renamed, by one proc
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
+
+from sgcad_core.locks import alone
 
 _BESIDE = ("", "-wal", "-shm", "-journal")
 """What sqlite may leave of one database."""
@@ -38,17 +37,6 @@ def _usable(file: Path) -> None:
         raise IsADirectoryError("it is no file")
     if not os.access(file, os.R_OK | os.W_OK) or not os.access(file.parent, os.W_OK):
         raise PermissionError("it cannot be written")
-
-
-@contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """Hold the folder's lock, which ends with its process and leaves no file."""
-    held = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(held)
 
 
 def _build(file: Path) -> None:

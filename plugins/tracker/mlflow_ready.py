@@ -81,7 +81,7 @@ def reason(fault: BaseException) -> str:
 
 def is_full(fault: BaseException) -> bool:
     """Whether a disk without room is what it comes down to."""
-    return getattr(fault, "errno", None) == errno.ENOSPC or "disk is full" in str(fault)
+    return getattr(fault, "errno", None) == errno.ENOSPC or any(t in str(fault) for t in ("disk is full", "No space"))
 
 
 def remedy(fault: BaseException) -> str:

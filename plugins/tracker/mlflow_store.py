@@ -20,9 +20,11 @@ from pathlib import Path
 from typing import Any
 
 from plugins.tracker import mlflow_ready
-from plugins.tracker.mlflow_database import alone, make_database
+from plugins.tracker.mlflow_database import make_database
+from plugins.tracker.mlflow_ready import ELSEWHERE
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
+from sgcad_core.locks import alone
 
 MAX_VALUE = 500
 """Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
@@ -30,6 +32,9 @@ MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 1000
 """MLflow's limits of a batch, and of a page of runs."""
 LEVEL, CASE, CONFIG, BATCH, PARENT = "sgcad.level", "sgcad.case", "sgcad.config", "sgcad.batch", "mlflow.parentRunId"
 """Tags that runs are found by; the last one is what MLflow's pages nest runs by."""
+
+NOTE, KIND = "mlflow.note.content", "mlflow.experimentKind"
+"""MLflow's tags for the description of a run or an experiment, in markdown, and for what an experiment is about."""
 
 
 @cache
@@ -61,6 +66,7 @@ class Store:
         if not event.contains(Engine, "connect", _fast_commits):
             event.listen(Engine, "connect", _fast_commits)
         logging.getLogger("mlflow").setLevel(logging.WARNING)
+        logging.getLogger("mlflow.system_metrics").setLevel(logging.ERROR)  # statements of a database that is locked
         logging.getLogger("mlflow.store.db.utils").setLevel(logging.CRITICAL)  # tracebacks of what it raises anyway
         try:
             if self._file:
@@ -70,11 +76,11 @@ class Store:
         except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
             if self._file and isinstance(fault, OSError | SQLAlchemyError):
                 mlflow_ready.check_file(self._file)  # says it in plain words, if it finds it too
-            full = mlflow_ready.is_full(fault)
-            way_out = "make room on the disk" if full else "move it away, or set tracker.database=<file>"
+            place = self._file or _no_password(self.uri)
+            if mlflow_ready.is_full(fault):
+                raise ConfigError(f"{place}: {mlflow_ready.reason(fault)}; make room, {ELSEWHERE}") from fault
             raise ConfigError(
-                f"{self._file or _no_password(self.uri)}: cannot be used as MLflow's database ({_first_line(fault)}); "
-                f"{way_out}, or tracker=jsonl"
+                f"{place}: cannot be used as MLflow's database ({_first_line(fault)}); move it away, {ELSEWHERE}"
             ) from fault
         return client
 
@@ -123,7 +129,7 @@ class Store:
         if key not in self.parents:
             _ = self.experiment_id  # made before the lock is taken, which making a database takes as well
             with alone(self._file.parent) if self._file else contextlib.nullcontext():
-                self.parents[key] = Parent(self, self._found_or_made(config, key, params))
+                self.parents[key] = Parent(self, self._found_or_made(config, key, params), config)
         return self.parents[key]
 
     def _found_or_made(self, config: str, key: str, params: Mapping[str, str]) -> str:
@@ -160,13 +166,28 @@ class Store:
             self.client.log_batch(run, metrics=metrics[:room], params=part)
             metrics, entries = metrics[room:], entries[MAX_PARAMS:]
 
+    def tag(self, run: str, tags: Mapping[str, str]) -> None:
+        """Set tags of a run."""
+        from mlflow.entities import RunTag
+
+        self.client.log_batch(run, tags=[RunTag(plain(name), value[: 10 * MAX_VALUE]) for name, value in tags.items()])
+
+    def describe(self, note: str) -> None:
+        """The experiment's description and the pages that it opens on (runs and charts; MLflow would take it for a chat
+        application because of its traces), unless it has them: people set them too."""
+        there = self.client.get_experiment(self.experiment_id).tags
+        for tag, value in ((NOTE, note), (KIND, "custom_model_development")):
+            if tag not in there:
+                self.client.set_experiment_tag(self.experiment_id, tag, value)
+
 
 class Parent:
     """The run of one arm: its cases' runs, and their means under the cases' own names."""
 
-    def __init__(self, store: Store, run: str) -> None:
+    def __init__(self, store: Store, run: str, name: str) -> None:
         self.store = store
         self.run = run
+        self.name = name
         self.tags: dict[str, str] = {}
         self.next_update = 0.0
         self._monitor: Any = None
@@ -209,12 +230,11 @@ class Parent:
 
     def begin(self, about: Mapping[str, str], shared: Mapping[str, str], dataset: Mapping[str, str]) -> None:
         """Running from now on, with tags, those shared with the cases' runs, and the data set."""
-        from mlflow.entities import Dataset, DatasetInput, InputTag, RunTag
+        from mlflow.entities import Dataset, DatasetInput, InputTag
 
         client, self.tags = self.store.client, dict(shared)
         client.update_run(self.run, status="RUNNING")
-        tags = [RunTag(plain(name), value[: 10 * MAX_VALUE]) for name, value in {**about, **shared}.items()]
-        client.log_batch(self.run, tags=tags)
+        self.tag({**about, **shared})
         client.log_inputs(self.run, [DatasetInput(Dataset(**dataset), [InputTag("mlflow.data.context", "evaluation")])])
 
     def watch(self, interval_s: float) -> None:
@@ -235,12 +255,16 @@ class Parent:
         """Last figures of every case."""
         return [run.data.metrics for run in self._newest().values()]
 
-    def end(self, finished: bool) -> None:
-        """Stop watching; FINISHED, or KILLED after an interruption."""
+    def tag(self, tags: Mapping[str, str]) -> None:
+        """Set tags of the arm's run."""
+        self.store.tag(self.run, tags)
+
+    def end(self, status: str) -> None:
+        """Stop watching; FINISHED, KILLED after an interruption, or FAILED where a fault ended the batch."""
         if self._monitor is not None:
             self._monitor.finish()
             self._monitor = None
-        self.store.client.set_terminated(self.run, "FINISHED" if finished else "KILLED")
+        self.store.client.set_terminated(self.run, status)
 
 
 def source_tags() -> dict[str, str]:

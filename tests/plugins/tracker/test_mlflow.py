@@ -11,7 +11,7 @@ from itertools import count
 import pytest
 
 from plugins.tracker.mlflow import MlflowTracker
-from plugins.tracker.mlflow_store import store_of
+from plugins.tracker.mlflow_store import KIND, NOTE, store_of
 from sgcad_core.errors import ConfigError
 from sgcad_core.experiment import Arm, Dataset
 from sgcad_core.records import Generation, Query
@@ -149,6 +149,48 @@ def test_an_interrupted_arm_says_so_until_it_is_resumed(out, tracker):
     assert runs_of(made)[1][0].info.status == "RUNNING"
     made.end(arm(out), finished=True)
     assert runs_of(made)[1][0].info.status == "FINISHED"
+
+
+def test_an_arm_that_a_fault_ended_has_failed(out, tracker):
+    made = tracker()
+    made.begin(arm(out))
+    made.end(arm(out, fault="MissingTool: no netconvert"), finished=False)
+    assert runs_of(made)[1][0].info.status == "FAILED"
+
+
+def test_the_headline_comes_first_and_is_explained_on_every_page(out, tracker):
+    made = tracker()
+    prefect = "http://127.0.0.1:4200/runs/flow-run/1"
+    (out / "kit" / "c1" / "links.json").write_text(json.dumps({"prefect": prefect, "prefect_case": "/runs/task-run/2"}))
+    made.begin(arm(out))
+    account = {"verdict": "lacking", "told": 3, "has": 2, "lacking": 1, "assumed": 0, "items": [
+        {"kind": "lacks", "text": "a *stop* sign", "reason": ""}]}  # fmt: skip
+    log(made, out, "c1", RESULT | {"account": account})
+    made.end(arm(out), finished=True)
+    client, (parent,), children = runs_of(made)
+    for run in (parent, children["c1"]):
+        first = sorted(run.data.metrics)[0]
+        assert first == "0_headline/01_collision_realised"
+        assert run.data.metrics[first] == run.data.metrics["collision_realised"] == 1
+    assert "| `account_lacking` | 1 | things told that the scenario lacks" in parent.data.tags[NOTE]
+    note, page = children["c1"].data.tags[NOTE], made.page("kit", "c1")
+    assert "told 3, in the scenario 2, lacking 1, assumed 0" in note
+    assert r"- lacking: a \*stop\* sign" in note
+    assert f"[report page]({page[1:]}/artifacts/player.html) · [Prefect flow run]({prefect})" in note
+    assert "/runs/task-run/2" not in note
+    assert children["c1"].data.tags["sgcad.prefect"] == prefect
+    experiment = client.get_experiment(parent.info.experiment_id)
+    assert "`0_headline`" in experiment.tags[NOTE]
+    assert experiment.tags[KIND] == "custom_model_development"
+
+
+def test_a_description_that_people_wrote_stays(out, tracker):
+    made = tracker()
+    store = made._store(out)
+    store.client.set_experiment_tag(store.experiment_id, NOTE, "ours")
+    made.begin(arm(out))
+    made.end(arm(out), finished=True)
+    assert store.client.get_experiment(store.experiment_id).tags[NOTE] == "ours"
 
 
 def test_other_parameters_are_another_arm(out, tracker):

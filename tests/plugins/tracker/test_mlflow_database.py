@@ -9,6 +9,7 @@ import time
 
 import pytest
 
+from plugins.tracker import mlflow_store
 from plugins.tracker.mlflow import MlflowTracker
 from plugins.tracker.mlflow_database import make_database
 from plugins.tracker.mlflow_store import Store
@@ -106,3 +107,15 @@ def test_waiting_for_the_lock_ends_with_its_holder(tmp_path):
     holder.stdout.close()
     waiting.join(120)
     assert (tmp_path / "mlflow.db").exists()
+
+
+def test_a_full_disk_is_told_as_such(tmp_path, monkeypatch):
+    from sqlalchemy.exc import OperationalError
+
+    def full(file):
+        raise OperationalError("INSERT", {}, sqlite3.OperationalError("database or disk is full"))
+
+    monkeypatch.setattr(mlflow_store, "make_database", full)
+    store = Store(f"sqlite:///{tmp_path / 'mlflow.db'}", "sgcad")
+    with pytest.raises(ConfigError, match=r"mlflow\.db: there is no room left on the disk; make room, or log"):
+        _ = store.client

@@ -1,0 +1,84 @@
+"""The dozen figures to look at first, of the 170 that a case has: copied to the front of MLflow's lists, explained.
+
+MLflow sorts figures by name, groups charts by what stands before "/", and opens a comparison on the first ones; so the
+copies are called `0_headline/01_collision_realised` and so on. The figures themselves keep their names.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+GROUP = "0_headline"
+HEADLINE: Mapping[str, str] = {
+    "collision_realised": "the told contact is the first one that happens: who, whom, and both areas; more is better",
+    "account_whole": "nothing that was found to be told is lacking in the scenario; more is better",
+    "account_lacking": "things told that the scenario lacks; less is better",
+    "account_told": "things that the report tells, as far as they were read",
+    "account_assumed": "things that nobody told and that had to be chosen; less is better",
+    "generated": "a scenario was written that does what is declared",
+    "refused": "the evidence does not carry a scenario, and it says what lacks; no fault",
+    "exhausted": "the attempts ran out before anything held; less is better",
+    "failed": "the report cannot be read, or a program died; less is better",
+    "near_crash_realised": "a told near crash came as near as declared and nobody touched",
+    "exact_collision_speed_mps": "relative speed as the first two boxes meet, m/s",
+    "exact_delta_v_worst_mps": "the larger change of velocity of both at the contact, m/s, from their masses",
+}
+"""Name -> what it means: of a case, and as a mean of an arm's cases."""
+
+
+def headline(figures: Mapping[str, float]) -> dict[str, float]:
+    """The copies of those that there are."""
+    there = ((number, name) for number, name in enumerate(HEADLINE, 1) if name in figures)
+    return {f"{GROUP}/{number:02d}_{name}": figures[name] for number, name in there}
+
+
+def experiment_note() -> str:
+    """What an experiment's page says about its figures."""
+    lines = [f"| `{name}` | {meaning} |" for name, meaning in HEADLINE.items()]
+    return "\n".join([
+        "An arm (a config over a set of reports) is a run, its cases are the runs in it; an arm's figures are means.",
+        f"Look at the group `{GROUP}` first; every figure is explained in docs/mlflow.md and docs/metrics.md.", "",
+        "| figure | meaning |", "|---|---|", *lines,
+    ])  # fmt: skip
+
+
+def arm_note(config: str, figures: Mapping[str, float]) -> str:
+    """What an arm's page says: its headline with meanings."""
+    rows = [f"| `{name}` | {figures[name]:.4g} | {meaning} |" for name, meaning in HEADLINE.items() if name in figures]
+    head = f"**{_plain(config)}** over {figures.get('cases', 0):.0f} cases; figures are means of the cases."
+    return "\n".join([head, "", "| figure | mean | meaning |", "|---|---|---|", *rows])
+
+
+def case_note(case_dir: Path, result: Mapping[str, Any], page: str) -> str:
+    """What a case's page says: how it ended, what lacks, where to look. `page` is the run's own address."""
+    account = result.get("account") or {}
+    lacks = [item["text"] for item in account.get("items") or () if item["kind"] == "lacks"]
+    lines = [f"**{_plain(result['status'])}** {_plain(str(result.get('reason') or ''))[:500]}".rstrip()]
+    if account.get("told"):
+        told = f"told {account['told']}, in the scenario {account['has']}, lacking {account['lacking']}, " \
+               f"assumed {account['assumed']}"  # fmt: skip
+        lines.append(told)
+    lines += [f"- lacking: {_plain(text)}" for text in lacks[:10]]
+    found = [("report page", f"{page}/artifacts/player.html")] if (case_dir / "player.html").is_file() else []
+    found += [(name, link) for name, link in prefect_links(case_dir).items()]
+    return "\n\n".join(filter(None, ["\n".join(lines), " · ".join(f"[{name}]({link})" for name, link in found)]))
+
+
+def prefect_links(case_dir: Path) -> dict[str, str]:
+    """Where the case is to be seen in Prefect, of its links.json: whole addresses only."""
+    try:
+        kept = json.loads((case_dir / "links.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    names = {"Prefect flow run": "prefect", "Prefect task run": "prefect_case"}
+    links = {name: str(kept.get(key, "")) for name, key in names.items()} if isinstance(kept, dict) else {}
+    return {name: link for name, link in links.items() if re.match(r"https?://[^\s()<>]+$", link)}
+
+
+def _plain(text: str) -> str:
+    """Words as markdown shows them."""
+    return re.sub(r"([\\`*_\[\]<>|#!])", r"\\\1", " ".join(text.split()))
