@@ -8,7 +8,7 @@ export HF_HUB_OFFLINE := 1
 SIDE_BY_SIDE = -n $(or $(WORKERS),logical) --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-fast test-hosts up down check-deploy lint bench bench-decode train-mini qc clean pages
+.PHONY: help setup demo test test-fast test-thorough test-hosts up down check-deploy lint bench bench-decode bench-faults train-mini qc clean pages
 .PHONY: docs docs-serve lock licenses sbom
 
 help: ## list the targets
@@ -30,6 +30,9 @@ demo: setup ## three bundled reports become scenarios; prints where to look and 
 test: setup ## the whole test suite, as many tests at once as there are cores (WORKERS=2)
 	$(BIN)/python -m pytest $(SIDE_BY_SIDE)
 
+test-thorough: setup ## the property tests with many more examples: before a release, or after a change to the planner
+	SGCAD_THOROUGH=1 $(BIN)/python -m pytest tests/sgcad_core/planner tests/sgcad_core/formats $(SIDE_BY_SIDE)
+
 test-fast: setup ## the tests that take no more than seconds
 	$(BIN)/python -m pytest -m "not slow" $(SIDE_BY_SIDE)
 
@@ -48,6 +51,9 @@ bench: setup ## time and share of every stage over the demo reports
 
 bench-decode: setup ## context-aware decoding against greedy, in ratios
 	$(BIN)/python -m benchmarks.decode
+
+bench-faults: setup ## kill -9 at random points, full disks, locked databases; then the same again (KILLS=100 SEED=1)
+	$(BIN)/python -m benchmarks.faults --kills $(or $(KILLS),100) --seed $(or $(SEED),1)
 
 train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); goes on from its checkpoint
 	$(BIN)/python -m mini.train --out mini/train --device $(or $(DEVICE),cpu) --budget $(or $(BUDGET),3600)

@@ -3,8 +3,9 @@
     python -m benchmarks.load [--cases 200] [--database postgresql://user@host/] [--address s3://bucket/place]
 
 Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a PostgreSQL server, and gives them
-what a study gives them a case: three task runs (the case and its two attempts), an MLflow run with figures and
-files, one object and one mark. Tells processor seconds of the server and of the client (they do not depend on
+what a study gives them a case: a task run, one more a step and an artifact, an MLflow run with figures and
+files, one object and one mark. Prefect's server is measured as a command starts its own, as `make up` starts it,
+and as it is by default. Tells processor seconds of the server and of the client (they do not depend on
 who else uses the machine as much as the clock does), wall seconds, and how far the server lagged behind.
 The case is a real one: the bundled report, run once.
 """
@@ -12,6 +13,7 @@ The case is a real one: the bundled report, run once.
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import socket
@@ -19,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Thread
@@ -28,8 +30,22 @@ from typing import Any, NamedTuple
 import httpx
 import psutil
 
+from flows.server import BULK, LEAN
+
 DEMO = Path(__file__).resolve().parent.parent / "docs" / "demo"
 START_S = 300.0
+SERVERS: Mapping[str, Mapping[str, str]] = {"of a command": LEAN, "of make up": BULK, "plain": {}}
+STEPS = (
+    "read",
+    "retrieve[road]",
+    "road[1]",
+    "retrieve[scenario]",
+    "scenario[1]",
+    "simulate",
+    "measure",
+    "draw",
+    "track",
+)
 
 
 class Load(NamedTuple):
@@ -57,7 +73,8 @@ def main() -> None:
         case = real_case(Path(place))
         say(f"{options.cases} cases, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n")
         say("| part | server ms a case | client ms a case | wall ms a case | |\n|---|---|---|---|---|")
-        show(prefect_load(options.cases, options.database, Path(place)))
+        for kind in SERVERS:
+            show(prefect_load(options.cases, options.database, Path(place), case, kind))
         show(mlflow_load(options.cases, options.database, Path(place), case))
         show(storage_load(options.cases, options.address or f"file://{place}/share", case))
 
@@ -155,18 +172,18 @@ def free_port() -> int:
         return int(bound.getsockname()[1])
 
 
-def prefect_load(cases: int, database: str, place: Path) -> Load:
-    """Three task runs a case, on Prefect's server as `make up` starts it."""
+def prefect_load(cases: int, database: str, place: Path, case: Path, kind: str) -> Load:
+    """A case with its steps and artifact, on Prefect's server as one of SERVERS."""
     port = free_port()
     address = f"http://127.0.0.1:{port}/api"
-    environment = {"PREFECT_HOME": str(place / "prefect"), "PREFECT_API_URL": address, "PREFECT_LOGGING_LEVEL": "ERROR",
-                   "PREFECT_SERVER_ANALYTICS_ENABLED": "false", "DO_NOT_TRACK": "1"}  # fmt: skip
+    environment = {"PREFECT_HOME": str(place / kind), "PREFECT_API_URL": address, "PREFECT_LOGGING_LEVEL": "ERROR",
+                   "PREFECT_SERVER_ANALYTICS_ENABLED": "false", "DO_NOT_TRACK": "1", **SERVERS[kind]}  # fmt: skip
     if database:
         url = f"{database.replace('postgresql:', 'postgresql+asyncpg:')}prefect"
         environment["PREFECT_SERVER_DATABASE_CONNECTION_URL"] = url
     command = [sys.executable, "-m", "prefect", "server", "start", "--port", str(port), "--no-ui"]
     with served(command, f"{address}/health", environment, place / "prefect.log") as server:
-        return per_case("Prefect server", server, "prefect", cases, environment, [])
+        return per_case(f"Prefect server, {kind}", server, "prefect", cases, environment, [str(case)])
 
 
 def mlflow_load(cases: int, database: str, place: Path, case: Path) -> Load:
@@ -217,27 +234,34 @@ def tell(note: str = "") -> None:
     os._exit(0)
 
 
-def give_prefect(cases: int) -> None:
-    """A flow run with three task runs a case; ends when the server has them all."""
+def give_prefect(cases: int, case_folder: str) -> None:
+    """A flow run with a task run, one a step and an artifact a case; ends when the server has all task runs."""
     from prefect import flow, task
     from prefect.client.orchestration import get_client
     from prefect.events.worker import EventsWorker
-    from prefect.runtime import flow_run
+    from prefect.runtime import flow_run, task_run
     from prefect.task_runners import ThreadPoolTaskRunner
 
-    from flows.tasks import hush_prefect, reported_attempt
+    from flows.graph import Graph
+    from flows.showing import showing
+    from flows.steps import Step
+    from flows.tasks import hush_prefect
 
     hush_prefect()
+    result = json.loads((Path(case_folder) / "result.json").read_text(encoding="utf-8"))
 
     @task(persist_result=False)
-    def case(number: int) -> None:
-        for name in ("road[1]", "scenario[1]"):
-            reported_attempt.with_options(task_run_name=name)(0, 0.1, "")
+    def case(number: int) -> Graph:
+        graph = Graph(str(flow_run.id), str(task_run.id))
+        for name in STEPS:
+            graph.tell(Step(name, time.time() - 0.1, time.time()))
+        return graph
 
     @flow(name="load", task_runner=ThreadPoolTaskRunner(max_workers=2), persist_result=False)
     def load() -> str:
-        for future in [case.submit(number) for number in range(cases)]:
-            future.wait()
+        with showing(lasting=True) as shown:
+            for future in [case.submit(number) for number in range(cases)]:
+                shown.artifact(Path(case_folder), "load/case", result, future.result())
         return str(flow_run.id)
 
     identity = load()
@@ -245,7 +269,7 @@ def give_prefect(cases: int) -> None:
     sent = time.perf_counter()
     body = {"flow_runs": {"id": {"any_": [identity]}}, "task_runs": {"state": {"type": {"any_": ["COMPLETED"]}}}}
     with get_client(sync_client=True) as client:
-        while client.request("POST", "/task_runs/count", json=body).json() < 3 * cases:
+        while client.request("POST", "/task_runs/count", json=body).json() < (1 + len(STEPS)) * cases:
             if time.perf_counter() - sent > START_S:
                 raise TimeoutError("the server never had all task runs")
             time.sleep(0.1)
@@ -254,8 +278,6 @@ def give_prefect(cases: int) -> None:
 
 def give_mlflow(cases: int, case: str, uri: str) -> None:
     """A run a case through our own tracker."""
-    import json
-
     from sgcad_core.registry import plugin_class
 
     tracker: Any = plugin_class("tracker", "mlflow")(uri=uri, system_metrics_s=0)

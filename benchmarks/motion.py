@@ -28,8 +28,8 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.narrative.facts import CrashFacts
 from sgcad_core.narrative.reading import read
 from sgcad_core.records import Trajectory
+from sgcad_core.units import MPS_PER_MPH
 
-MPH = 0.44704
 DEEP_M = 0.05
 STILL_MPS = 0.2
 """The file's last centimetres are driven evenly to its end (vertices nearer than 0.11 m are not written)."""
@@ -104,7 +104,7 @@ def _vehicle(
         figures.lines.append(f"{case} {motion.actor} ({actor['maneuver']}): {'; '.join(counted)}")
     vehicle = facts.vehicle(motion.actor)
     if vehicle is not None and vehicle.speed_mph and not vehicle.standing:
-        _speed(case, motion, until, vehicle.speed_mph * MPH, figures)
+        _speed(case, motion, until, vehicle.speed_mph * MPS_PER_MPH, figures)
 
 
 def _speed(case: str, motion: Trajectory, until: int | None, told_mps: float, figures: Figures) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from flows.deployments.health import POOL
+from flows.server import BULK
 from sgcad_core import settings
 
 QUIET = {
@@ -53,7 +54,7 @@ def api_of(host: str, port: int) -> str:
 
 def server(home: Path, port: int, host: str = "127.0.0.1", database: str = "") -> Service:
     """Prefect's server; `database` such as postgresql+asyncpg://..., by default sqlite in `home`."""
-    environment = {"PREFECT_HOME": str(home), "PREFECT_UI_API_URL": api_of(host, port), **QUIET}
+    environment = {"PREFECT_HOME": str(home), "PREFECT_UI_API_URL": api_of(host, port), **BULK, **QUIET}
     if database:
         environment["PREFECT_API_DATABASE_CONNECTION_URL"] = database
     command = ("prefect", "server", "start", "--host", host, "--port", str(port))

@@ -21,11 +21,13 @@ from flows import cases, chain, named, sharing, store
 from flows.cases import Case
 from flows.chain import Ending
 from flows.sharing import Sharing
+from flows.steps import OnStep, unheard
 from flows.store import CaseFolder
 from flows.worker import Order
+from sgcad_core import scratch
 from sgcad_core.asking.refine import OnAttempt
 from sgcad_core.config import Config, load
-from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed
 from sgcad_core.interfaces import Backbone
 from sgcad_core.workers import Worker
 
@@ -108,6 +110,7 @@ def batch_over(
             if simulator:
                 simulator.ready()
     out = out.resolve()
+    scratch.clear_left()
     store.check_writable(out)
     for config in configs:
         config.tracker.ready(out)
@@ -182,8 +185,8 @@ class Crew:
         result = None if self.batch.fresh else job.folder.finished(job.digest)
         return Ending(result, reused=True) if result is not None else None
 
-    def finish(self, job: Job, on_attempt: OnAttempt) -> Ending:
-        """Wait for a job, or do it here and now. Raises MissingTool, ConfigError."""
+    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:
+        """Wait for a job, or do it here and now, telling every step. Raises MissingTool, ConfigError."""
         if job.name in self._begun:
             return self._begun[job.name].result()
         if done := self.reusable(job):
@@ -191,10 +194,11 @@ class Crew:
         watched = self._unless_stopped(job, on_attempt)
         with self._places:
             self._check()
-            return chain.run_case(job.config, job.case, self.batch.out, job.digest, watched, sharing=job.sharing)
+            about = job.config, job.case, self.batch.out, job.digest, watched
+            return chain.run_case(*about, sharing=job.sharing, tell=tell)
 
     def began(self, job: Job) -> bool:
-        """Whether the job runs in a worker process (its attempts are then reported when it ends)."""
+        """Whether the job runs in a worker process (its steps are then told when it ends)."""
         return job.name in self._begun
 
     def _in_worker(self, job: Job) -> Ending:
@@ -202,12 +206,21 @@ class Crew:
         worker = self._idle.get()
         try:
             order = Order(job.config.raw, job.config.name, job.case, self.batch.out, job.digest, job.sharing)
-            ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
+            ending = self._answered(worker, order)
         except SimulationFailed as death:
             self._check()
             ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
         finally:
             self._idle.put(worker)
+        return ending
+
+    def _answered(self, worker: Worker, order: Order) -> Ending:
+        """What a worker makes of a case; one that dies gets a successor, since it need not be the report's fault."""
+        try:
+            ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
+        except ProcessDied:
+            self._check()
+            ending = worker.call(order, timeout_s=CASE_LIMIT_S)
         return ending
 
     def _unless_stopped(self, job: Job, on_attempt: OnAttempt) -> OnAttempt:

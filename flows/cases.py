@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,12 +18,14 @@ from pathlib import Path
 
 from sgcad_core import settings
 from sgcad_core.config import Config
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.interfaces import Plugin
-from sgcad_core.report_files import is_regular
+from sgcad_core.opinion import LEARNED, WEIGHTS
+from sgcad_core.report_files import MAX_FILE_BYTES, facts_file, files_below, is_regular
 from sgcad_core.strangers import code_of
 
 TEXTS = {"report.txt", "narrative.txt"}
+CODE = {".py", ".yaml"}
 SUFFIXES = {".txt", ".xml", ".pdf"}
 MAX_NAME_BYTES = 120
 """Of a case's folder name: room for a suffix within the file systems' 255."""
@@ -124,11 +127,16 @@ def config_digest(config: Config) -> str:
         "raw": raw,
         "name": config.name,
         "plugins": {qualified(p): identity(p) for p in _plugins(config)},
-        "files": sorted(set(named_digests(raw))),
+        "files": sorted({*named_digests(raw), *opinion_digests(config)}),
         "package": version("sg-cadvlm"),
         "code": code_digest(asks_model=config.backbone is not None),
     }
     return hashlib.sha256(json.dumps(about, sort_keys=True, default=str).encode()).hexdigest()
+
+
+def opinion_digests(config: Config) -> list[str]:
+    """Of the weights of the learned second reader, where a config wants it."""
+    return [_files_digest([WEIGHTS], WEIGHTS.parent)] if config.second_opinion == LEARNED else []
 
 
 def _plugins(config: Config) -> Iterator[Plugin]:
@@ -174,12 +182,18 @@ def qualified(plugin: Plugin) -> str:
 
 
 def source_digest(source: Path) -> str:
-    """Fingerprint of every file of a report."""
+    """Fingerprint of every file of a report, the facts that people gave among them."""
     try:
-        files = sorted(f for f in source.rglob("*") if f.is_file()) if source.is_dir() else [source]
-    except OSError as fault:  # the reader will say so, and it costs this case alone
+        files = files_below(source) if source.is_dir() else _file_and_facts(source)
+    except (OSError, BadInput) as fault:  # the reader will say so, and it costs this case alone
         return hashlib.sha256(str(fault).encode("utf-8", "surrogateescape")).hexdigest()
-    return _files_digest(files, source)
+    return _files_digest(files, source if source.is_dir() or len(files) == 1 else source.parent, MAX_FILE_BYTES)
+
+
+def _file_and_facts(source: Path) -> list[Path]:
+    """A report that is a file, and what people said of it."""
+    facts = facts_file(source)
+    return [source, facts] if facts.is_file() else [source]
 
 
 @cache
@@ -189,17 +203,25 @@ def _prompts_digest() -> str:
 
 @cache
 def _code_digest() -> str:
-    code = [f for part in ("sgcad_core", "plugins") for f in sorted((settings.ROOT / part).rglob("*.py"))]
+    code = [f for part in ("sgcad_core", "plugins") for f in _sources(settings.ROOT / part)]
     return _files_digest(code, settings.ROOT) + _prompts_digest()
 
 
-def _files_digest(files: Iterable[Path], root: Path) -> str:
+def _sources(package: Path) -> list[Path]:
+    """Modules and the data that they read (rules, vocabulary): an edited wording changes results as code does."""
+    return sorted(f for f in package.rglob("*") if f.suffix in CODE and f.is_file())
+
+
+def _files_digest(files: Iterable[Path], root: Path, most: float = math.inf) -> str:
+    """Of names and contents; of a file over `most` bytes its size."""
     found = hashlib.sha256()
     for file in files:
         found.update(f"\n{file.relative_to(root)}\n".encode("utf-8", "surrogateescape"))
         try:
             if not is_regular(file):  # a pipe or a device never ends
                 raise OSError("no regular file")
+            if file.stat().st_size > most:  # no reader takes it
+                raise OSError(f"{file.stat().st_size} bytes")
             with file.open("rb") as content:
                 found.update(hashlib.file_digest(content, "sha256").digest())
         except OSError as fault:  # the reader will say what is wrong with it

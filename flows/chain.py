@@ -8,37 +8,41 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flows import picture, player, sharing, store
+from flows import person, sharing, store
+from flows.asking import ask_of
 from flows.cases import Case
+from flows.leaving import leave
 from flows.sharing import Sharing
-from flows.view import View
+from flows.steps import OnStep, Step, Steps, unheard
+from sgcad_core.asking.opinion import corrected, seconded
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
+from sgcad_core.edits import Edit
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.execution.judgement import Judgement, judge
-from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
+from sgcad_core.interfaces import RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
+from sgcad_core.opinion import LEARNED
 from sgcad_core.records import (
     Attempt,
     Context,
     CrashReport,
     Evidence,
     Execution,
-    Generation,
     Passage,
-    Query,
     RoadNetwork,
     Scenario,
     Stage,
     StageOutcome,
 )
-from sgcad_core.result import CaseRecord, result_of
+from sgcad_core.result import CaseRecord
+from sgcad_core.revision import heeding
 
 T = TypeVar("T")
 
@@ -47,17 +51,18 @@ T = TypeVar("T")
 class Ending:
     """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done.
 
-    Attempts and calls are those made here and now, without the ones taken from a shelf.
+    Attempts and calls are those made here and now, without the ones taken from a shelf; steps are all.
     """
 
     result: dict[str, Any]
     attempts: tuple[Attempt, ...] = ()
     calls: tuple[Call, ...] = ()
     reused: bool = False
+    steps: tuple[Step, ...] = ()
 
 
 @dataclass
-class _Run:
+class CaseRun:
     """A case on its way: what is known so far, whatever comes next."""
 
     config: Config
@@ -76,6 +81,15 @@ class _Run:
     shared: list[str] = field(default_factory=list)
     failure: str = ""
     trace: str = ""
+    edits: tuple[Edit, ...] | None = None
+    """A person's facts; None: those beside the report."""
+    kept: Mapping[str, person.Kept] = field(default_factory=dict)
+    """By stage, the answer that a model gave to this case before: it is not asked again."""
+    as_read: dict[str, Any] | None = None
+    """The specs before anybody changed a fact, where they are known."""
+    steps: Steps = field(default_factory=Steps)
+    result: dict[str, Any] | None = None
+    """The content of result.json, once somebody who looks at it first has put it together."""
 
     def go(self) -> None:
         """Run the stages; how they ended stands in the fields. Raises MissingTool and ConfigError only."""
@@ -89,42 +103,71 @@ class _Run:
             self.fail(fault)
 
     def _stages(self) -> None:
+        if both := self.written():
+            self._execute(*both)
+
+    def written(self) -> tuple[Scenario, RoadNetwork] | None:
+        """Read the report and write both stages; None where one of them was not written."""
         source = self.case.source
-        self.report = report = self._single("read", lambda: self.config.report_reader.read(source), source.name)
+        read = self._single("read", lambda: self.config.report_reader.read(source), source.name)
+        self.report = report = person.informed(self._seconded(read), source, self.edits)
+        both = self._both(report)
+        if both is None and any(fact.basis == "model" for fact in report.reading.facts):
+            note = "the second opinion led to no scenario: the rules' reading stands"
+            self.report = report = report.model_copy(update={"opinion": None, "notes": (*report.notes, note)})
+            return self._both(report)
+        return both
+
+    def _both(self, report: CrashReport) -> tuple[Scenario, RoadNetwork] | None:
+        """Both stages of a report as it is read."""
         passages = self._passages(report, "road")
         network = self._stage(self._road(report, passages), report, passages)
         if isinstance(network, RoadNetwork):
             passages = self._passages(report, "scenario")
             scenario = self._stage(self._scenario(report, passages, network), report, passages, network)
             if isinstance(scenario, Scenario):
-                self._execute(scenario, network)
+                return scenario, network
+        return None
+
+    def _seconded(self, report: CrashReport) -> CrashReport:
+        """The report with a second opinion of its gist, where the config wants one."""
+        wanted = self.config.second_opinion
+        if not wanted:
+            return report
+        if wanted == LEARNED:
+            return self._single("opinion", lambda: corrected(report), report)
+        return self._single("opinion", lambda: seconded(report, wanted, ask_of(self.config)), report)
 
     def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:
         simulator = self.config.simulator
         self.execution = self._single("simulate", lambda: simulator.execute(scenario, network), scenario, network)
-        with self._clock("measure"):
+        with self.clock("measure"):
             self.metrics = measure(self.execution, scenario)
         if self.config.judge:
-            with self._clock("judge"):
+            with self.clock("judge"):
                 self.judgement = judge(self.config.judge, self.execution, scenario, network)
             self.metrics["judge"] = self.judgement.summary()
 
     def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
         """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
         name = refinement.stage
-        with self._clock(name):
+        with self.clock(name, shown=False):
             turns, known = sharing.refined(self.sharing, refinement, self.case.id, *content)
+        for number in range(1, known + 1):
+            self.steps.taken(f"{name}[{number}]")
         self.seconds[name] = sum(turn.attempt.seconds for turn in turns)
         self.calls += [call for turn in turns[known:] for call in turn.calls]
         self.fresh += [turn.attempt for turn in turns[known:]]
         self.shared += [name] if known == len(turns) else []
-        self.outcomes[name] = outcome = outcome_of(name, turns)
+        outcome = outcome_of(name, turns)
+        self.outcomes[name] = outcome = self.kept[name].among_others(outcome) if name in self.kept else outcome
         return outcome.artifact if outcome.status == "written" else None
 
     def _single(self, step: str, compute: Callable[[], T], *content: Any) -> T:
         """A step without attempts."""
-        with self._clock(step):
+        with self.clock(step) as state:
             value, seconds, known = sharing.timed(self.sharing, step, compute, self.case.id, *content)
+            state += ["Cached"] if known else []
         self.seconds[step] = seconds
         self.shared += [step] if known else []
         return value
@@ -146,7 +189,7 @@ class _Run:
         )
 
     def _passages(self, report: CrashReport, stage: str) -> tuple[Passage, ...]:
-        with self._clock("retrieve"):
+        with self.steps.during(f"retrieve[{stage}]"), self.clock("retrieve", shown=False):
             return self.config.retriever.retrieve(report.narrative, stage)
 
     def _refinement(
@@ -159,22 +202,24 @@ class _Run:
     ) -> Refinement:
         return Refinement(
             stage=stage,
-            write=write,
-            validators=self.config.validators_of(stage),
+            write=person.laid_over(write, report, net, writer),
+            validators=heeding(self.config.validators_of(stage), report.edits),
             evidence_of=lambda generation: Evidence(report=report, network=net, generation=generation),
-            ask=ask_of(self.config) if writer.asks_model else None,
-            max_attempts=self.config.max_attempts,
-            on_attempt=self.on_attempt,
+            ask=(self.kept[stage].ask if stage in self.kept else ask_of(self.config)) if writer.asks_model else None,
+            max_attempts=1 if stage in self.kept else self.config.max_attempts,
+            on_attempt=lambda name, turn: self.on_attempt(name, lambda: self.steps.attempt(name, turn)),
             case=self.case.id,
             show_findings=self.config.show_findings,
             hold_findings=self.config.hold_findings,
         )
 
     @contextmanager
-    def _clock(self, step: str) -> Iterator[None]:
+    def clock(self, step: str, shown: bool = True) -> Iterator[list[str]]:
+        """Add the time of what is done within to a step's, which is told unless it is `shown` otherwise."""
         started = time.perf_counter()
         try:
-            yield
+            with ExitStack() as told:
+                yield told.enter_context(self.steps.during(step)) if shown else []
         finally:
             self.seconds[step] = self.seconds.get(step, 0.0) + time.perf_counter() - started
 
@@ -183,74 +228,26 @@ class _Run:
         notes = self.report.notes if self.report else ()
         reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
-        return CaseRecord(*about, reading, self.judgement, bool(self.report and self.report.diagrams))
+        places = self.report.places if self.report else ()
+        return CaseRecord(*about, reading, self.judgement, bool(self.report and self.report.diagrams), places)
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Attempts of all stages in order."""
         return tuple(a for outcome in self.outcomes.values() for a in outcome.attempts)
 
-    def leave(self, folder: Path) -> dict[str, Any]:
-        """Write the case's files into a folder, result.json last; the result."""
-        record = self.record()
-        store.write_report(folder, self.report)
-        store.write_attempts(folder, self.attempts())
-        if record.network:
-            store.write_network(folder, record.network)
-        if record.scenario:
-            store.write_scenario(folder, record.scenario)
-        if self.execution:
-            store.write_trajectories(folder / "trajectories.csv", self.execution.trajectories)
-        if self.metrics is not None:
-            self._hand_over(folder, record)
-            store.write_json(folder / "metrics.json", self.metrics)
-        if self.trace:
-            (folder / "error.txt").write_text(self.trace, encoding="utf-8", errors="replace")
-        self._draw(folder, record)
-        result = result_of(self.record())
-        if self.sharing:
-            result["shared"] = self.shared
-        store.write_json(folder / "result.json", result)
-        return result
-
-    def _hand_over(self, folder: Path, record: CaseRecord) -> None:
-        """What the contact was like, and what the config's drivers made of it (`drive`), into the metrics."""
-        if self.metrics is None or not (
-            record.scenario and record.network and record.network.net_xml and self.execution
-        ):
-            return
-        from flows.drives import stage
-
-        with self._clock("measure"):
-            self.metrics["exact"] |= stage.contact(record)
-        if self.config.drive:
-            with self._clock("drive"):
-                self.metrics["drive"] = stage.driven(self.config.drive, record, folder)
-
-    def _draw(self, folder: Path, record: CaseRecord) -> None:
-        """player.html and picture.png of an executed case."""
-        if record.network and record.scenario and record.execution and self.report:
-            with self._clock("draw"):
-                view = View.of(record, self.report, self.metrics or {}, result_of(record))
-                (folder / "player.html").write_text(player.page(view), encoding="utf-8")
-                (folder / "picture.png").write_bytes(picture.png(view))
+    def read_alone(self) -> dict[str, Any] | None:
+        """The specs that the case would have if nobody had said anything; None where nobody did."""
+        if self.as_read is None and self.report and self.report.edits:
+            alone = CaseRun(self.config, self.case, run_at_once, edits=(), kept=person.kept_in(self.outcomes))
+            with suppress(SgcadError):
+                alone.written()
+            return person.specs_of(alone.record())
+        return self.as_read
 
     def fail(self, fault: Exception) -> None:
         """Make this a failed case whose reason is a fault that nobody foresaw."""
         self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
         self.trace = "".join(traceback.format_exception(fault))
-
-
-def ask_of(config: Config) -> Ask:
-    """How writers of this config speak to its model; a later attempt draws with another seed."""
-    backbone, decoder = config.backbone, config.decoder
-    if backbone is None or decoder is None:  # config.build refuses this pairing
-        lack = "backbone" if backbone is None else "decoder"
-        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}: name one, as mini.yaml does")
-
-    def ask(context: Context, query: Query) -> Generation:
-        return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)
-
-    return ask
 
 
 def run_case(
@@ -261,21 +258,23 @@ def run_case(
     on_attempt: OnAttempt = run_at_once,
     *,
     sharing: Sharing | None = None,
+    tell: OnStep = unheard,
 ) -> Ending:
     """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
-    run = _Run(config, case, on_attempt, sharing)
+    run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
     run.go()
-    result = _leave(run, store.CaseFolder(out, config.name, case.id), digest)
-    return Ending(result, tuple(run.fresh), tuple(run.calls))
+    result = leave_run(run, store.CaseFolder(out, config.name, case.id), digest)
+    return Ending(result, tuple(run.fresh), tuple(run.calls), steps=tuple(run.steps.done))
 
 
 def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
     """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
-    run = _Run(config, case, run_at_once, failure=reason)
-    return Ending(_leave(run, store.CaseFolder(out, config.name, case.id), digest))
+    run = CaseRun(config, case, run_at_once, failure=reason)
+    return Ending(leave_run(run, store.CaseFolder(out, config.name, case.id), digest))
 
 
-def _leave(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
+def leave_run(run: CaseRun, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
+    """Write the folder of a case that has gone; its result. Raises ConfigError: it cannot be written."""
     try:
         return _write(run, folder, digest)
     except OSError as fault:
@@ -284,15 +283,16 @@ def _leave(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
             "run again to go on where it stopped"
         ) from fault
     except Exception as fault:  # noqa: BLE001 - what cannot be drawn or written down costs one case, not the batch
-        bare = _Run(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
+        bare = CaseRun(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
         bare.fail(fault)
         return _write(bare, folder, digest)
 
 
-def _write(run: _Run, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
+def _write(run: CaseRun, folder: store.CaseFolder, digest: str) -> dict[str, Any]:
     """Write the folder. A failed case gets no digest that matches: running again tries it again."""
     with folder.writing() as partial:
-        result = run.leave(partial)
+        result = leave(run, partial)
         mark = digest if result["status"] != "failed" else ""
         (partial / store.DIGEST).write_text(mark, encoding="utf-8")
+        (partial / person.SOURCE).write_text(str(run.case.source.resolve()), encoding="utf-8", errors="surrogateescape")
     return result

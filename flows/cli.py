@@ -1,4 +1,4 @@
-"""The command line: `sgcad run | evaluate | play | study | table | report | plugins | index | check | explain`.
+"""The command line: `sgcad run | evaluate | revise | desk | play | study | table | report | plugins | check ...`.
 
 Exit codes: 0 done (a refusal included), 1 a case failed or was exhausted, 2 bad input or configuration and
 nothing was started, 130 interrupted. Heavy libraries are imported inside the commands, so that --help is
@@ -11,16 +11,20 @@ import os
 import signal
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
+from flows.desk_commands import desk_app
 from flows.drives.commands import drive, vary
 from flows.index import index_app
 from flows.plugin_commands import plugins_app
 from flows.results.commands import report, score, table
+from flows.revising_commands import revise
+from flows.terminal import escape_plain
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
@@ -40,6 +44,7 @@ app = typer.Typer(
 )
 app.add_typer(plugins_app, name="plugins")
 app.add_typer(index_app, name="index")
+app.add_typer(desk_app, name="desk")
 
 Configs = Annotated[list[Path] | None, typer.Option("--config", "-c", help="A YAML; may be given several times.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="key=value, such as decoder.alpha=0.3.")]
@@ -213,7 +218,7 @@ def explain(
     """What was read of a report: each sentence with its facts, what follows from them, what is assumed."""
     from flows.explain import explain as account
 
-    typer.echo(account(case))
+    typer.echo(escape_plain(account(case)))
 
 
 @app.command()
@@ -229,6 +234,7 @@ app.command()(vary)
 app.command()(table)
 app.command()(report)
 app.command()(score)
+app.command()(revise)
 
 
 def main() -> None:
@@ -245,14 +251,12 @@ def guarded(command: Callable[[], object]) -> None:
     except KeyboardInterrupt:
         _interrupted()
     except Exception as fault:  # noqa: BLE001 - the command line's edge
-        import traceback
-
         traceback.print_exception(fault)
         _end(f"unexpected {type(fault).__name__}: {fault}; `sgcad doctor` may tell why", 1)
 
 
 def _end(message: str, code: int) -> None:
-    sys.stderr.write(f"sgcad: error: {message}\n")
+    sys.stderr.write(f"sgcad: error: {escape_plain(message)}\n")
     _leave(code)
 
 

@@ -5,6 +5,7 @@ Knows SUMO's .net.xml; metres, x east, y north; nothing of pixels or colors but 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -40,12 +41,25 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """A sign or an arrow at a lane's end: where, which way traffic goes there (radians), an arrow's directions."""
+
+    kind: Literal["signal", "stop", "arrow"]
+    x_m: float
+    y_m: float
+    heading_rad: float
+    directions: str = ""
+
+
+@dataclass(frozen=True)
 class Drawing:
-    """Everything painted, from the ground up."""
+    """Everything painted, from the ground up, and what stands beside it; `crossings` are walked along."""
 
     areas: tuple[Floats, ...]
     strips: tuple[Strip, ...]
     lines: tuple[Line, ...]
+    crossings: tuple[Strip, ...] = ()
+    marks: tuple[Mark, ...] = ()
 
 
 def drawing_of(net_xml: str) -> Drawing:
@@ -54,7 +68,10 @@ def drawing_of(net_xml: str) -> Drawing:
     strips = [Strip(ln.shape, ln.width_m, ln.allows_cars) for e in graph.edges.values() for ln in e.lanes]
     strips += [Strip(c.via_shape, _width(graph, c.from_edge, c.from_lane), True) for c in graph.connections]
     lines = [line for edge in graph.edges.values() for line in _edge_lines(edge, graph)]
-    return Drawing(tuple(_areas(root)), tuple(strips), tuple(lines + _stop_lines(root, graph)))
+    lines += _stop_lines(root, graph)
+    return Drawing(
+        tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph))
+    )
 
 
 def _areas(root: Any) -> list[Floats]:
@@ -101,3 +118,50 @@ def _across(lane: Lane) -> Floats:
     half = np.array([-along[1], along[0]]) * (lane.width_m / 2 - 0.2)
     place = end - along * 0.5
     return np.array([place - half, place + half])
+
+
+# ------------------------------------------------------------------ signs, arrows, crosswalks
+ARROW_M, ARROW_LANES = 7.0, 2
+"""An arrow lies so far before the end of its lane, where a road has so many lanes for cars one way."""
+BESIDE_M = 1.2
+"""A sign stands so far to the right of the outermost lane."""
+STOPPED = set("sw")
+"""SUMO's states of connections behind a stop sign: one way, all ways."""
+
+
+def _crossings(root: Any) -> Iterator[Strip]:
+    for edge in root.iterfind("edge[@function='crossing']"):
+        for lane in edge.iterfind("lane"):
+            points = np.array([[float(v) for v in p.split(",")[:2]] for p in lane.get("shape", "").split()])
+            if len(points) > 1:
+                yield Strip(points, float(lane.get("width", "3")), False)
+
+
+def _marks(root: Any, graph: LaneGraph) -> Iterator[Mark]:
+    """A signal or a stop sign a road's end, as its connections are controlled; an arrow a lane."""
+    ways: dict[str, dict[int, set[str]]] = {}
+    control: dict[str, Literal["signal", "stop"]] = {}
+    for c in root.iterfind("connection"):
+        source = c.get("from", "")
+        if source in graph.edges:
+            ways.setdefault(source, {}).setdefault(int(c.get("fromLane", "0")), set()).add(c.get("dir", "").lower())
+            if c.get("tl"):
+                control[source] = "signal"
+            elif c.get("state") in STOPPED:
+                control[source] = "stop"
+    for source, lanes in ways.items():
+        edge = graph.edges[source]
+        if source in control and edge.car_lanes:
+            yield _mark(control[source], edge.car_lanes[0], 0.5, edge.car_lanes[0].width_m / 2 + BESIDE_M)
+        cars = [lane for lane in edge.car_lanes if len(edge.car_lanes) >= ARROW_LANES and lane.index in lanes]
+        if set().union(*lanes.values()) - {"s"}:
+            yield from (_mark("arrow", lane, ARROW_M, 0.0, "".join(sorted(lanes[lane.index]))) for lane in cars)
+
+
+def _mark(
+    kind: Literal["signal", "stop", "arrow"], lane: Lane, before_m: float, right_m: float, directions: str = ""
+) -> Mark:
+    end, before = lane.shape[-1], lane.shape[-2]
+    along = (end - before) / max(float(np.hypot(*(end - before))), 1e-9)
+    x, y = end - along * before_m + np.array([along[1], -along[0]]) * right_m
+    return Mark(kind, float(x), float(y), float(np.arctan2(along[1], along[0])), directions)

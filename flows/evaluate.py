@@ -21,15 +21,20 @@ from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settin
 from flows import cases, tracking
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
 from flows.chain import Ending
+from flows.showing import Showing, showing, shows_every_step
 from flows.tasks import Board, case_task, hush_prefect, plain, threads
 from flows.tracking import OnEnding
 
+MOST_NAMED = 3
+"""Configs that the name of a flow run names."""
 DRAIN_S, STOP_S = 60.0, 2.0
 """How long the last states may take to reach the server, at an ordinary end and at Ctrl-C."""
 
 
-def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> None:
-    """Run a begun batch as one flow run. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = False) -> None:
+    """Run a batch as one flow run. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+
+    Where the server is `lasting` the crew begins here, so that no case began before the flow run that shows it.
 
     Returns when the server has every state: they travel as events in the background, and a server of our own
     ends with the command. Prefect's heartbeat is off: its thread costs every flow a second, and a person
@@ -39,13 +44,21 @@ def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding)
     run: list[tuple[str, int]] = []
     try:
         with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
-            flow_of = _flow(batch, plan, crew, on_ending, run)
+            flow_of = _flow(batch, plan, crew, on_ending, run, lasting)
             flow_of([c.name for c in batch.configs], len(batch.cases), str(batch.out))
     finally:
         patience = STOP_S if crew.stopping.is_set() else DRAIN_S
         EventsWorker.drain_all(timeout=patience)
     for identity, task_runs in run:
         _settle(identity, task_runs, patience)
+
+
+def run_name(batch: Batch) -> str:
+    """What a flow run does, in a few words: "template over 12 reports"."""
+    configs = ", ".join(config.name for config in batch.configs[:MOST_NAMED])
+    more = f" and {len(batch.configs) - MOST_NAMED} more" if len(batch.configs) > MOST_NAMED else ""
+    reports = batch.cases[0].id if len(batch.cases) == 1 else f"{len(batch.cases)} reports"
+    return f"{configs}{more} over {reports}"
 
 
 def _settle(identity: str, task_runs: int, patience: float) -> None:
@@ -60,33 +73,39 @@ def _settle(identity: str, task_runs: int, patience: float) -> None:
             time.sleep(0.2)
 
 
-def _flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]]) -> Any:
+def _flow(
+    batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]], lasting: bool
+) -> Any:
     """The flow of one batch; its parameters are for people to read. Its id and task runs go into `run`."""
     runner = threads(batch.jobs)
 
-    @flow(name=batch.flow, flow_run_name=plain(batch.title) or None, task_runner=runner, persist_result=False)
+    @flow(
+        name=batch.flow, flow_run_name=plain(batch.title or run_name(batch)), task_runner=runner, persist_result=False
+    )
     def evaluate(configs: list[str], cases: int, out: str) -> None:
-        task_runs = drive(plan, crew, on_ending)
+        if lasting:
+            crew.begin(plan)
+        task_runs = drive(plan, crew, on_ending, lasting)
         run.append((str(flow_run.id), task_runs))
 
     return evaluate
 
 
-def drive(plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> int:
-    """Submit every job and track it as it ends; how many task runs that were. Call it inside a flow run."""
-    board = Board({job.name: job for job in plan}, crew)
+def drive(plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = True) -> int:
+    """Submit every job, track and show it as it ends; how many task runs that were. Call it inside a flow run."""
+    board = Board({job.name: job for job in plan}, crew, every=shows_every_step())
     task = case_task(board)
     submitted = {task.submit(job.name): job for job in plan}
     try:
-        with tracking.following(plan):
-            _follow(board, submitted, on_ending)
+        with tracking.following(plan), showing(lasting) as shown:
+            _follow(board, submitted, on_ending, shown)
     except BaseException:
         crew.stop()
         raise
-    return len(plan) + sum(len(ending.attempts) for ending in board.endings.values())
+    return len(plan) + board.steps
 
 
-def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding) -> None:
+def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding, shown: Showing) -> None:
     for done in as_completed(list(submitted)):
         if board.fatal:
             raise board.fatal
@@ -94,10 +113,10 @@ def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding) -> Non
         if job.name not in board.endings:
             done.result()  # the task itself crashed: Prefect's own fault, said as it is
         ending = board.endings[job.name]
-        on_ending(job, ending, tracking.track_safely(job, ending))
+        on_ending(job, ending, shown.case(job, ending, board.graphs.get(job.name)))
 
 
-@flow(name="evaluate-deployed", task_runner=threads(MAX_JOBS), persist_result=False)
+@flow(name="evaluate-deployed", flow_run_name="evaluate {folders}", task_runner=threads(MAX_JOBS), persist_result=False)
 def evaluate_flow(
     folders: list[str],
     configs: list[str] | None = None,

@@ -61,7 +61,8 @@ def _rows(facts: Iterator[Fact] | Sequence[Fact]) -> list[str]:
 
 
 def _shown(fact: Fact) -> str:
-    return ", ".join(fact.value) if isinstance(fact.value, tuple) else str(fact.value)
+    told = ", ".join(fact.value) if isinstance(fact.value, tuple) else str(fact.value)
+    return f"{told} (assumed)" if fact.status == "default" else told
 
 
 def _ground(fact: Fact) -> str:

@@ -12,6 +12,8 @@ from typing import Annotated, Any
 
 import typer
 
+from flows.terminal import escape_plain
+
 DEFAULT_INDEX = Path("knowledge")
 SKIPPED = "skipped.txt"
 
@@ -76,7 +78,7 @@ def search(
     retriever = retriever_of(out, base_url=base_url, **named)
     hits = retriever.search_checked(text, count, kind or [], task)
     for number, hit in enumerate(hits, 1):
-        typer.echo(f"{number}. [{hit.kind}] {hit.id}  {hit.score:.4f}\n{hit.text}\n")
+        typer.echo(escape_plain(f"{number}. [{hit.kind}] {hit.id}  {hit.score:.4f}\n{hit.text}\n"))
     if not hits:
         typer.echo("nothing found")
 

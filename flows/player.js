@@ -1,5 +1,4 @@
-"use strict";
-(() => {
+// The stage: what is drawn, when, and how one moves about. player_tools.js and player_words.js go on in the same function.
   const $ = (id) => document.getElementById(id);
   const data = JSON.parse($("data").textContent);
   const canvas = $("view"), ink = canvas.getContext("2d");
@@ -9,12 +8,18 @@
   const moment = contact || closest, momentStep = moment ? moment.t_s / step : null, contactStep = contact ? momentStep : null;
   const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d" };
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
+  const seated = parent !== window && /[#&]embed\b/.test(location.hash);   // in the desk: the stage alone, which says what is pointed at
+  document.body.classList.toggle("seated", seated);
   let lit = new Set();                                   // things pointed at: "V1", "road main", "contact"
+  const layer = { paths: true, labels: true, rest: true, signs: true, names: true, assumed: true };
+  let other = null, beside = false, measured = null;     // another run, whether it has a half of its own, two points in metres
+  let pane = { left: 0, wide: 0, actors: data.actors };  // the half that is drawn into
   let now = 0, playing = false, before = 0, follow = false, box = { x: 0, y: 0, scale: 4 };
 
   // ---------------------------------------------------------------- view
   const size = () => [canvas.clientWidth, canvas.clientHeight];
-  const toScreen = (x, y) => { const [w, h] = size(); return [w / 2 + (x - box.x) * box.scale, h / 2 - (y - box.y) * box.scale]; };
+  const toScreen = (x, y) => { const h = size()[1]; return [pane.left + pane.wide / 2 + (x - box.x) * box.scale, h / 2 - (y - box.y) * box.scale]; };
+  function toGround(px, py) { const [w, h] = size(), wide = beside && other ? w / 2 : w; return [box.x + ((px % wide) - wide / 2) / box.scale, box.y - (py - h / 2) / box.scale]; }
   function fit() {
     const xs = data.actors.flatMap((a) => a.x), ys = data.actors.flatMap((a) => a.y);
     if (!xs.length) return;
@@ -34,7 +39,7 @@
 
   // ---------------------------------------------------------------- motion
   function pose(actor, at) {
-    const k = Math.min(Math.floor(at), last), n = Math.min(k + 1, last), u = at - k;
+    const end = actor.x.length - 1, k = Math.min(Math.floor(at), end), n = Math.min(k + 1, end), u = Math.min(at - k, 1);
     let turn = actor.heading[n] - actor.heading[k];
     turn = Math.atan2(Math.sin(turn), Math.cos(turn));
     return { x: actor.x[k] + u * (actor.x[n] - actor.x[k]), y: actor.y[k] + u * (actor.y[n] - actor.y[k]),
@@ -58,17 +63,86 @@
         trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? asphalt : COLOR.path; ink.stroke();
       }
     }
+    for (const [width, flat] of data.drawing.crossings || []) {   // bars across the way that is walked
+      trace(flat); ink.lineWidth = width; ink.strokeStyle = COLOR.edge; ink.setLineDash([0.5, 0.6]); ink.stroke();
+    }
+    ink.setLineDash([]);
     for (const [style, flat] of data.drawing.lines) {
       trace(flat); ink.lineWidth = Math.max(WIDTH_M[style], 0.9 / box.scale); ink.strokeStyle = COLOR[style];
       ink.setLineDash(style === "lane" ? [3, 6] : []); ink.stroke();
     }
     ink.setLineDash([]);
   }
+  function arrow(directions) {                           // painted ahead along x: one stem, a head each way
+    ink.beginPath(); ink.moveTo(-2, 0); ink.lineTo(0.6, 0);
+    for (const way of directions) {
+      const turn = { s: 0, l: Math.PI / 2, r: -Math.PI / 2, t: Math.PI * 0.95 }[way];
+      if (turn === undefined) continue;
+      const x = 0.6 + 1.1 * Math.cos(turn), y = 1.1 * Math.sin(turn), dx = Math.cos(turn), dy = Math.sin(turn);
+      ink.moveTo(0.6, 0); ink.lineTo(x, y);
+      ink.moveTo(x - 0.5 * dx + 0.35 * dy, y - 0.5 * dy - 0.35 * dx); ink.lineTo(x, y); ink.lineTo(x - 0.5 * dx - 0.35 * dy, y - 0.5 * dy + 0.35 * dx);
+    }
+    ink.strokeStyle = COLOR.edge; ink.lineWidth = 0.22; ink.lineCap = "butt"; ink.stroke();
+  }
+  function drawMarks() {
+    const big = Math.max(1, 9 / (box.scale * 1.1));        // a sign is at least some pixels high
+    for (const [kind, x, y, heading, directions] of data.drawing.marks || []) {
+      ink.save(); ink.translate(x, y); ink.rotate(heading);
+      if (kind === "arrow") { if (box.scale > 2.5) arrow(directions); }
+      else {
+        ink.scale(big, big); ink.lineWidth = 0.14; ink.strokeStyle = "#fff"; ink.beginPath();
+        if (kind === "stop") {
+          for (let i = 0; i < 8; i++) ink[i ? "lineTo" : "moveTo"](0.75 * Math.cos((i + 0.5) * Math.PI / 4), 0.75 * Math.sin((i + 0.5) * Math.PI / 4));
+          ink.closePath(); ink.fillStyle = "#c1121f"; ink.fill(); ink.stroke();
+        } else {
+          ink.roundRect(-1.1, -0.45, 2.2, 0.9, 0.25); ink.fillStyle = "#1d2329"; ink.fill(); ink.stroke();
+          ["#e5383b", "#ffb703", "#2dc653"].forEach((c, i) => { ink.beginPath(); ink.arc(0.68 - 0.68 * i, 0, 0.24, 0, 7); ink.fillStyle = c; ink.fill(); });
+        }
+      }
+      ink.restore();
+    }
+  }
+  function placesOf(road) {                              // points along a road's lanes that are in view, in pixels
+    const h = size()[1], found = [];
+    for (const [, cars, flat, name] of data.drawing.strips) {
+      if (name !== road || !cars) continue;
+      for (let i = 2; i < flat.length; i += 2) {
+        for (let u = 0; u <= 1; u += 0.05) {
+          const [x, y] = toScreen(flat[i - 2] + u * (flat[i] - flat[i - 2]), flat[i - 1] + u * (flat[i + 1] - flat[i - 1]));
+          if (x > pane.left + 70 && x < pane.left + pane.wide - 70 && y > 24 && y < h - 24) found.push([x, y]);
+        }
+      }
+    }
+    return found;
+  }
+  function drawNames() {                                 // a road's name on it, as far from the vehicles as it is in view
+    const busy = pane.actors.map((a) => { const p = pose(a, now); return toScreen(p.x, p.y); });
+    ink.font = "600 11px system-ui, sans-serif"; ink.textAlign = "center"; ink.textBaseline = "middle";
+    for (const road of new Set(data.drawing.strips.map((s) => s[3]).filter(Boolean))) {
+      const guess = (data.facts[road] || []).filter((f) => f.status === "default").length, name = (data.facts[road] || []).find((f) => f.name === "name");
+      const text = `${road.replace(/^road /, "")}${name ? ` (${name.value})` : ""} road${guess && layer.assumed ? " · partly assumed" : ""}`;
+      const away = ([x, y]) => Math.min(...busy.map(([u, v]) => Math.hypot(x - u, y - v)), 1e6), wide = ink.measureText(text).width / 2 + 8;
+      const best = placesOf(road).reduce((a, b) => !a || away(b) > away(a) + 1 ? b : a, null);
+      if (!best) continue;
+      const [x, y] = best;
+      ink.fillStyle = "rgba(255,255,255,.82)"; ink.strokeStyle = guess && layer.assumed ? "#59636c" : "rgba(0,0,0,0)"; ink.setLineDash([4, 3]); ink.lineWidth = 1.5;
+      ink.beginPath(); ink.roundRect(x - wide, y - 9, 2 * wide, 18, 5); ink.fill(); ink.stroke(); ink.setLineDash([]);
+      ink.fillStyle = "#3b444c"; ink.fillText(text, x, y);
+    }
+  }
+  function outline(actor, p) { ink.translate(p.x, p.y); ink.rotate(p.heading); ink.beginPath(); ink.roundRect(-actor.length_m / 2, -actor.width_m / 2, actor.length_m, actor.width_m, 0.3); }
+  function drawGhost(actor, p, dash, alpha) {             // an outline: where one comes to rest, or is in another run
+    ink.save(); outline(actor, p); ink.globalAlpha = alpha; ink.strokeStyle = actor.color; ink.lineWidth = 2 / box.scale;
+    ink.setLineDash(dash.map((v) => v / box.scale)); ink.fillStyle = actor.color; ink.stroke(); ink.globalAlpha = alpha * 0.18; ink.fill(); ink.restore();
+  }
+  const restOf = (actor) => pose(actor, actor.x.length - 1);
+  const inRun = (run) => data.actors.flatMap((a) => { const found = run.actors.find((b) => b.id === a.id); return found ? [{ ...a, ...found }] : []; });
+  const assumedOf = (id) => (data.facts[id] || []).filter((f) => f.status === "default");
   function drawPath(actor) {
-    const k = Math.floor(now);
+    const k = Math.floor(now), last = actor.x.length - 1;
     for (const [from, to, alpha, width] of [[0, last, 0.6, 2], [0, k, 0.95, 3]]) {
       ink.beginPath();
-      for (let i = from; i <= to; i++) ink[i > from ? "lineTo" : "moveTo"](actor.x[i], actor.y[i]);
+      for (let i = from; i <= Math.min(to, last); i++) ink[i > from ? "lineTo" : "moveTo"](actor.x[i], actor.y[i]);
       ink.globalAlpha = alpha; ink.strokeStyle = actor.color; ink.lineWidth = width / box.scale; ink.lineCap = "round";
       ink.setLineDash(to === last && from === 0 && alpha < 0.7 ? [6 / box.scale, 6 / box.scale] : []); ink.stroke();
     }
@@ -81,7 +155,8 @@
     if (actor.type === "pedestrian") ink.arc(0, 0, Math.max(l, w) / 2, 0, 7); else ink.roundRect(-l / 2, -w / 2, l, w, Math.min(w * 0.22, 0.5));
     if (lit.has(actor.id)) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 9 / box.scale; ink.stroke(); }
     ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = thin * 1.5;
-    ink.shadowColor = "rgba(0,0,0,.45)"; ink.shadowBlur = 7; ink.fill(); ink.shadowBlur = 0; ink.stroke();
+    if (layer.assumed && assumedOf(actor.id).length) ink.setLineDash([5 / box.scale, 4 / box.scale]);   // told: a whole outline
+    ink.shadowColor = "rgba(0,0,0,.45)"; ink.shadowBlur = 7; ink.fill(); ink.shadowBlur = 0; ink.stroke(); ink.setLineDash([]);
     if (!["pedestrian", "object", "trailer"].includes(actor.type) && w > 1) {
       const glass = l / 2 - Math.min(l * 0.3, 1.9);
       ink.fillStyle = "rgba(15,25,35,.62)"; ink.beginPath();                       // windshield: which way is front
@@ -94,9 +169,9 @@
   function labelPlace(actor) {                           // beside the box, away from the others where they are near
     const p = pose(actor, now), [x, y] = toScreen(p.x, p.y), lift = Math.min(actor.length_m * box.scale * 0.5, 40) + 16;
     let dx = 0, dy = 0;
-    for (const other of data.actors) {
-      const q = pose(other, now), [u, v] = toScreen(q.x, q.y), gap = Math.hypot(x - u, y - v);
-      if (other !== actor && gap < 90) { dx += (x - u) / (gap + 1); dy += (y - v) / (gap + 1); }
+    for (const one of pane.actors) {
+      const q = pose(one, now), [u, v] = toScreen(q.x, q.y), gap = Math.hypot(x - u, y - v);
+      if (one !== actor && gap < 90) { dx += (x - u) / (gap + 1); dy += (y - v) / (gap + 1); }
     }
     const far = Math.hypot(dx, dy);
     return far > 0.2 ? [x + (lift * dx) / far, y + (lift * dy) / far] : [x, y - lift];
@@ -110,9 +185,9 @@
     ink.fillStyle = "#fff"; ink.fillText(actor.id, x, y + 0.5);
   }
   function drawContact() {
-    if (!contact || contact.x === undefined) return;
+    if (!contact || contact.x === undefined || pane.actors !== data.actors) return;
     const [x, y] = toScreen(contact.x, contact.y), since = now - contactStep, hit = since >= -0.5;
-    const still = Math.min(Math.max(1.1 * box.scale, 5), 10), big = hit ? still + 8 * Math.max(0, 1 - since * step / 0.6) : 6;
+    const still = Math.min(Math.max(1.1 * box.scale, 5), 10), close = box.scale > 20, big = hit && !close ? still + 8 * Math.max(0, 1 - since * step / 0.6) : close ? 7 : 6;
     ink.beginPath();
     for (let i = 0; i < 20; i++) {
       const r = i % 2 ? big * 0.45 : big, a = (i * Math.PI) / 10;
@@ -121,7 +196,7 @@
     ink.closePath();
     if (lit.has("contact")) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 8; ink.stroke(); }
     ink.lineWidth = 1.5; ink.strokeStyle = hit ? "#fff" : COLOR.hit;
-    if (hit) { ink.fillStyle = COLOR.hit; ink.globalAlpha = 0.92; ink.fill(); ink.globalAlpha = 1; }
+    if (hit) { ink.fillStyle = COLOR.hit; ink.globalAlpha = close ? 0.55 : 0.92; ink.fill(); ink.globalAlpha = 1; }
     ink.stroke();
   }
   function draw() {
@@ -133,12 +208,35 @@
     }
     ink.setTransform(ratio, 0, 0, ratio, 0, 0);
     ink.fillStyle = COLOR.ground; ink.fillRect(0, 0, w, h);
-    ink.save(); ink.translate(w / 2, h / 2); ink.scale(box.scale, -box.scale); ink.translate(-box.x, -box.y);
-    drawNetwork(); data.actors.forEach(drawPath); data.actors.forEach(drawActor);
-    ink.restore();
-    drawContact(); data.actors.forEach(drawLabel);
+    const halves = beside && other ? 2 : 1;
+    for (let k = 0; k < halves; k++) drawPane({ left: (k * w) / halves, wide: w / halves, actors: k ? inRun(other) : data.actors, name: k ? other.name : "script" }, h, halves);
+    pane = { left: 0, wide: w / halves, actors: data.actors };
     state();
   }
+  function drawPane(here, h, halves) {
+    pane = here;
+    ink.save(); ink.beginPath(); ink.rect(pane.left, 0, pane.wide, h); ink.clip();
+    ink.save(); ink.translate(pane.left + pane.wide / 2, h / 2); ink.scale(box.scale, -box.scale); ink.translate(-box.x, -box.y);
+    drawNetwork(); if (layer.signs) drawMarks();
+    if (layer.paths) pane.actors.forEach(drawPath);
+    if (layer.rest) pane.actors.forEach((a) => { if (now < a.x.length - 2) drawGhost(a, restOf(a), [2, 3], 0.75); });
+    if (other && halves === 1) inRun(other).forEach((a) => drawGhost(a, pose(a, now), [7, 4], 1));
+    pane.actors.forEach(drawActor);
+    ink.restore();
+    if (layer.names) drawNames();
+    drawContact(); if (layer.labels) pane.actors.forEach(drawLabel);
+    if (measured) drawMeasure();
+    if (halves > 1) { ink.fillStyle = "#22282d"; ink.font = "700 13px system-ui, sans-serif"; ink.textAlign = "center"; ink.fillText(pane.name, pane.left + pane.wide / 2, h - 14); ink.fillRect(pane.left - 1, 0, 2, h); }
+    ink.restore();
+  }
+  function drawMeasure() {
+    const [a, b = a] = measured, [x, y] = toScreen(...a), [u, v] = toScreen(...b), long = Math.hypot(a[0] - b[0], a[1] - b[1]);
+    ink.strokeStyle = "#7209b7"; ink.lineWidth = 2; ink.beginPath(); ink.moveTo(x, y); ink.lineTo(u, v); ink.stroke();
+    for (const [p, q] of [[x, y], [u, v]]) { ink.beginPath(); ink.arc(p, q, 4, 0, 7); ink.fillStyle = "#7209b7"; ink.fill(); }
+    const text = `${long.toFixed(2)} m`; ink.font = "700 13px system-ui, sans-serif"; ink.textAlign = "center"; ink.textBaseline = "middle";
+    const wide = ink.measureText(text).width / 2 + 7; ink.fillStyle = "#fff"; ink.beginPath(); ink.roundRect((x + u) / 2 - wide, (y + v) / 2 - 11, 2 * wide, 22, 6); ink.fill(); ink.fillStyle = "#7209b7"; ink.fillText(text, (x + u) / 2, (y + v) / 2);
+  }
+  const guessed = (id) => (data.facts[id] || []).some((f) => f.name === "start_speed_mph" && f.status === "default");
   function state() {
     $("time").value = now;
     $("clock").textContent = `${(now * step).toFixed(2)} / ${(last * step).toFixed(2)} s`;
@@ -146,8 +244,9 @@
     $("follow").setAttribute("aria-pressed", follow);
     [...$("legend").children].forEach((row, i) => {
       const v = pose(data.actors[i], now).speed;
-      row.lastChild.textContent = `${data.actors[i].type} · ${(v * 2.23694).toFixed(0)} mph`;
+      row.lastChild.textContent = `${data.actors[i].type} · ${speedText(v)}${guessed(data.actors[i].id) ? " (assumed)" : ""}`;
     });
+    plotCursor();
     const metres = [200, 100, 50, 20, 10, 5, 2].find((m) => m * box.scale < 130) || 1;
     $("scale").firstElementChild.style.width = `${metres * box.scale}px`; $("scale").lastElementChild.textContent = `${metres} m`;
   }
@@ -159,7 +258,7 @@
       if (Math.hypot(px - x, py - y) < Math.max((actor.length_m / 2) * box.scale, 14)) return actor.id;
     }
     if (contact && contact.x !== undefined) { const [x, y] = toScreen(contact.x, contact.y); if (Math.hypot(px - x, py - y) < 14) return "contact"; }
-    const [w, h] = size(), gx = box.x + (px - w / 2) / box.scale, gy = box.y - (py - h / 2) / box.scale;
+    const [gx, gy] = toGround(px, py);
     for (const [width, , flat, road] of data.drawing.strips) {
       if (!road) continue;
       for (let i = 2; i < flat.length; i += 2) {
@@ -170,8 +269,9 @@
     }
     return "";
   }
-  function point(things, sentence) {                     // things light up; so do the sentences that tell of them
+  function point(things, sentence, told) {               // things light up; so do the sentences that tell of them
     lit = new Set(things);
+    if (seated && !told) parent.postMessage({ sgcad: "pointed", things }, "*");
     const facts = things.flatMap((t) => (data.facts[t] || []).filter((f) => !sentence || f.of === sentence.of).map((f) => [t, f]));
     document.querySelectorAll("#narrative .told").forEach((span) => {
       const own = data.sentences[Number(span.dataset.k)];
@@ -206,115 +306,44 @@
     draw();
   }
   const jump = () => { playing = false; if (moment) go(Math.round(momentStep)); };
+  function closeUp() {                                   // the two that meet, at that instant, as large as they fit
+    const two = (data.near ? data.near.pair : []).map((id) => data.actors.find((a) => a.id === id)).filter(Boolean);
+    if (!two.length) return;
+    playing = false; follow = false;
+    if (moment) now = Math.min(Math.round(momentStep), last);
+    const poses = two.map((a) => pose(a, now)), [w, h] = size(), wide = beside && other ? w / 2 : w;
+    const xs = poses.map((p) => p.x), ys = poses.map((p) => p.y), reach = Math.max(...two.map((a) => a.length_m));
+    const across = Math.max(...xs) - Math.min(...xs) + 1.7 * reach, high = Math.max(...ys) - Math.min(...ys) + 1.7 * reach;
+    box = { x: (Math.max(...xs) + Math.min(...xs)) / 2, y: (Math.max(...ys) + Math.min(...ys)) / 2, scale: Math.min(wide / across, h / high, 60) };
+    draw();
+  }
   const followOn = () => { follow = !follow; if (follow) box.scale = Math.max(box.scale, 9); draw(); };
 
-  $("play").onclick = toggle; $("fit").onclick = fit; $("hit").onclick = jump; $("follow").onclick = followOn;
+  $("play").onclick = toggle; $("fit").onclick = fit; $("hit").onclick = jump; $("close").onclick = closeUp; $("close").hidden = !data.near; $("follow").onclick = followOn;
   $("hit").hidden = !moment; if (closest) $("hit").textContent = "closest approach";
   $("time").max = last; $("time").oninput = (e) => { playing = false; go(Number(e.target.value)); };
   canvas.addEventListener("wheel", (e) => { e.preventDefault(); zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); }, { passive: false });
-  let hovered = "";
-  canvas.addEventListener("pointerleave", () => { hovered = ""; point([]); });
-  canvas.addEventListener("pointerdown", (e) => canvas.setPointerCapture(e.pointerId));
+  let hovered = "", picked = "", pressed = null, measuring = false;
+  canvas.addEventListener("pointerleave", () => { hovered = ""; point(picked ? [picked] : []); });
+  canvas.addEventListener("pointerdown", (e) => { canvas.setPointerCapture(e.pointerId); pressed = [e.offsetX, e.offsetY]; });
+  canvas.addEventListener("pointerup", (e) => {           // a press without a drag picks, or sets a point to measure from
+    if (!pressed || Math.hypot(e.offsetX - pressed[0], e.offsetY - pressed[1]) > 4) return;
+    const at = toGround(e.offsetX, e.offsetY);
+    if (measuring) { measured = measured && measured.length === 1 ? [measured[0], at] : [at]; draw(); return; }
+    const thing = thingAt(e.offsetX, e.offsetY);
+    picked = thing && thing !== picked ? thing : ""; point(picked ? [picked] : []);
+  });
   canvas.addEventListener("pointermove", (e) => {
-    if (!e.buttons) { const at = thingAt(e.offsetX, e.offsetY); if (at !== hovered) { hovered = at; point(at ? [at] : []); } }
+    if (!e.buttons) { const at = thingAt(e.offsetX, e.offsetY); if (at !== hovered) { hovered = at; point(at ? [at] : picked ? [picked] : []); } }
     if (e.buttons) { follow = false; box.x -= e.movementX / box.scale; box.y += e.movementY / box.scale; draw(); }
   });
   document.addEventListener("keydown", (e) => {
-    if (e.key === "Escape") { point([]); return; }
-    if (e.target.tagName === "SELECT" || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.key === "Escape") { picked = ""; measured = null; point([]); return; }
+    if (["SELECT", "INPUT"].includes(e.target.tagName) && e.target.id !== "time" && e.key !== "z" || e.ctrlKey || e.metaKey || e.altKey) return;
     const far = e.shiftKey ? 1 / step : 1, round = (v) => Math.round(v);
     const keys = { " ": toggle, ArrowRight: () => go(round(now) + far), ArrowLeft: () => go(round(now) - far), Home: () => go(0), End: () => go(last),
-      c: jump, C: jump, 0: fit, "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), f: followOn, F: followOn };
+      c: jump, C: jump, 0: fit, "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), f: followOn, F: followOn,
+      z: closeUp, Z: closeUp, m: () => $("measure").click(), M: () => $("measure").click(), u: nextUnit, U: nextUnit };
     if (keys[e.key]) { e.preventDefault(); keys[e.key](); }
   });
-  new ResizeObserver(() => draw()).observe(canvas);
-
-  // ---------------------------------------------------------------- words and tables (text only, never markup)
-  function make(tag, text, options = {}) {
-    const made = Object.assign(document.createElement(tag), options);
-    if (text !== undefined && text !== null) made.textContent = text;
-    return made;
-  }
-  const words = (name) => String(name).replace(/_/g, " ");
-  const show = (v) => v === null || v === undefined ? "–" : typeof v === "boolean" ? (v ? "yes" : "no") : typeof v === "number" ? (Number.isInteger(v) ? String(v) : v.toFixed(Math.abs(v) < 10 ? 3 : 1)) : words(v);
-  function row(table, cells, head) {
-    const line = table.insertRow();
-    for (const cell of cells) {
-      if (cell instanceof Node) line.append(cell);
-      else line.append(make(head ? "th" : "td", show(cell), { className: typeof cell === "number" ? "n" : "" }));
-    }
-  }
-  const pill = (actor) => { const td = make("td"), p = make("span", actor.id, { className: "pill" }); p.style.background = actor.color; td.append(p); return td; };
-  const unit = (name) => name.replace(/_s$/, " (s)").replace(/_mps$/, " (m/s)").replace(/_m$/, " (m)");
-  const seen = contact && declared && contact.actor !== declared.striker && contact.other === declared.striker
-    ? [contact.other, contact.other_area, contact.actor, contact.actor_area] : contact && [contact.actor, contact.actor_area, contact.other, contact.other_area];
-  function tell(place, text) {                           // the narrative, with its vehicles in their colors
-    let from = 0;
-    for (const hit of text.matchAll(/\b(?:vehicle\s*(?:#\s*)?|V)(\d{1,2})\b/gi)) {
-      const actor = data.actors.find((a) => a.id === `V${Number(hit[1])}`);
-      if (!actor) continue;
-      place.append(text.slice(from, hit.index), make("mark", hit[0], { style: `background:${actor.color}` }));
-      from = hit.index + hit[0].length;
-    }
-    place.append(text.slice(from));
-  }
-  const sides = (a, aSide, b, bSide) => `${a} ${aSide} → ${b} ${bSide}`;
-
-  $("case").textContent = data.case;
-  $("about").textContent = `config ${data.config} · ${data.status} · attempts: road ${data.attempts.road}, scenario ${data.attempts.scenario} · ${Object.values(data.seconds).reduce((a, b) => a + b, 0).toFixed(1)} s`;
-  const verdict = $("verdict");
-  if (contact) {
-    verdict.textContent = `${sides(...seen)} at ${contact.t_s.toFixed(2)} s` + (declared ? (data.collision.realised ? " · as declared ✓" : " · not as declared ✗") : "");
-    verdict.className = !declared ? "" : data.collision.realised ? "good" : "bad";
-    $("mark").style.left = `calc(8px + (100% - 16px) * ${contactStep / Math.max(last, 1)})`;
-  } else if (closest) {
-    verdict.textContent = `near crash: ${closest.actor} and ${closest.other} closest ${closest.clearance_m.toFixed(1)} m at ${closest.t_s.toFixed(1)} s` + (near.realised ? " · as declared ✓" : " · not as declared ✗");
-    verdict.className = near.realised ? "good" : "bad";
-    $("mark").style.left = `calc(8px + (100% - 16px) * ${momentStep / Math.max(last, 1)})`;
-  } else {
-    verdict.textContent = declared ? "the declared contact did not happen ✗" : "no contact"; verdict.className = declared ? "bad" : "";
-    $("mark").hidden = true;
-  }
-  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
-  for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
-  let read = 0;
-  data.sentences.forEach((s, k) => {
-    tell($("narrative"), data.narrative.slice(read, s.start));
-    const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
-    span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end)); $("narrative").append(span);
-    read = s.end;
-  });
-  tell($("narrative"), data.narrative.slice(read));
-  for (const thing of Object.keys(data.facts)) if (thing.startsWith("road ")) $("roads").append(pointable(make("button", thing), [thing]));
-  if (data.facts.contact) $("roads").append(pointable(make("button", "contact"), ["contact"]));
-  row($("actors"), ["", "type", "maneuver", "size"], true);
-  for (const a of data.actors) row($("actors"), [pill(a), a.type, a.maneuver, `${a.length_m.toFixed(1)} × ${a.width_m.toFixed(1)} m`]);
-  $("conditions").textContent = Object.entries(data.conditions).map(([k, v]) => `${k}: ${words(v)}`).join(" · ");
-  row($("collision"), ["declared", declared ? sides(declared.striker, declared.striker_area, declared.struck, declared.struck_area) : "none"]);
-  row($("collision"), ["observed", contact ? sides(...seen) : "none"]);
-  if (contact) row($("collision"), ["first contact", `${contact.t_s.toFixed(2)} s`]);
-  if (near) {
-    const told = near.declared, c = told.conflict;
-    row($("collision"), ["avoided", sides(c.striker, c.striker_area, c.struck, c.struck_area)]);
-    row($("collision"), ["evasion", told.evasions.map((e) => `${e.actor} ${words(e.maneuver)}`).join(", ") || "not told"]);
-    row($("collision"), ["clearance", `${told.clearance_m.toFixed(2)} m (${told.clearance_basis})`]);
-    if (closest) row($("collision"), ["closest approach", `${closest.clearance_m.toFixed(2)} m at ${closest.t_s.toFixed(2)} s`]);
-  }
-  const realised = near ? near.realised : data.collision.realised;
-  row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? "yes" : "no" })]);
-  const net = data.network || {};
-  for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
-  if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);
-  const paper = data.metrics.paper || {}, exact = data.metrics.exact || {};
-  row($("metrics"), ["", make("th", "paper's formula", { className: "n" }), make("th", "exact", { className: "n" })], true);
-  for (const key of new Set([...Object.keys(paper), ...Object.keys(exact)])) row($("metrics"), [unit(key), ...[paper[key], exact[key]].map((v) => make("td", show(v), { className: "n" }))]);
-  for (const [field, nats] of Object.entries(data.grounding || {})) {
-    const chip = make("span", `${field}  ${nats.toFixed(2)}`), strength = Math.min(Math.abs(nats) / 4, 1);
-    chip.style.background = nats >= 0 ? `rgba(27,127,77,${0.1 + 0.35 * strength})` : `rgba(196,32,58,${0.1 + 0.35 * strength})`;
-    $("grounding").append(chip); $("groundcard").hidden = false;
-  }
-  fit();
-  window.addEventListener("load", fit);
-  const start = /[#&]t=([\d.]+)/.exec(location.hash);          // player.html#t=4.2 opens at that second
-  if (start) go(Number(start[1]) / step);
-})();
+  new ResizeObserver(() => (seated && !now ? fit() : draw())).observe(canvas);   // a frame gets its size late

@@ -1,6 +1,6 @@
 """player.html: one executed case in a single page that needs no network and no server.
 
-The page's parts lie beside this module (player.html, player.css, player.js); this module puts them and the
+The page's parts lie beside this module (player.html, player.css, and SCRIPTS); this module puts them and the
 case's data together. The data stand in a JSON block, never in markup, so a narrative cannot become code.
 """
 
@@ -15,6 +15,8 @@ from pathlib import Path
 from flows.view import View
 
 HERE = Path(__file__).parent
+SCRIPTS = ("player.js", "player_tools.js", "player_words.js")
+"""One function, in three files: stage and clock; helpers, units, plots, layers, runs; words and tables."""
 SLOT = re.compile(r"%TITLE%|%DATA%|/\*STYLE\*/|/\*SCRIPT\*/")
 
 
@@ -24,7 +26,7 @@ def page(view: View) -> str:
     parts = {
         "%TITLE%": html.escape(f"{view.record.case} · {view.record.config}"),
         "/*STYLE*/": _part("player.css"),
-        "/*SCRIPT*/": _part("player.js"),
+        "/*SCRIPT*/": '"use strict";\n(() => {\n' + "".join(map(_part, SCRIPTS)) + "})();\n",
         "%DATA%": data.replace("<", "\\u003c"),
     }
     return SLOT.sub(lambda slot: parts[slot[0]], _part("player.html"))  # in one pass: contents hold no slots

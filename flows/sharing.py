@@ -29,14 +29,14 @@ from pydantic import BaseModel
 
 from flows import cases, packing
 from flows.packing import Unpackable, pack, unpack
-from sgcad_core import evidence, facts, findings, records, specs
+from sgcad_core import evidence, facts, findings, opinion, records, specs
 from sgcad_core.asking import narrowing, refine
 from sgcad_core.asking.refine import Refinement, Turn
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
 from sgcad_core.records import CrashReport, Execution
 
-_RECORDS = (evidence, facts, findings, records, specs, refine, narrowing, packing)
+_RECORDS = (evidence, facts, findings, opinion, records, specs, refine, narrowing, packing)
 """Where that is defined which a kept step holds, and what it was asked."""
 T = TypeVar("T")
 WAIT_S, LOOK_S = 3600.0, 0.05
@@ -48,6 +48,7 @@ class Keys:
     """What a config contributes to the keys of its steps."""
 
     read: str
+    opinion: str
     road: str
     scenario: str
     simulate: str
@@ -57,10 +58,21 @@ def keys_of(config: Config) -> Keys:
     """The fingerprints of a config's steps: plugins with fields and versions, files they name, prompts, code."""
     return Keys(
         read=_digest(_about([config.report_reader], asks_model=False)),
+        opinion=_digest(_opinion(config)),
         road=_stage(config, config.road_writer, "road"),
         scenario=_stage(config, config.scenario_writer, "scenario"),
         simulate=_digest(_about([config.simulator], asks_model=False)),
     )
+
+
+def _opinion(config: Config) -> dict[str, Any]:
+    """What a second opinion depends on, beside the report; a model's weights stand in the prompts' digest."""
+    if not config.second_opinion:
+        return {}
+    if config.second_opinion == opinion.LEARNED:
+        return _about([], asks_model=False) | {"weights": cases.opinion_digests(config)}
+    asked = [p for p in (config.backbone, config.decoder) if p is not None]
+    return _about(asked, asks_model=True) | {"prompt": config.second_opinion, "seed": config.seed}
 
 
 def _stage(config: Config, writer: Any, stage: str) -> str:

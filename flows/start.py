@@ -53,12 +53,13 @@ def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> 
     """Do what is left to do; processor seconds of the server."""
     try:
         with prefect_server() as server:
-            crew.begin(plan)
+            if server:  # it takes seconds to start
+                crew.begin(plan)
             from flows.evaluate import run_flow
 
             if server:
                 server.wait()
-            run_flow(batch, plan, crew, on_ending)
+            run_flow(batch, plan, crew, on_ending, lasting=server is None)
             server_s = _processor_s(server) if server else None
     except BaseException:
         crew.stop()

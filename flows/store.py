@@ -10,6 +10,7 @@ import contextlib
 import csv
 import errno
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -21,8 +22,9 @@ from typing import Any
 
 import numpy as np
 
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
+from sgcad_core.result import CaseRecord
 
 DIGEST = ".digest"
 TRACKED = ".tracked"
@@ -51,6 +53,13 @@ class CaseFolder:
         try:
             if (self.path / DIGEST).read_text(encoding="utf-8") != digest:
                 return None
+        except (OSError, ValueError):
+            return None
+        return self.result()
+
+    def result(self) -> dict[str, Any] | None:
+        """result.json, whatever it was made of; None if there is none that can be read."""
+        try:
             result = json.loads((self.path / "result.json").read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
@@ -135,6 +144,18 @@ def _alive(pid: str) -> bool:
 
 
 # ------------------------------------------------------------------ files
+def write_artifacts(folder: Path, report: CrashReport | None, attempts: Iterable[Attempt], record: CaseRecord) -> None:
+    """Report, attempts, road network, scenario and trajectories, as far as there are any."""
+    write_report(folder, report)
+    write_attempts(folder, attempts)
+    if record.network:
+        write_network(folder, record.network)
+    if record.scenario:
+        write_scenario(folder, record.scenario)
+    if record.execution:
+        write_trajectories(folder / "trajectories.csv", record.execution.trajectories)
+
+
 def write_report(folder: Path, report: CrashReport | None) -> None:
     """report.txt (empty if the report could not be read) and diagram.png, diagram-2.png, ..."""
     (folder / "report.txt").write_text(report.narrative if report else "", encoding="utf-8")
@@ -200,15 +221,27 @@ def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
 
 
 def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
-    """What `write_trajectories` wrote, actors in the order of the file."""
+    """What `write_trajectories` wrote, actors in the order of the file. Raises BadInput for anything else."""
     names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
     rows: dict[str, list[list[float]]] = {}
     with file.open(encoding="utf-8", newline="") as lines:
-        for row in csv.DictReader(lines):
-            rows.setdefault(row["actor"], []).append([float(row[name]) for name in names])
+        try:
+            for row in csv.DictReader(lines):
+                rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
+        except (KeyError, TypeError, ValueError, csv.Error) as fault:
+            raise BadInput(
+                f"{file}: no trajectories of ours ({str(fault)[:100]}): every row needs actor and, as finite numbers, "
+                f"{', '.join(names)}; run the case again"
+            ) from fault
     return tuple(
         Trajectory(actor=actor, **dict(zip(names, np.array(values).T, strict=True))) for actor, values in rows.items()
     )
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(value := float(text)):
+        raise ValueError(f"{text!r} is no finite number")
+    return value
 
 
 def write_json(file: Path, content: Any) -> None:

@@ -9,19 +9,19 @@ from dataclasses import dataclass, field
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from flows import judging, single
 from flows.batch import Batch, Job
 from flows.chain import Ending
 from flows.store import CaseFolder
 from flows.terminal import escape
-from sgcad_core.narrative.limits import BEYOND
-from sgcad_core.result import STATUSES, as_declared
+from sgcad_core.result import STATUSES, as_declared, counts_of
 
 MAX_REASONS = 10
 """Reasons printed at the end; all of them stand in the result.json files."""
 
-TABLE_WIDTH = 96
+TABLE_WIDTH = 104
 """Columns where the output is no terminal; rich would take 80 and drop a column."""
 
 
@@ -66,26 +66,51 @@ def show(tally: Tally) -> None:
     console.width = max(console.width, TABLE_WIDTH)
     console.print(_table(tally))
     judging.show(console, {c.name: [e.result for e in tally.of(c.name)] for c in tally.batch.configs})
-    for line in [*_reasons(tally), *_limits(tally), *single.lines([ending.result for _, ending in tally.endings])]:
+    told = [*_accounts(tally), *_reasons(tally), *_limits(tally), *_people(tally)]
+    for line in [*told, *single.lines([ending.result for _, ending in tally.endings])]:
         console.print(escape(line), soft_wrap=True)
     console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)
     if page := tally.first_player():
         console.print(escape(f"look at: {page}"), soft_wrap=True)
     if tally.untracked:
-        console.print(escape(f"{len(tally.untracked)} not logged, run again to log them; {tally.untracked[0]}"))
+        lost = f"{len(tally.untracked)} not logged, run again to log them; {tally.untracked[0]}"
+        console.print(escape(lost), soft_wrap=True)
 
 
 def _table(tally: Tally) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("config", overflow="fold", min_width=12)
-    for name in (*STATUSES, "as declared", "reused", "s/case"):
+    for name in (*STATUSES, "as declared", "all told", "reused", "s/case"):
         table.add_column(name, justify="right", no_wrap=True)
     for config in tally.batch.configs:
         endings = tally.of(config.name)
         counts = [str(sum(e.result["status"] == status for e in endings)) for status in STATUSES]
         reused = sum(e.reused for e in endings)
-        table.add_row(escape(config.name), *counts, _realised(endings), str(reused), _seconds(endings))
+        whole, seconds = _whole(endings), _seconds(endings)
+        table.add_row(escape(config.name), *counts, _realised(endings), whole, str(reused), seconds)
     return table
+
+
+def _whole(endings: list[Ending]) -> Text:
+    """In how many of the scenarios nothing told is lacking: green only where that is so in all."""
+    known = [account for e in endings if (account := counts_of(e.result))]
+    whole = sum(account["verdict"] == "whole" for account in known)
+    if not known:
+        return Text("-")
+    return Text(f"{whole}/{len(known)}", style="green" if whole == len(known) else "yellow")
+
+
+def _accounts(tally: Tally) -> list[str]:
+    """What the scenarios have and lack of what their reports tell, summed up, and the first that lack something; of one
+    case its account is told anyway."""
+    known = [(job, account) for job, e in tally.endings if (account := counts_of(e.result))]
+    if len(tally.endings) < 2 or not known:
+        return []
+    sums = {name: sum(account[name] for _, account in known) for name in ("told", "has", "lacking", "assumed")}
+    lines = ["of {told} things told the scenarios have {has} and lack {lacking}; {assumed} are assumed".format(**sums)]
+    lacking = [(job, account) for job, account in known if account["verdict"] == "lacking"]
+    lines += [f"{job.name}: lacks {single.lacking_in_words(account, 3)}" for job, account in lacking[:MAX_REASONS]]
+    return lines + ([f"... and {len(lacking) - MAX_REASONS} more"] if len(lacking) > MAX_REASONS else [])
 
 
 def _realised(endings: list[Ending]) -> str:
@@ -103,9 +128,19 @@ def _limits(tally: Tally) -> list[str]:
     """What of the reports was beyond a limit of ours, the first few; of one case its notes are told anyway."""
     if len(tally.endings) < 2:
         return []
-    told = [f"{job.name}: {note}" for job, e in tally.endings for note in e.result["notes"] if note.startswith(BEYOND)]
+    noted = ((job.name, note) for job, e in tally.endings for note in e.result["notes"])
+    told = [f"{name}: {note['text']}" for name, note in noted if note["kind"] == "limit"]
     more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
     return [line[:400] for line in told[:MAX_REASONS]] + more
+
+
+def _people(tally: Tally) -> list[str]:
+    """How many facts people gave, and how many of them were read otherwise."""
+    said = [given for _, e in tally.endings if (given := e.result.get("person") or {}).get("facts")]
+    if not said:
+        return []
+    facts, wrong = (sum(given[key] for given in said) for key in ("facts", "disagreed"))
+    return [f"facts by people: {facts} in {len(said)} cases, {wrong} of them read otherwise (facts.yaml)"]
 
 
 def _reasons(tally: Tally) -> list[str]:

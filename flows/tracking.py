@@ -30,6 +30,13 @@ from sgcad_core.interfaces import Plugin
 OnEnding = Callable[[Job, Ending, str], None]
 """Told of every case as it ends, from one thread; the text says why it could not be tracked, if it could not."""
 
+PLAIN = {
+    "database is locked": "another program keeps the tracker's database locked: end it (`fuser FILE` names it)",
+    "disk is full": "no room is left on the disk: make some",
+    "No space left": "no room is left on the disk: make some",
+    "readonly database": "the tracker's database cannot be written: make it writable (chmod u+w)",
+}
+"""What databases and disks say, and how a person is told."""
 GIVE_UP_AFTER = 2
 """Cases in a row that could not be logged, each after a database's own patience; the next run logs the rest."""
 _failed: dict[str, int] = {}
@@ -56,7 +63,10 @@ def track_safely(job: Job, ending: Ending) -> str:
 
 
 def plainly(fault: Exception) -> str:
-    """A tracker's fault in one line; of a database's, what the database itself says and not the statement."""
+    """A tracker's fault in one line with its remedy; of a database's, what it says itself and not the statement."""
+    for sign, plain in PLAIN.items():
+        if sign in str(fault):
+            return plain
     lines = [line.strip() for line in str(fault).splitlines() if line.strip()]
     said = next((line for line in lines if "Error) " in line), lines[0] if lines else "")
     return f"{type(fault).__name__}: {said}"[:300]
@@ -105,13 +115,17 @@ def following(plan: Sequence[Job]) -> Iterator[None]:
         _open(job).parent.mkdir(parents=True, exist_ok=True)
         _open(job).touch()
         _safely(job, lambda job=job, arm=arm: job.config.tracker.begin(arm))  # type: ignore[misc]
-    finished = False
+    fault, finished = "", False
     try:
         yield
         finished = True
+    except Exception as broken:
+        fault = plainly(broken)
+        raise
     finally:
         for job, arm in arms:
-            ended = _safely(job, lambda job=job, arm=arm: job.config.tracker.end(arm, finished))  # type: ignore[misc]
+            told = arm.model_copy(update={"fault": fault})
+            ended = _safely(job, lambda job=job, arm=told: job.config.tracker.end(arm, finished))  # type: ignore[misc]
             if ended and finished:
                 _open(job).unlink(missing_ok=True)
 
@@ -123,8 +137,9 @@ def _safely(job: Job, tell: Callable[[], None]) -> bool:
     except SgcadError:
         raise
     except Exception as fault:  # noqa: BLE001 - the cases are safe on disk: a locked database must not end the batch
-        told = logging.getLogger(__name__)
-        told.warning("%s: tracking, %s; run again to mend it", job.config.name, plainly(fault))
+        if not _failed.get(job.config.tracker.model_dump_json()):  # else it is told of the cases already
+            told = logging.getLogger(__name__)
+            told.warning("%s: tracking, %s; then run again", job.config.name, plainly(fault))
         return False
     return True
 

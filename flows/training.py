@@ -13,7 +13,6 @@ import argparse
 import json
 import subprocess
 import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
@@ -24,6 +23,7 @@ from sgcad_core import settings
 from sgcad_core.errors import BadInput, SgcadError
 from sgcad_core.interfaces import Tracker
 from sgcad_core.registry import plugin_class
+from sgcad_core.scratch import scratch
 
 LOG, EXPORT = "log.jsonl", "export"
 EXPERIMENT = "mini"
@@ -78,8 +78,8 @@ class Training:
         last = next((line for line in reversed(self.lines()) if "step" in line), None)
         if last is None or not (self.folder / EXPORT).is_dir():
             return {}
-        with tempfile.TemporaryDirectory(prefix="sgcad-judge-") as place:
-            found = Path(place) / "figures.json"
+        with scratch("judge") as place:
+            found = place / "figures.json"
             command = [
                 sys.executable,
                 *EVALUATOR,

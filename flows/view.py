@@ -6,8 +6,9 @@ Knows records and the network drawing; no HTML, no matplotlib.
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,13 @@ import numpy as np
 from flows.drawing import Drawing, drawing_of
 from flows.pointing import facts_by_thing, road_along, road_axes, sentences_of
 from sgcad_core.geometry.plane import Box, overlap_polygon
+from sgcad_core.metrics.conflict import Track, box_distance, time_to_collision
+from sgcad_core.narrative.traced import redactions
 from sgcad_core.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
 from sgcad_core.result import CaseRecord
 
-COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
-"""Okabe and Ito's palette (told apart by color-blind readers), strongest first."""
+COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
+"""Okabe and Ito's palette (told apart by color-blind readers); first red and blue, as crash diagrams draw V1 and V2."""
 DIAGRAM_LIMIT = 3
 """Diagrams shown beside a player."""
 
@@ -43,9 +46,17 @@ class View:
     result: Mapping[str, Any]
     drawing: Drawing
     movers: tuple[Mover, ...]
+    runs: Mapping[str, Sequence[Trajectory]] = field(default_factory=dict)
+    """Other runs of the same scenario, such as with drivers, by name."""
 
     @staticmethod
-    def of(record: CaseRecord, report: CrashReport, metrics: Mapping[str, Any], result: Mapping[str, Any]) -> View:
+    def of(
+        record: CaseRecord,
+        report: CrashReport,
+        metrics: Mapping[str, Any],
+        result: Mapping[str, Any],
+        runs: Mapping[str, Sequence[Trajectory]] | None = None,
+    ) -> View:
         """Gather what is shown. Raises InvalidOutput where the network cannot be read."""
         network, scenario, execution = record.network, record.scenario, record.execution
         if not (network and network.net_xml and scenario and execution):
@@ -56,7 +67,7 @@ class View:
             for k, track in enumerate(execution.trajectories)
             if track.actor in infos
         )
-        return View(record, report, metrics, result, drawing_of(network.net_xml), movers)
+        return View(record, report, metrics, result, drawing_of(network.net_xml), movers, runs or {})
 
     def contact_point(self) -> tuple[float, float] | None:
         """Middle of the first overlap, metres; None if nothing touched."""
@@ -66,6 +77,27 @@ class View:
             return None
         middle = overlap_polygon(boxes[0], boxes[1]).mean(axis=0)
         return float(middle[0]), float(middle[1])
+
+    def pair(self) -> tuple[Mover, Mover] | None:
+        """The two that touch, come near each other, or are declared to touch."""
+        near = (self.result.get("near_crash") or {}).get("observed")
+        collision = self.result["collision"]
+        told = collision["observed"] or near or collision["declared"] or {}
+        names = [told.get("actor") or told.get("striker"), told.get("other") or told.get("struck")]
+        found = [mover for name in names for mover in self.movers if mover.info.id == name]
+        return (found[0], found[1]) if len(found) == 2 else None
+
+    def _nearness(self) -> dict[str, Any] | None:
+        """Of the pair, over time: metres between the outlines, and seconds until they touch at constant velocity."""
+        if (pair := self.pair()) is None:
+            return None
+        first, second = (_track(mover) for mover in pair)
+        ttc = time_to_collision(first, second)
+        return {
+            "pair": [mover.info.id for mover in pair],
+            "clearance_m": _rounded(box_distance(first, second), 2),
+            "ttc_s": [round(v, 2) if math.isfinite(v) else None for v in ttc.tolist()],
+        }
 
     def _box(self, actor: str, t_s: float) -> Box | None:
         mover = next((m for m in self.movers if m.info.id == actor), None)
@@ -87,10 +119,14 @@ class View:
             "status": self.result["status"],
             "collision": {**self.result["collision"], "observed": contact or None},
             "near_crash": self.result.get("near_crash"),
+            "account": self.result.get("account"),
+            "redactions": redactions(self.report.places),
             "network": self.result["network"],
             "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
             "actors": [_actor(mover) for mover in self.movers],
             "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
+            "near": self._nearness(),
+            "runs": [{"name": name, "actors": [_path(t) for t in tracks]} for name, tracks in self.runs.items()],
             "conditions": _conditions(self.record.scenario),
             "narrative": self.report.narrative,
             "sentences": sentences_of(self.report, self.result.get("facts", ())),
@@ -103,11 +139,20 @@ class View:
         }
 
 
+def _track(mover: Mover) -> Track:
+    t = mover.track
+    velocity = np.column_stack((t.speed_mps * np.cos(t.heading_rad), t.speed_mps * np.sin(t.heading_rad)))
+    pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+    return Track(t.t_s, pose, velocity, (mover.info.length_m, mover.info.width_m))
+
+
 def _actor(mover: Mover) -> dict[str, Any]:
-    track = mover.track
+    return {**mover.info.model_dump(), "color": mover.color, **_path(mover.track)}
+
+
+def _path(track: Trajectory) -> dict[str, Any]:
     return {
-        **mover.info.model_dump(),
-        "color": mover.color,
+        "id": track.actor,
         "x": _rounded(track.x_m, 2),
         "y": _rounded(track.y_m, 2),
         "heading": _rounded(track.heading_rad, 3),
@@ -122,6 +167,10 @@ def _drawing(drawing: Drawing, axes: Mapping[str, float]) -> dict[str, Any]:
         "areas": [_rounded(a.ravel(), 2) for a in drawing.areas],
         "strips": list(strips),
         "lines": [[line.style, _rounded(line.points.ravel(), 2)] for line in drawing.lines],
+        "crossings": [[round(c.width_m, 2), _rounded(c.points.ravel(), 2)] for c in drawing.crossings],
+        "marks": [
+            [m.kind, round(m.x_m, 2), round(m.y_m, 2), round(m.heading_rad, 3), m.directions] for m in drawing.marks
+        ],
     }
 
 

@@ -18,6 +18,7 @@ from flows.batch import Job
 from flows.chain import Ending
 from flows.summary import Tally
 from flows.terminal import escape
+from sgcad_core.result import counts_of
 
 LINES_AT_ONCE = 50
 """Batches up to this size tell every case in a line; larger ones one line in LINE_EVERY_S."""
@@ -49,7 +50,9 @@ class Watch:
                 self._move(self.tally.in_words())
             elif self._is_time():
                 status, spent = ending.result["status"], sum(ending.result["seconds"].values())
-                about = f"{job.name}: {status}" + (", done before" if ending.reused else f" ({spent:.1f} s)")
+                about = f"{job.name}: {status}{_lacking(ending)}" + (
+                    ", done before" if ending.reused else f" ({spent:.1f} s)"
+                )
                 self._say(about if self.total <= LINES_AT_ONCE else self.tally.in_words())
 
     def turn(self, job: Job, attempt: str) -> None:
@@ -79,6 +82,12 @@ class Watch:
     def _say(self, line: str) -> None:
         if self.console:
             self.console.print(escape(f"[{len(self.tally.endings)}/{self.total}] {line}"), soft_wrap=True)
+
+
+def _lacking(ending: Ending) -> str:
+    """How much of what is told lacks, where anything does."""
+    account = counts_of(ending.result)
+    return f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
 
 
 @contextmanager

@@ -30,11 +30,12 @@ from sgcad_core.interfaces import (
 )
 from sgcad_core.kinds import CrashRole
 from sgcad_core.names import nearest
+from sgcad_core.opinion import LEARNED
 from sgcad_core.records import Record
 from sgcad_core.registry import plugin_class
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
-SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings")
+SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion")
 OPTIONAL = {"backbone", "decoder"}
 
 
@@ -70,6 +71,10 @@ class Config(Record):
     """Findings stand in the next attempt's prompt; false for models too small to read them."""
     hold_findings: bool = False
     """What findings tell exactly (a maneuver, a number of lanes), further attempts' grammar does not let differ."""
+    second_opinion: str = Field("", pattern=r"^[\w-]*$")
+    """configs/prompts/<second_opinion>.md, with which the model is asked for the crash's gist, or "learned": the reader
+    that learned where the rules err. Where it is surer than the rules they give way, field by field. Empty: the rules
+    alone read the narrative."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None
@@ -208,6 +213,7 @@ def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
     backbone = cast("Backbone | None", fields.get("backbone"))
     decoder = cast("Decoder | None", fields.get("decoder"))
     asking = [k for k in ("road_writer", "scenario_writer") if fields[k].asks_model]
+    asking += ["second_opinion"] if fields.get("second_opinion", "") not in ("", LEARNED) else []
     if asking and backbone is None:
         faults.append(f"backbone: missing, but {' and '.join(asking)} ask a model")
     if asking and decoder is None:

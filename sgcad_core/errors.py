@@ -6,8 +6,10 @@
     ├── MissingTool        install what is named                      (exit 2, nothing started)
     ├── InvalidOutput      the writer's output is wrong: ask again    (caught by the refinement loop)
     │   └── Unsupported    right, but more than our player plays      (named with its line, never left out silently)
+    ├── WrongEdit          a person's fact cannot be taken: give another (result and facts.yaml stay as they were)
     ├── Refused            the evidence does not carry the crash      (a result, never retried)
     └── SimulationFailed   the execution died: may be retried         (the case fails, the batch goes on)
+        └── ProcessDied    killed or crashed, not late: once more     (a second death is the case's failure)
 
 A message says what, the value, the limit and the remedy. Knows nothing else of the project.
 """
@@ -54,6 +56,14 @@ class Unsupported(InvalidOutput):
         self.element = element
 
 
+class WrongEdit(SgcadError):
+    """A person's fact cannot be taken; `findings` say what it brings about, nothing was changed."""
+
+    def __init__(self, message: str, findings: Sequence[Finding] = ()) -> None:
+        super().__init__(message)
+        self.findings = tuple(findings)
+
+
 class Refused(SgcadError):
     """The model, a writer or the evidence gate declines; `missing` names the evidence that lacks."""
 
@@ -65,3 +75,7 @@ class Refused(SgcadError):
 
 class SimulationFailed(SgcadError):
     """A simulator died or gave no trajectory; the message carries its last words."""
+
+
+class ProcessDied(SimulationFailed):
+    """A worker process was killed or crashed before its time was over; whoever killed it need not be the report."""

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import Field
 
+from sgcad_core.edits import Edit
 from sgcad_core.frozen import Record
+from sgcad_core.opinion import Opinion
 
 if TYPE_CHECKING:
     from sgcad_core.narrative.reading import Reading
@@ -51,16 +53,25 @@ class CrashReport(ReadOnce):
     coded: Mapping[str, Any] | None = None
     notes: tuple[str, ...] = ()
     """What the reader changed or left out, for result.json and the log."""
+    edits: tuple[Edit, ...] = ()
+    """What people know better than the reading; they win over it (`sgcad_core.revision`)."""
     places: tuple[tuple[int, int, int], ...] = Field((), repr=False)
     """Where the narrative stands in the text as it was written (`sgcad_core.narrative.traced.runs`); (): as it is."""
 
+    opinion: Opinion | None = None
+    """What a model says of the crash's gist, where a config asks for a second opinion."""
+
     @cached_property
     def reading(self) -> Reading:
-        """What the rules read of the narrative, with places in the text as it was written."""
-        from sgcad_core.narrative.reading import read  # patterns of half a second, which not everybody needs
+        """What is read of the narrative, with places in the text as it was written: by the rules and, where there is a
+        second opinion, as both together have it; and all that as people have it."""
+        from sgcad_core.narrative.fusion import fused
+        from sgcad_core.narrative.mended import mended  # patterns of half a second, which not everybody needs
+        from sgcad_core.narrative.reading import read
         from sgcad_core.narrative.traced import placed
 
-        return read(placed(self.narrative, self.places))
+        found = read(placed(self.narrative, self.places))
+        return mended(fused(found, self.opinion) if self.opinion else found, self.edits)
 
 
 class Context(ReadOnce):

@@ -34,3 +34,5 @@ class Arm(Record):
     """By kind (validators by name): class, version and, where the plugin has one, stamp."""
     git_commit: str = ""
     hardware: Mapping[str, Any] = Field(default_factory=dict)
+    fault: str = ""
+    """At the end: what ended the batch before its last case; empty where it finished or a person interrupted it."""

@@ -212,8 +212,14 @@ class Tracker(Plugin):
         """Log one model call; the default keeps nothing."""
         return
 
+    def page(self, config_name: str, case: str) -> str:
+        """Where a case that was logged here is to be seen: an address, or what comes after that of a server over the
+        same database (from "/" on); "" where nowhere (the default)."""
+        return ""
+
     def end(self, arm: Arm, finished: bool) -> None:
-        """Told after the last case; `finished` is false after an interruption. The default keeps nothing."""
+        """Told after the last case; `finished` is false after an interruption and where a fault ended the batch
+        (`arm.fault` says which). The default keeps nothing."""
         return
 
     def identity(self, out: Path) -> str:

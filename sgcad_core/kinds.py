@@ -17,6 +17,7 @@ Maneuver = Literal[
     "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
     "departing_road_left", "departing_road_right", "backing", "other",
 ]  # fmt: skip
+ROAD: Final = "road"
 T: Final = "t"
 FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
@@ -24,6 +25,10 @@ PARKING_LOT: Final = "parking_lot"
 DRIVEWAY: Final = "driveway"
 RAMP: Final = "ramp"
 """Names of junctions and roads for code that treats one of them apart; no other module spells them (a test looks)."""
+PLAIN: Final = "plain"
+FOUR: Final = "four"
+MERGE: Final = "merge"
+"""Layouts of made reports that are not called as their kind is (`Junction.layout`)."""
 JOINING: Final = (DRIVEWAY, RAMP)
 """Roads that lead to or from a street and are told of by a word alone."""
 
@@ -39,7 +44,7 @@ class Junction:
     legs: int
     intersections: int
     layout: str
-    stem: RoadKind = "road"
+    stem: RoadKind = ROAD
     rule: str = ""
     round: bool = False
 
@@ -55,16 +60,18 @@ class Junction:
 
 
 JUNCTIONS: tuple[Junction, ...] = (
-    Junction("none", "a road without a junction", 2, 0, "plain"),
-    Junction("roundabout", "a roundabout", 4, 1, "", rule="junction.roundabout", round=True),
-    Junction("parking_lot", "a parking lot", 2, 0, "", stem="driveway", rule="junction.parking_lot"),
-    Junction("four_leg", "a four-leg intersection", 4, 1, "four", rule="junction.four"),
-    Junction("t", "a T-intersection", 3, 1, "t", rule="junction.t"),
-    Junction("driveway", "a driveway", 3, 1, "driveway", stem="driveway"),
-    Junction("ramp", "a ramp that merges", 3, 1, "merge", stem="ramp"),
+    Junction("none", "a road without a junction", 2, 0, PLAIN),
+    Junction(ROUNDABOUT, "a roundabout", 4, 1, "", rule="junction.roundabout", round=True),
+    Junction(PARKING_LOT, "a parking lot", 2, 0, "", stem=DRIVEWAY, rule="junction.parking_lot"),
+    Junction(FOUR_LEG, "a four-leg intersection", 4, 1, FOUR, rule="junction.four"),
+    Junction(T, "a T-intersection", 3, 1, T, rule="junction.t"),
+    Junction(DRIVEWAY, "a driveway", 3, 1, DRIVEWAY, stem=DRIVEWAY),
+    Junction(RAMP, "a ramp that merges", 3, 1, MERGE, stem=RAMP),
 )
 """Kinds that a text names come in the order in which they win where two are named at one place."""
-ROADS: tuple[RoadKind, ...] = ("road", "driveway", "ramp")
+INTERSECTIONS: tuple[str, ...] = tuple(one.layout for one in JUNCTIONS if one.layout and one.meets and one.stem == ROAD)
+"""Layouts of made reports in which streets meet."""
+ROADS: tuple[RoadKind, ...] = (ROAD, DRIVEWAY, RAMP)
 MANEUVERS: tuple[Maneuver, ...] = (
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
     "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",

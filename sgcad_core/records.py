@@ -21,6 +21,9 @@ from sgcad_core.findings import Finding as Finding
 from sgcad_core.findings import Hold as Hold
 from sgcad_core.findings import Severity as Severity
 from sgcad_core.frozen import Record as Record
+from sgcad_core.opinion import Heard as Heard
+from sgcad_core.opinion import Opinion as Opinion
+from sgcad_core.opinion import Weights as Weights
 from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Contact, Maneuver, NearCrash, RoadLayout, RoadSpec
 
 Floats = NDArray[np.float64]

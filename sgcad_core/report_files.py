@@ -13,6 +13,25 @@ from pathlib import Path
 from sgcad_core.errors import BadInput
 
 MAX_FILE_BYTES = 50_000_000
+MAX_FILES = 1000
+"""In a report's folder, those below it included: more is a folder of many reports, or a link to a whole disk."""
+FACTS = "facts.yaml"
+"""What people know better than the reading of a report, beside it (`sgcad_core.revision`)."""
+
+
+def facts_file(source: Path) -> Path:
+    """Where the facts of a report are kept: in its folder, or beside a report that is a file."""
+    return source / FACTS if source.is_dir() else source.with_name(f"{source.name}.{FACTS}")
+
+
+def files_below(folder: Path) -> list[Path]:
+    """Every file in a report's folder and its folders. Raises BadInput where there are more than a report has."""
+    found: list[Path] = []
+    for looked, file in enumerate(folder.rglob("*")):
+        found += [file] if file.is_file() else []
+        if looked >= MAX_FILES:
+            raise BadInput(f"{folder}: more than {MAX_FILES} files and folders in it: give the folder of one report")
+    return sorted(found)
 
 
 def read_regular(path: Path, inside: Path | None = None, most: int = MAX_FILE_BYTES) -> bytes:

@@ -9,12 +9,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
+from sgcad_core.account import Account, Note, account_of
+from sgcad_core.account.made import Made
+from sgcad_core.account.notes import notes_of
+from sgcad_core.edits import by_person
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
 from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.written import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.limits import beyond
+from sgcad_core.narrative.traced import redactions
 from sgcad_core.records import (
     ActorInfo,
     Execution,
@@ -54,6 +59,8 @@ class CaseRecord:
     judgement: Judgement | None = None
     drawn: bool = False
     """Whether the report has a drawing that the writers were shown."""
+    places: tuple[tuple[int, int, int], ...] = ()
+    """`CrashReport.places`: where words about persons were replaced or left out."""
 
     @property
     def network(self) -> RoadNetwork | None:
@@ -76,6 +83,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
     """The content of result.json, JSON-able."""
     status, reason, missing = _end(record)
     judged = {"judge": record.judgement.summary()} if record.judgement else {}
+    facts, notes = facts_of(record), notes_told(record)
     return {
         "case": record.case,
         "config": record.config,
@@ -90,9 +98,11 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         **judged,
         "grounding": _grounding(record.outcomes),
         "sentences": _sentences(record.reading),
-        "facts": [fact.model_dump(mode="json") for fact in facts_of(record)],
-        "seconds": {step: round(seconds, 4) for step, seconds in record.seconds.items()},
-        "notes": [*record.notes, *(beyond(record.reading) if record.reading else ()), *_stage_notes(record)],
+        "redactions": redactions(record.places),
+        "facts": [fact.model_dump(mode="json") for fact in facts],
+        "seconds": seconds_of(record),
+        "account": account_told(record, status, facts, notes).summary(),
+        "notes": [note.model_dump(mode="json") for note in notes],
     }
 
 
@@ -100,6 +110,11 @@ def _sentences(reading: Reading | None) -> list[dict[str, Any]]:
     """The sentences that facts point to: places in the narrative as it was written, the text as it was read."""
     told = reading.sentences if reading else ()
     return [{"start": s.start, "end": s.end, "role": s.role, "text": s.text} for s in told]
+
+
+def seconds_of(record: CaseRecord) -> dict[str, float]:
+    """What every step took so far."""
+    return {step: round(seconds, 4) for step, seconds in record.seconds.items()}
 
 
 def facts_of(record: CaseRecord) -> tuple[Fact, ...]:
@@ -113,7 +128,7 @@ def facts_of(record: CaseRecord) -> tuple[Fact, ...]:
     if network is not None and scenario is not None:
         answer = _answer(record, "scenario")
         found += actor_facts_written(scenario, network, record.reading, answer, record.drawn)
-    return tuple(found)
+    return by_person(found, record.reading.edits)
 
 
 def _answer(record: CaseRecord, stage: str) -> Generation | None:
@@ -219,6 +234,13 @@ def as_declared(result: Mapping[str, Any]) -> bool | None:
     return bool(near["realised"]) if near else None
 
 
+def counts_of(result: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """The account of a result (`verdict`, `told`, `has`, `lacking`, `assumed`, `items`); None where there is no
+    scenario to hold to the report, or the result is of a version without accounts."""
+    account: Mapping[str, Any] | None = result.get("account")
+    return account if account and account["verdict"] != "none" else None
+
+
 def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
     """Grounding of the answer fields that stand, nats; keys are "<stage>.<path>"."""
     found: dict[str, float] = {}
@@ -228,9 +250,22 @@ def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
     return found
 
 
-def _stage_notes(record: CaseRecord) -> list[str]:
+def account_told(record: CaseRecord, status: Status, facts: Sequence[Fact], notes: Sequence[Note]) -> Account:
+    """What is told and there, told and lacking, assumed; of a case that is not generated nothing is there to say."""
+    network, scenario, execution, reading = record.network, record.scenario, record.execution, record.reading
+    if status != "generated" or not (network and network.net_xml and scenario and execution and reading):
+        return account_of(None, facts)
+    return account_of(Made(reading, network, scenario, execution, record.drawn), facts, notes)
+
+
+def notes_told(record: CaseRecord) -> list[Note]:
+    """What every step remarked, in their order."""
     told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
-    notes = [f.line() for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")]
-    notes += [f"{attempt.stage}: held to {hold.line()}" for attempt in told for hold in attempt.held]
-    notes += record.judgement.lines() if record.judgement else []
-    return notes + list(record.scenario.notes if record.scenario else ())
+    facts = {fact.field: fact for fact in record.reading.facts} if record.reading else {}
+    notes = notes_of("reader", record.notes, facts)
+    notes += notes_of("limit", beyond(record.reading) if record.reading else (), facts)
+    for finding in (f for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")):
+        notes += notes_of("finding", [finding.line()], facts, finding.where)
+    notes += notes_of("held", [f"{a.stage}: held to {hold.line()}" for a in told for hold in a.held], facts)
+    notes += notes_of("judge", record.judgement.lines() if record.judgement else (), facts)
+    return notes + notes_of("plan", record.scenario.notes if record.scenario else (), facts)

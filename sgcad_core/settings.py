@@ -27,6 +27,7 @@ _QUIET = {
     "MLFLOW_DISABLE_TELEMETRY": "true",
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",  # its own 7 tell after four minutes that nobody answers
     "MLFLOW_HTTP_REQUEST_TIMEOUT": "30",
+    "MLFLOW_SUPPRESS_PRINTING_URL_TO_STDOUT": "true",  # standard output is for the answer
     "TOKENIZERS_PARALLELISM": "false",
 }
 
@@ -40,6 +41,11 @@ def quiet_libraries() -> None:
 def environment(name: str) -> str:
     """A variable that a config names, such as an API key's; empty if it is not set."""
     return os.environ.get(name, "")
+
+
+def cache_home() -> Path:
+    """Where what can be made again is kept, such as weights unpacked from a package."""
+    return Path(environment("XDG_CACHE_HOME") or Path.home() / ".cache") / "sg-cadvlm"
 
 
 def prefect_home() -> Path:

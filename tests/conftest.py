@@ -3,10 +3,17 @@
 A shell without job control starts background jobs with SIGINT ignored, and children inherit that; a handler here
 makes them start with the usual one. A worker of pytest-xdist (`make test`) has one core for itself and its programs:
 torch and its like would start as many threads in each as there are cores, and wait for each other.
+
+Property tests draw the same examples in every run, so that a verdict depends on the change, not on luck or load; `make
+test-thorough` draws new ones, and more.
 """
 
 import os
 import signal
+
+from hypothesis import settings
+
+from tests.effort import THOROUGH
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -14,3 +21,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     for threads in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"):
         os.environ.setdefault(threads, "1")
+
+settings.register_profile("usual", derandomize=not THOROUGH, deadline=None)
+settings.load_profile("usual")

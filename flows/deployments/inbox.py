@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,6 +26,7 @@ from flows.deployments.place import Place
 from flows.evaluate import drive
 from flows.tasks import threads
 from sgcad_core.errors import ConfigError
+from sgcad_core.scratch import scratch
 
 PORTION = 48
 """Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
@@ -59,8 +59,8 @@ def inbox_flow(
             f"lease_s {lease_s}, portion {portion} not below or at 0"
         )
     place = Place(address)
-    with tempfile.TemporaryDirectory(prefix="sgcad-inbox-") as staging:
-        intake = Intake(place, Claims(place, lease_s), Path(staging), settle_s, config, Path(out))
+    with scratch("inbox") as staging:
+        intake = Intake(place, Claims(place, lease_s), staging, settle_s, config, Path(out))
         return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s, watch_s)
 
 
@@ -96,9 +96,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    from flows.server import prefect_server
+    from prefect.settings import PREFECT_API_URL, temporary_settings
 
-    with prefect_server() as server:
+    from flows.server import prefect_server
+    from sgcad_core import settings
+
+    # Prefect was imported before the server was named, and would start one that outlives a kill.
+    with prefect_server() as server, temporary_settings({PREFECT_API_URL: settings.prefect_url()}):
         if server:
             server.wait()
         main()

@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 from flows.cases import SUFFIXES, Case, safe_id
 from flows.deployments.claims import ALONE_FROM, MAX_TAKES, Claim, Claims
 from flows.deployments.place import HIDDEN, Entry, Place, Stamp
+from sgcad_core.result import counts_of
 
 LEDGER = f"{HIDDEN}/ledger"
 UNREAD = "unread"
@@ -206,7 +207,7 @@ class Intake:
             self.claims.forsake(taken.claim)
             self.counts["taken_over"] += 1
             return
-        outcome = {key: result.get(key) for key in ("status", "reason", "missing")}
+        outcome = {key: result.get(key) for key in ("status", "reason", "missing")} | {"account": _account(result)}
         outcome |= {
             "case": taken.case.id,
             "config": self.config,
@@ -237,6 +238,15 @@ class Intake:
         except FileNotFoundError:
             return False
         return True
+
+
+def _account(result: dict[str, Any]) -> dict[str, Any] | None:
+    """What the scenario has and lacks of what is told, with every thing that lacks; None where there is no scenario."""
+    account = counts_of(result)
+    if account is None:
+        return None
+    counts = {key: account[key] for key in ("verdict", "told", "has", "lacking", "assumed")}
+    return counts | {"lacks": [f"{i['text']}: {i['reason']}" for i in account["items"] if i["kind"] == "lacks"]}
 
 
 def _is_report(entry: Entry) -> bool:

@@ -18,17 +18,20 @@ from PIL import Image, UnidentifiedImageError
 
 from flows.results.reading import Ran, paths_of
 from flows.results.table import Tables, reference_of
+from flows.single import lacking_in_words
 from flows.view import COLORS
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.records import Floats
-from sgcad_core.result import as_declared
+from sgcad_core.result import as_declared, counts_of
 
 THUMB_PX = 240
 EVERY_S = 0.5
 NEAR_M = 90.0
 """Road farther from the middle than this is not sent; the picture shows 45 m to each side at most."""
 NARRATIVE_CHARS = 6_000
+LACKING_SHOWN = 6
+"""Things told that lack, named in a tile; the player names all."""
 VERDICTS = (
     ("intersections_wrong", "intersections", 0.0), ("lanes_wrong", "lanes", 0.0), ("connectivity_wrong", "parts", 0.0),
     ("lanes_total", "lanes total", 1.0), ("legs", "legs", 1.0), ("vehicle_count", "vehicles", 1.0),
@@ -89,6 +92,7 @@ def _arm(ran: Ran, values: Mapping[str, float], page: Path) -> dict[str, Any]:
         "why": str(ran.result.get("reason") or "")[:300],
         "declared": as_declared(ran.result),
         "observed": collision.get("observed"),
+        "account": _account(ran.result),
         "right": [int(values[key] == want) if key in values else None for key, _, want in VERDICTS],
         "level": (ran.metrics.get("exact") or {}).get("emergency_level"),
         "speed": values.get("x_speed"),
@@ -97,6 +101,15 @@ def _arm(ran: Ran, values: Mapping[str, float], page: Path) -> dict[str, Any]:
         "player": quote(os.path.relpath(player, page.parent)) if player.is_file() else None,
         "draw": _drawn(ran),
     }
+
+
+def _account(result: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Counts, and the first things told that lack."""
+    account = counts_of(result)
+    if account is None:
+        return None
+    lacks = [line for line in (lacking_in_words(account, LACKING_SHOWN),) if line]
+    return {key: account[key] for key in ("verdict", "told", "has", "lacking", "assumed")} | {"lacks": lacks}
 
 
 # ------------------------------------------------------------------ what to draw

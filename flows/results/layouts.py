@@ -33,6 +33,11 @@ LAYOUTS = (
         "case without output counts as 100. No published value is known in this reading.", m.NETWORK_MEAN,
     ),
     Layout(
+        "people", "Against people", "Of the cases in which people gave facts (facts.yaml): facts a case, and the share "
+        "of them, percent, for which the reader and the writers of the arm had another value (docs/mending.md). People "
+        "mend what is wrong, so this is no error rate of all facts.", m.PEOPLE,
+    ),
+    Layout(
         "truth", "Against the truth: roads of coded reports, motion, first contact", "Share right in percent, of the "
         "reports whose label states the field; a case without output counts as wrong.", m.TRUTH,
     ),

@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple
 from flows.results.reading import Ran, Study, made_of
 from sgcad_core.metrics.generation import quality, written_files
 from sgcad_core.metrics.truth import NETWORK_FIELDS, compare
-from sgcad_core.result import STATUSES, as_declared
+from sgcad_core.result import STATUSES, as_declared, counts_of
 
 Kind = Literal["share", "mean", "ratio"]
 Better = Literal["low", "high", ""]
@@ -63,6 +63,9 @@ GENERATION = (
     _right("first_success", "GSR at first", "share"),
     Measure("attempts", "attempts", "mean", "", "low"),
     _right("as_declared", "crash as declared", "share"),
+    _right("account_whole", "all told", "share"),
+    Measure("account_kept", "of told", "ratio", better="high", keys=("account_has", "account_told")),
+    Measure("account_assumed", "assumed", "mean", "", "low"),
 )
 NETWORK_WRONG = (
     _wrong("intersections_wrong", "ICE"), _wrong("lanes_wrong", "LCE"), _wrong("connectivity_wrong", "CE"),
@@ -70,6 +73,10 @@ NETWORK_WRONG = (
 NETWORK_MEAN = tuple(
     Measure(f"{short}_error", label, "mean", "%", "low")
     for short, label in zip(SHORT.values(), ("ICE", "LCE", "CE"), strict=True)
+)
+PEOPLE = (
+    Measure("person_facts", "facts by people", "mean", "", digits=2),
+    Measure("person_disagreed", "read otherwise", "ratio", better="low", keys=("person_disagreed", "person_given")),
 )
 TRUTH = (
     _right("lanes_total", "lanes total"),
@@ -156,6 +163,7 @@ _CONFLICT = {
 def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
     """Everything that is measured of a finished case, fractions and SI units."""
     found = dict(_generation(ran))
+    found |= dict(_people(ran.result.get("person") or {}))
     if label is not None:
         found |= _truth(compare(label, made_of(ran.folder, ran.result)), ran.generated)
     if ran.generated:
@@ -184,6 +192,16 @@ def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
     yield "first_success", quality([seen]).first_success
     if (hit := as_declared(ran.result)) is not None:
         yield "as_declared", float(hit)
+    if account := counts_of(ran.result):
+        yield "account_whole", float(account["verdict"] == "whole")
+        yield from ((f"account_{name}", float(account[name])) for name in ("told", "has", "assumed"))
+
+
+def _people(said: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Facts that people gave, and those that were read otherwise; nothing of a case that nobody looked at."""
+    if said.get("facts"):
+        yield from (("person_facts", float(said["facts"])), ("person_given", float(said["facts"])))
+        yield "person_disagreed", float(said["disagreed"])
 
 
 def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:

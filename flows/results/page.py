@@ -20,6 +20,7 @@ from flows.results.plots import Plot
 from flows.results.published import publication
 from flows.results.table import Cell, Row, Table, Tables
 from flows.results.writing import HOW, SIGNIFICANT, bracket, header, number, p_text
+from sgcad_core.result import counts_of
 
 HERE = Path(__file__).parent
 SLOT = re.compile(r"%TITLE%|%LEAD%|%TABLES%|%FIGURES%|%DATA%|/\*STYLE\*/|/\*SCRIPT\*/")
@@ -55,7 +56,29 @@ def _lead(tables: Tables) -> str:
     facts = " · ".join(f"{escape(str(k))} {escape(str(v))}" for k, v in known if v)
     share = 100 * done / of if of else 0
     bar = f'<div class="progress" title="{done} of {of} runs"><i style="width:{share:.1f}%"></i></div>'
-    return bar + "".join(f"<p>{escape(r)}</p>" for r in tables.remarks) + f'<p class="facts">{facts}</p>'
+    return (
+        _accounts(tables)
+        + bar
+        + "".join(f"<p>{escape(r)}</p>" for r in tables.remarks)
+        + f'<p class="facts">{facts}</p>'
+    )
+
+
+def _accounts(tables: Tables) -> str:
+    """Arm by arm in how many scenarios nothing told is lacking: the first thing on the page."""
+    told = []
+    for arm in tables.study.arms:
+        known = [a for ran in tables.study.ran.get(arm.name, {}).values() if (a := counts_of(ran.result))]
+        if known:
+            whole, lacking = sum(a["verdict"] == "whole" for a in known), sum(a["lacking"] for a in known)
+            good = whole == len(known)
+            words = "nothing told is lacking" if good else f"{lacking} things told are lacking"
+            told.append(
+                f'<p class="account {"good" if good else "amber"}">{"✓" if good else "⚠"} {escape(arm.label)}: '
+                f"{words}; {whole} of {len(known)} scenarios have all that their report tells, "
+                f"{sum(a['assumed'] for a in known)} things are assumed</p>"
+            )
+    return "".join(told)
 
 
 # ------------------------------------------------------------------ tables

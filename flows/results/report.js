@@ -30,12 +30,15 @@ const FILTERS = {
   "": () => true,
   declared: (r) => r.declared === true,
   undeclared: (r) => r.declared === false,
+  lacking: (r) => r.account?.verdict === "lacking",
+  whole: (r) => r.account?.verdict === "whole",
   wrong: (r) => wrong(r) > 0,
   right: (r) => judged(r) && wrong(r) === 0,
 };
 const SORTS = {
   wrong: (one, arm) => Math.max(...runs(one, arm).map(wrong)),
   error: (one, arm) => Math.max(...runs(one, arm).map((r) => r.error)),
+  lacking: (one, arm) => Math.max(...runs(one, arm).map((r) => r.account?.lacking ?? -1)),
   speed: (one, arm) => Math.max(...runs(one, arm).map((r) => r.speed ?? -1)),
   attempts: (one, arm) => Math.max(...runs(one, arm).map((r) => r.attempts ?? 0)),
   differ: (one) => one.differ,
@@ -104,10 +107,12 @@ function tile(run, arm) {
     draw(canvas);
     eye.observe(canvas);
   } else box.append(element("div", "blank " + run.status, run.why || run.status));
+  if (run.account) box.append(account(run.account));
   const line = element("p");
-  const good = run.status === "generated" && run.declared !== false;
+  const whole = !run.account || run.account.verdict === "whole";
+  const good = run.status === "generated" && run.declared !== false && whole;
   const pill = run.status !== "generated" ? run.status : run.declared === false ? "crash not as declared" : run.declared ? "crash as declared" : "generated";
-  line.append(element("span", "pill " + (good ? "good" : run.status === "refused" ? "" : "bad"), pill));
+  line.append(element("span", "pill " + (good ? "good" : run.status === "refused" ? "" : run.status === "generated" && run.declared !== false ? "amber" : "bad"), pill));
   box.append(line);
   const o = run.observed;
   if (o) box.append(element("p", "", `${o.actor} ${o.actor_area} · ${o.other} ${o.other_area} at ${Number(o.t_s).toFixed(1)} s` + (run.speed != null ? `, ${run.speed.toFixed(0)} m/s` : "")));
@@ -121,6 +126,15 @@ function tile(run, arm) {
     p.append(link);
     box.append(p);
   }
+  return box;
+}
+
+// What the report tells and the scenario has and lacks: words and a mark, not color alone.
+function account(a) {
+  const whole = a.verdict === "whole";
+  const text = whole ? `✓ all ${a.told} told are there` : `⚠ ${a.lacking} of ${a.told} told lacking`;
+  const box = element("p", "account " + (whole ? "good" : "amber"), `${text} · ${a.assumed} assumed`);
+  if (a.lacks.length) box.title = a.lacks[0];
   return box;
 }
 

@@ -14,7 +14,7 @@ from abc import ABC
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps
+from PIL import Image, ImageOps, UnidentifiedImageError
 
 from plugins.report_reader.degrade import Level, degrade
 from sgcad_core.errors import BadInput
@@ -28,6 +28,7 @@ MAX_NARRATIVE = 100_000
 MAX_PIXELS = 40_000_000
 MAX_SIDE_PX = 2048
 MIN_WORDS = 5
+PICTURE_KINDS = "PNG, JPEG, GIF, BMP, TIFF or WebP"
 UNREADABLE = (
     OSError, SyntaxError, EOFError, ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError,
     RuntimeError, MemoryError, struct.error, zlib.error,
@@ -164,8 +165,12 @@ def diagram(raw: bytes, source: Path) -> Diagram:
             flat = _on_white(ImageOps.exif_transpose(picture))
     except Image.DecompressionBombError as fault:
         raise BadInput(f"{source}: {fault}; the limit is {MAX_PIXELS:,} pixels: scale it down") from fault
+    except UnidentifiedImageError as fault:  # its text names an object of ours
+        raise BadInput(
+            f"{source}: no picture of a kind that is read: give PNG, JPEG, GIF, BMP, TIFF or WebP"
+        ) from fault
     except UNREADABLE as fault:
-        raise BadInput(f"{source}: no readable picture ({fault}): give PNG, JPEG, GIF, BMP, TIFF or WebP") from fault
+        raise BadInput(f"{source}: no readable picture ({fault}): give {PICTURE_KINDS}") from fault
     if max(flat.size) > MAX_SIDE_PX:
         flat.thumbnail((MAX_SIDE_PX, MAX_SIDE_PX))
     out = io.BytesIO()

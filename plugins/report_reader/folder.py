@@ -10,7 +10,7 @@ from plugins.report_reader.nhtsa_xml import NhtsaXml, parse_case
 from plugins.report_reader.pdf import Pdf
 from sgcad_core.errors import BadInput
 from sgcad_core.records import CrashReport, Diagram
-from sgcad_core.report_files import check_inside, is_regular, read_regular
+from sgcad_core.report_files import check_inside, files_below, is_regular, read_regular
 
 TEXTS = ("report.txt", "narrative.txt")
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp")
@@ -23,6 +23,7 @@ class Folder(EvidenceReader):
     def read(self, source: Path) -> CrashReport:
         """Read one folder. Raises BadInput naming the file that is missing or wrong."""
         try:
+            files_below(source)
             files = sorted(f for f in source.iterdir() if is_regular(f))
         except OSError as fault:
             raise BadInput(f"{source}: cannot be listed: {fault.strerror or fault}") from fault

@@ -16,8 +16,8 @@ from sgcad_core.report_files import read_regular
 MAX_PAGES = 60
 MAX_DRAWN_BYTES = 8_000_000
 """Of what all pages draw, uncompressed: a page of text has 20 kB, a scene diagram some 200 kB."""
-MAX_DRAWN = 400_000
-"""Drawing operators of all pages: what is drawn again and again from one place counts each time."""
+MAX_DRAWN = 100_000
+"""Drawing operators of all pages: what is drawn again and again from one place counts each time. So many take 1.5 s."""
 MIN_PICTURE_PX = 200
 
 

@@ -50,7 +50,8 @@ class Fused(RoadWriter):
             return self.template.network_of(context.narrative, facts)
         shown, note = self._shown(context, facts, ask, attempt)
         network = self.template.network_of(context.narrative, shown)
-        return network.model_copy(update={"log": f"drawing: {note}\n{network.log}".strip()})
+        log = f"drawing: {note}\n{network.log}".strip()
+        return network.model_copy(update={"layout": None, "log": log})  # the model answered another one
 
     def _shown(self, context: Context, facts: RoadFacts, ask: Ask, attempt: int) -> tuple[RoadFacts, str]:
         """The facts with what the drawing adds, and what that is."""

@@ -58,10 +58,11 @@ class Template(RoadWriter):
             )
         refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
-        spec = road_spec(layout_of_facts(facts, defaults), self.leg_length_m)
+        layout = layout_of_facts(facts, defaults)
+        spec = road_spec(layout, self.leg_length_m)
         told = told_roads(facts, spec)
         network = compile_network(plain_xml(spec, told), spec)
         notes = [f"template: {note}; a default stands in" for note in facts.notes]
         if open_limits := [name for name, road in told.items() if not road.posted]:
             notes.append(f"template: no posted speed limit is told of {', '.join(open_limits)}; the map leaves it open")
-        return network.model_copy(update={"log": "\n".join([*notes, network.log]).strip()})
+        return network.model_copy(update={"layout": layout, "log": "\n".join([*notes, network.log]).strip()})

@@ -18,6 +18,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.facts import CrashFacts
+from sgcad_core.narrative.mended import holds
 from sgcad_core.narrative.reading import Reading
 from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.specs import RoadSpec
@@ -51,8 +52,9 @@ class Rules(ScenarioWriter):
         said: list[str] = []
         if self.try_others and network.net_xml and not reading.lost_control:
             least = least_doubted(
-                reading.crash, lambda facts: behavior_of_facts(facts, spec), parse_net(network.net_xml), scenario
-            )
+                reading.crash, lambda facts: behavior_of_facts(facts, spec), parse_net(network.net_xml), scenario,
+                lambda facts: holds(facts, reading.edits),
+            )  # fmt: skip
             said = least.notes()
             if least.words:
                 scenario = self._compiled(least.facts, spec, network, reading)

@@ -7,14 +7,13 @@ reference point is the middle of the front bumper, its angle is clockwise from n
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 
 import libsumo
 
 from plugins.simulator._exchange import Mover, Replayed
 from sgcad_core.errors import SimulationFailed
+from sgcad_core.scratch import scratch
 
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true")
 _OPTIONS = ("--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never", *_SILENT)
@@ -30,8 +29,8 @@ def replay(net_xml: str, movers: Sequence[Mover], dt_s: float) -> Replayed:
     Where SUMO drops an actor (off the net), its own poses stand and a note says from when on. Raises
     SimulationFailed with SUMO's words.
     """
-    with tempfile.TemporaryDirectory(prefix="sgcad-replay-") as folder:
-        net = Path(folder, "road.net.xml")
+    with scratch("replay") as folder:
+        net = folder / "road.net.xml"
         net.write_text(net_xml, encoding="utf-8")
         try:
             libsumo.start(["sumo", "-n", str(net), "--step-length", str(dt_s), *_OPTIONS])

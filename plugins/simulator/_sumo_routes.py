@@ -7,15 +7,14 @@ of an execution has a row at every time.
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 
 import libsumo
 import numpy as np
 
 from plugins.simulator._exchange import Driven
 from sgcad_core.errors import SimulationFailed
+from sgcad_core.scratch import scratch
 
 _COLLISIONS = ("--collision.action", "warn", "--collision.check-junctions", "true", "--collision.mingap-factor", "0")
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true")
@@ -29,8 +28,8 @@ def drive(net_xml: str, routes_xml: str, ids: Sequence[str], longest_s: float, d
 
     Raises SimulationFailed with SUMO's words, or naming who never appears together.
     """
-    with tempfile.TemporaryDirectory(prefix="sgcad-drive-") as folder:
-        net, routes = Path(folder, "road.net.xml"), Path(folder, "scenario.rou.xml")
+    with scratch("drive") as folder:
+        net, routes = folder / "road.net.xml", folder / "scenario.rou.xml"
         net.write_text(net_xml, encoding="utf-8")
         routes.write_text(routes_xml, encoding="utf-8")
         files = ["-n", str(net), "-r", str(routes)]

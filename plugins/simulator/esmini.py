@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import signal
 import subprocess
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from sgcad_core.formats.openscenario.player import DT_S
 from sgcad_core.interfaces import Simulator
 from sgcad_core.limited import run_limited
 from sgcad_core.records import Execution, RoadNetwork, Scenario
+from sgcad_core.scratch import scratch
 
 LOG = "log.csv"
 MEMORY_MB = 4_000
@@ -53,11 +53,11 @@ class Esmini(Simulator):
         """Play the .xosc on the .xodr. Raises MissingTool, SimulationFailed with esmini's words."""
         if scenario.xosc is None or network.xodr is None:
             raise SimulationFailed("esmini needs an .xosc and an .xodr; for SUMO route files use simulator 'libsumo'")
-        with tempfile.TemporaryDirectory(prefix="sgcad-esmini-") as folder:
-            Path(folder, "scenario.xosc").write_text(scenario.xosc, encoding="utf-8")
-            Path(folder, "road.xodr").write_text(network.xodr, encoding="utf-8")
-            said = self._run(Path(folder))
-            log = Path(folder, LOG)
+        with scratch("esmini") as folder:
+            (folder / "scenario.xosc").write_text(scenario.xosc, encoding="utf-8")
+            (folder / "road.xodr").write_text(network.xodr, encoding="utf-8")
+            said = self._run(folder)
+            log = folder / LOG
             if not log.is_file():
                 raise SimulationFailed(f"esmini wrote no log; its last words: {_last(said)}")
             seen = trajectories(log.read_text("utf-8", "replace"), [a.id for a in scenario.actors], DT_S)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 
 import libsumo
+
+from sgcad_core.scratch import scratch
 
 STEP_S = 0.05
 _OPTIONS = (
@@ -21,8 +21,8 @@ def trial(
     """SUMO's message ("" if it runs), who never drove, and who collided with whom, each pair once."""
     met: set[str] = set()
     hits: dict[tuple[str, str], None] = {}
-    with tempfile.TemporaryDirectory(prefix="sgcad-routes-") as folder:
-        net, routes = Path(folder, "road.net.xml"), Path(folder, "scenario.rou.xml")
+    with scratch("routes") as folder:
+        net, routes = folder / "road.net.xml", folder / "scenario.rou.xml"
         net.write_text(net_xml, encoding="utf-8")
         routes.write_text(routes_xml, encoding="utf-8")
         try:

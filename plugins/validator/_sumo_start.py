@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-
 import libsumo
+
+from sgcad_core.scratch import scratch
 
 STEPS = 2
 
 
 def start(net_xml: str) -> str:
     """ "" if SUMO loads the network and steps on it, else SUMO's message (details stand on stderr)."""
-    with tempfile.TemporaryDirectory(prefix="sgcad-load-") as folder:
-        file = Path(folder) / "road.net.xml"
+    with scratch("load") as folder:
+        file = folder / "road.net.xml"
         file.write_text(net_xml, encoding="utf-8")
         try:
             libsumo.start(["sumo", "-n", str(file), "--no-step-log", "true", "--xml-validation", "never"])

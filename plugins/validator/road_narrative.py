@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
-from plugins.validator._drawn_roads import DrawnRoad, drawn_roads, junctions, near
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
 from sgcad_core.asking.narrowing import SOME_LANES
 from sgcad_core.errors import InvalidOutput
@@ -24,6 +23,8 @@ from sgcad_core.narrative.paths import ahead, legs_used, turns_off
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.narrative.unsupported import not_drawn
 from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
+from sgcad_core.roads.drawn import DrawnRoad, drawn_roads, junctions, near
+from sgcad_core.roads.told_totals import allowed_totals, vague
 from sgcad_core.specs import Compass
 
 _finding = Finder("road_narrative")
@@ -163,7 +164,7 @@ class RoadNarrative(Validator):
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
-            searched = drawn if _vague(road, pictured) else here
+            searched = drawn if vague(road, pictured) else here
             if not allowed or not here or any(d.total in allowed for d in searched):
                 continue
             low, high = min(allowed), max(allowed)
@@ -186,7 +187,7 @@ class RoadNarrative(Validator):
             flows = {toward} if toward else _driven(road, facts)
             told += [(way, count, count) for way in flows if count and len(flows) == 1]
         driven = [v for v in facts.crash.vehicles if v.heading_stated]
-        told += [(v.heading, v.lane, max(SOME_LANES)) for v in driven if v.heading and v.lane]
+        told += [(v.heading, abs(v.lane), max(SOME_LANES)) for v in driven if v.heading and v.lane]
         for way, least, most in told:
             approach = turned(way, 180)
             there = {d.lanes_towards(way, self.tolerance_deg) for d in drawn} - {0}
@@ -214,28 +215,6 @@ class RoadNarrative(Validator):
         return abs(limit - speed_mph) <= self.limit_tolerance_mph
 
 
-def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
-    """Totals of both directions that agree with the text; empty where it does not state one for sure.
-
-    A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
-    not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
-    but those that the text names, and lanes told way by way leave no center lane open.
-    """
-    lanes = road.lanes
-    if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
-        return set()
-    named = lanes.total or (2 * lanes.each_way if lanes.each_way else None)
-    named = named or (sum(lanes.toward.values()) if len(lanes.toward) == 2 else None)
-    if not named:
-        return set()
-    whole = len(lanes.toward) == 2 and sum(lanes.toward.values()) == lanes.total  # turn lanes are among them
-    extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
-    both = "each" in lanes.turns or len(lanes.turns) > 1  # turn lanes either way: no place of the road has all of them
-    beyond = max(map(len, lanes.turns.values())) if both else 0
-    fewer = max(beyond, lanes.center_turn_lane or (_vague(road, pictured) and named % 2))
-    return set(range(max(1, named - fewer), named + extra + 1))
-
-
 def _alone(facts: RoadFacts) -> bool:
     """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
     vehicles = facts.crash.vehicles
@@ -260,11 +239,6 @@ def _adds_up(road: RoadFact) -> bool:
     """Whether lanes told way by way are those of the told total, a center lane counted or not."""
     named, total = sum(road.lanes.toward.values()), road.lanes.total
     return total is None or (total - named in (0, 1) if len(road.lanes.toward) > 1 else named < total)
-
-
-def _vague(road: RoadFact, pictured: bool) -> bool:
-    """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
-    return pictured and len(road.lanes.toward) < 2
 
 
 def _ids(roads: list[DrawnRoad]) -> str:

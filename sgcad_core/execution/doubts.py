@@ -72,9 +72,14 @@ def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
 
 
 def least_doubted(
-    facts: CrashFacts, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph, first: Scenario
+    facts: CrashFacts,
+    behave: Callable[[CrashFacts], BehaviorSpec],
+    graph: LaneGraph,
+    first: Scenario,
+    may_be: Callable[[CrashFacts], bool] = lambda facts: True,
 ) -> Least:
-    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned.
+    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned,
+    `may_be`: whether another reading is possible at all (none that contradicts a person is).
 
     What the text tells gives way only where the declared contact does not come about at all: on the development reports
     a corner's other side and other headings resolved three doubts of seven, and each time the codes had it as it was
@@ -85,7 +90,7 @@ def least_doubted(
         return Least(facts, "", ())
     tried = [Tried("the first reading", most)]
     best: tuple[float, CrashFacts, str] = (most, facts, "")
-    for other in hypotheses(facts)[:MOST]:
+    for other in [one for one in hypotheses(facts) if may_be(one.facts)][:MOST]:
         left = _left(other, behave, graph)
         if left is None:
             continue

@@ -19,7 +19,7 @@ from sgcad_core.formats.opendrive.signals import HEAD, Control, Controller, Sign
 from sgcad_core.formats.opendrive.streets import streets
 from sgcad_core.formats.openscenario.lane_motion import driven_way
 from sgcad_core.formats.openscenario.motion import Pose
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads import XodrRoads, roads_of
 from sgcad_core.formats.openscenario.way import LanePlace, Way
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import arc_lengths
@@ -57,7 +57,7 @@ def signal_times(
     graph = parse_net(network.net_xml or "<net/>")
     if not graph.programs or network.xodr is None:
         return SignalTimes()
-    control, roads = control_of(graph, streets(graph)), XodrRoads(network.xodr)
+    control, roads = control_of(graph, streets(graph)), roads_of(network.xodr)
     if not (wanted := {move.actor: told[move.actor] for move in motions if move.actor in told}):
         return SignalTimes((), ("what the traffic signals showed is not told: the scenario has no phases",))
     found = {move.actor: _approach(move, control, roads, told[move.actor]) for move in motions if move.actor in wanted}

@@ -20,8 +20,7 @@ from sgcad_core.narrative.road_provenance import road_of_bearing
 from sgcad_core.records import Generation, RoadNetwork, Scenario, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Actor, Road
-
-MPS_PER_MPH = 0.44704
+from sgcad_core.units import MPS_PER_MPH
 
 
 @dataclass(frozen=True)
@@ -108,9 +107,10 @@ def _actor(actor: Actor, track: Trajectory | None, graph: LaneGraph, grounds: Gr
     yield grounds.fact(f"{at}.start_lane", lane, lane_path, (f"{at}.lane", f"{at}.lane_word"), "planner: a free lane")
     if track is not None and len(track.speed_mps):
         yield _speed(actor, float(track.speed_mps[0]) / MPS_PER_MPH, grounds, at, path)
-    if actor.exit_road or actor.maneuver in ("turn_left", "turn_right"):
-        sources = (f"{at}.exit_heading", f"{at}.maneuver")
-        yield grounds.fact(f"{at}.exit_road", actor.exit_road, f"{path}.exit_road", sources, "planner: straight on")
+    sources = (f"{at}.exit_heading", f"{at}.maneuver")
+    exit_path = f"{path}.exit_road" if actor.exit_road else ""
+    otherwise = "planner: straight on" if actor.exit_road else "it stays on its road"
+    yield grounds.fact(f"{at}.exit_road", actor.exit_road, exit_path, sources if actor.exit_road else (), otherwise)
     if grounds.answer is not None:
         for name in ("kind", "maneuver"):
             yield grounds.fact(f"{at}.{name}", getattr(actor, name), f"{path}.{name}", (f"{at}.{name}",), "")

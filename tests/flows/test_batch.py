@@ -42,6 +42,13 @@ def test_a_case_that_kills_its_process_fails_alone(batch):
 
 
 @pytest.mark.slow
+def test_a_process_killed_from_outside_costs_no_case(batch, tmp_path):
+    endings = work(batch(a=f"DIE ONCE {tmp_path / 'killed'}"))
+    assert (tmp_path / "killed").exists()
+    assert endings["a"].result["status"] == "generated"
+
+
+@pytest.mark.slow
 def test_running_again_skips_what_is_done_and_tries_failures_again(batch):
     work(batch(a="", b="RAISE", c="REFUSE"))
     again = work(batch())

@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 
 from flows import cases
 from flows.cases import Case, cases_in, cases_of, digest_of, safe_id
+from plugins.report_reader.folder import Folder
 from sgcad_core.config import load
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import BadInput, ConfigError
+from sgcad_core.report_files import MAX_FILES
 
 
 @pytest.mark.parametrize("name", ["2005-12-345678901", "ciren-100271", "case 7 (b)", "report.txt", "Köln", "a_b.c"])
@@ -149,6 +151,11 @@ def test_a_raised_plugin_version_changes_the_digest(reports, config_file, monkey
     assert digest(folder, file) != before
 
 
+def test_an_edited_wording_counts_as_edited_code():
+    wordings = cases.settings.ROOT / "sgcad_core/language/rules/clauses.yaml"
+    assert wordings in cases._sources(cases.settings.ROOT / "sgcad_core")
+
+
 def test_a_changed_script_of_answers_changes_the_digest(reports, config_file, tmp_path):
     folder, script = reports(c1="") / "c1", tmp_path / "answers.yaml"
     script.write_text("- hello")
@@ -176,6 +183,24 @@ def test_an_unreadable_report_has_a_digest(reports, config_file):
     folder = reports(c1="") / "c1"
     (folder / "report.txt").chmod(0)
     assert digest(folder, config_file())
+
+
+def test_a_folder_of_a_whole_disk_is_neither_hashed_nor_read(tmp_path, config_file):
+    (tmp_path / "home").mkdir()
+    for number in range(MAX_FILES + 1):
+        (tmp_path / "home" / f"{number}.dat").touch()
+    (tmp_path / "home" / "report.txt").write_text("Vehicle #1 struck Vehicle #2.", encoding="utf-8")
+    (tmp_path / "case").symlink_to(tmp_path / "home")
+    assert digest(tmp_path / "case", config_file())
+    with pytest.raises(BadInput, match="more than 1000 files and folders in it: give the folder of one report"):
+        Folder().read(tmp_path / "case")
+
+
+def test_a_file_larger_than_any_report_is_not_hashed(tmp_path, config_file):
+    (tmp_path / "case").mkdir()
+    with (tmp_path / "case" / "report.txt").open("wb") as sparse:
+        sparse.truncate(200 * 2**30)
+    assert digest(tmp_path / "case", config_file())
 
 
 def test_an_index_built_anew_changes_the_digest_and_a_missing_one_is_said_at_once(reports, config_file, tmp_path):

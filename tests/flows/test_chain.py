@@ -7,12 +7,13 @@ import pytest
 
 from flows import store
 from flows.cases import Case
-from flows.chain import run_case
+from flows.chain import CaseRun, run_case
 from plugins.backbone.scripted import Scripted
+from sgcad_core import settings
 from sgcad_core.config import load
 from sgcad_core.errors import ConfigError, MissingTool
 
-ALWAYS = {"report.txt", "attempts", "result.json", ".digest"}
+ALWAYS = {"report.txt", "attempts", "result.json", "specs.json", ".digest", ".source"}
 EXECUTED = ALWAYS | {
     "road.net.xml", "road.xodr", "scenario.xosc", "trajectories.csv", "metrics.json", "player.html", "picture.png",
 }  # fmt: skip
@@ -163,3 +164,55 @@ def test_findings_stand_in_the_next_prompt_unless_the_config_keeps_them_back(run
     first, second = ((folder / "attempts" / f"road-0{n}" / "prompt.txt").read_text() for n in (1, 2))
     assert "the answer is not ok" not in first
     assert ("the answer is not ok" in second) is shown
+
+
+SECOND = {
+    "touched": True, "met": "suv", "subject": "backing", "other": "straight", "subject_area": "back",
+    "other_area": "front", "junction": False,
+}  # fmt: skip
+
+
+def test_a_second_opinion_is_asked_once_and_read_with_the_rules(run, monkeypatch, tmp_path):
+    from sgcad_core.opinion import Weights
+
+    monkeypatch.setattr("sgcad_core.asking.opinion.load_weights", lambda prompt: {"subject": Weights(differ=9.0)})
+    seen = []
+    monkeypatch.setattr(
+        "flows.leaving.result_of", lambda record: seen.append(record.reading) or {"status": "generated"}
+    )
+    backbone = {"name": "scripted", "answers": [SECOND]}
+    source = tmp_path / "c1.txt"
+    source.write_text("The AV was stopped at a light. An SUV struck the rear of the AV with its front.")
+    ending, _ = run(source=source, backbone=backbone, decoder="greedy", second_opinion="mini_gist")
+    assert ending.result["status"] == "generated"
+    assert seen[0].crash.vehicles[0].maneuver == "backing"
+    assert [(f.field, f.basis) for f in seen[0].facts if f.basis == "model"] == [("gist.subject", "model")]
+
+
+def test_a_second_opinion_needs_a_model(config_file):
+    with pytest.raises(ConfigError, match="backbone: missing, but second_opinion ask"):
+        load(config_file("one", second_opinion="mini_gist"))
+
+
+def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(monkeypatch, tmp_path):
+    from sgcad_core.opinion import Heard, Opinion, Weights
+
+    backs = Opinion(heard={"other": Heard(value="backing", p=0.9)}, weights={"other": Weights()})
+    monkeypatch.setattr("sgcad_core.narrative.learned.opinion", lambda narrative: backs)
+    real = CaseRun._both
+    monkeypatch.setattr(CaseRun, "_both", lambda self, report: None if report.opinion else real(self, report))
+    source = tmp_path / "c1.txt"
+    source.write_text(
+        "The AV was stopped at a red light on Main Street. An SUV behind it, traveling straight, struck the rear "
+        "of the AV with its front bumper."
+    )
+    config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
+    result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
+    assert result["status"] == "generated"
+    assert result["collision"]["realised"]
+    assert {a["id"]: a["maneuver"] for a in result["actors"]} == {"V1": "stopped", "V2": "straight"}
+    assert any("the rules' reading stands" in str(note) for note in result["notes"])
+
+
+def test_the_learned_second_reader_needs_no_model(config_file):
+    assert load(config_file("one", second_opinion="learned")).backbone is None

@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+import httpx
 import pytest
 
 from flows import cli
@@ -208,25 +209,52 @@ def test_a_batch_ends_case_by_case_and_running_again_only_does_what_is_left(serv
     assert "Traceback" not in ended.stderr
     again = sgcad(*arguments)
     row = next(line for line in again.stdout.splitlines() if line.split()[:1] == ["kit"]).split()
-    assert row[1:7] == ["1", "1", "0", "1", "1/1", "2"]
+    assert row[1:8] == ["1", "1", "0", "1", "1/1", "0/1", "2"]
 
 
 @pytest.mark.slow
-def test_prefect_shows_every_case_and_attempt(server, reports, config_file, tmp_path):
+def test_prefect_shows_every_step_of_a_case_what_it_waited_for_and_an_artifact(server, reports, config_file, tmp_path):
     sgcad("evaluate", reports(a="", b="REPAIR"), "--config", config_file(), "--out", tmp_path / "out")
     asking = config_file(
         "asking", road_writer="testkit_asking", decoder="greedy", backbone={"name": "scripted", "answers": ["no", "ok"]}
     )
     assert sgcad("run", tmp_path / "cases" / "a", "--config", asking, "--out", tmp_path / "out").returncode == 0
     time.sleep(2)  # a server that stays writes states once a second
-    code = (
-        "from prefect.client.orchestration import get_client\n"
-        "with get_client(sync_client=True) as client:\n"
-        "    for run in client.read_task_runs(limit=200): print(run.name, run.state.name)\n"
-    )
-    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.splitlines()
-    assert {"kit/a Generated", "kit/b Exhausted", "asking/a Generated"} <= set(shown)
-    assert {"road[1] Accepted", "road[1] Repair", "road[2] Accepted", "scenario[1] Accepted"} <= set(shown)
+    runs = {run["name"]: run["id"] for run in asked(server, "flow_runs/filter")}
+    shown, edges, inside = graph_of(server, runs["kit over 2 reports"])
+    assert {("kit/a", "COMPLETED"), ("kit/b", "FAILED"), ("read", "COMPLETED"), ("draw", "COMPLETED")} <= shown
+    assert {
+        ("retrieve[road]", "road[1]"),
+        ("road[1]", "scenario[1]"),
+        ("simulate", "measure"),
+        ("draw", "track"),
+    } <= edges
+    assert inside == {"kit/a", "kit/b"}
+    states = {(run["name"], run["state_name"]) for run in asked(server, "task_runs/filter")}
+    assert {("kit/a", "Lacking"), ("kit/b", "Exhausted"), ("asking/a", "Lacking")} <= states
+    assert {("road[1]", "Accepted"), ("road[1]", "Repair"), ("road[2]", "Accepted"), ("track", "Completed")} <= states
+    assert ("road[1]", "road[2]") in graph_of(server, runs["asking over a"])[1]
+    links = json.loads((tmp_path / "out" / "kit" / "a" / "links.json").read_text())
+    assert links["prefect"].endswith(f"/runs/flow-run/{runs['kit over 2 reports']}")
+    found = asked(server, "artifacts/filter")
+    told = {a["key"]: a for a in found if a["flow_run_id"] == runs["kit over 2 reports"]}
+    assert links["prefect_case"].endswith(told["kit-a"]["task_run_id"])
+    assert "![The crash from above](data:image/png;base64," in told["kit-a"]["data"]
+    assert "| told | in the scenario | lacking | assumed |" in told["kit-a"]["data"]
+
+
+def asked(server, path):
+    """What Prefect's server answers."""
+    return httpx.post(f"{server.address}/{path}", json={}, timeout=30).json()
+
+
+def graph_of(server, run):
+    """A flow run's graph: (task run, kind of state), who waited for whom, inside of what."""
+    nodes = dict(httpx.get(f"{server.address}/flow_runs/{run}/graph-v2", timeout=30).json()["nodes"])
+    name = {key: node["label"] for key, node in nodes.items()}
+    edges = {(name[up["id"]], node["label"]) for node in nodes.values() for up in node["parents"]}
+    inside = {name[around["id"]] for node in nodes.values() for around in node["encapsulating"]}
+    return {(node["label"], node["state_type"]) for node in nodes.values()}, edges, inside
 
 
 @pytest.mark.slow

@@ -134,7 +134,7 @@ def test_text2scenario_takes_a_map_and_its_planner_brings_the_crash_about(run):
     assert result["network"]["intersections"] == 1
     assert result["collision"]["realised"] is True
     assert (folder / "scenario.xosc").is_file()
-    assert any("map_library: t_four_lanes_stop" in note for note in result["notes"])
+    assert any("map_library: t_four_lanes_stop" in note["text"] for note in result["notes"])
 
 
 def test_flawed_forms_are_mended_fault_by_fault(run):

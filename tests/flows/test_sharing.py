@@ -118,7 +118,20 @@ def test_a_damaged_shelf_changes_nothing(work, config_file, tmp_path):
 def test_a_step_is_the_same_if_what_it_depends_on_is(config_file, changes, same):
     before = keys_of(load(config_file("one", **ASKING)))
     after = keys_of(load(config_file("two", **(ASKING | changes))))
-    assert {step for step in vars(before) if getattr(before, step) == getattr(after, step)} == same
+    unchanged = {step for step in vars(before) if getattr(before, step) == getattr(after, step)}
+    assert unchanged == same | {"opinion"}, "nobody is asked for one"
+
+
+@pytest.mark.parametrize(
+    ("changes", "same"),
+    [({"seed": 7}, False), ({"decoder": "nucleus"}, False), ({"scenario_writer": "rules"}, True)],
+    ids=lambda value: next(iter(value)) if isinstance(value, dict) else "",
+)
+def test_a_second_opinion_is_another_with_another_model_or_seed(config_file, changes, same):
+    seconded = ASKING | {"second_opinion": "mini_gist"}
+    before, after = (keys_of(load(config_file(n, **(seconded | c)))) for n, c in (("one", {}), ("two", changes)))
+    assert (before.opinion == after.opinion) is same
+    assert before.opinion != keys_of(load(config_file("three", **ASKING))).opinion
 
 
 def test_a_plugins_new_version_is_another_step(config_file, testkit, monkeypatch):

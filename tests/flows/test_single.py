@@ -55,14 +55,23 @@ def test_of_a_near_crash_it_is_told_how_near_they_come(basis, realised, line):
     assert single.lines([RESULT | {"collision": nothing, "near_crash": near}]) == [line]
 
 
-def test_only_values_that_nobody_told_count_as_assumed():
-    facts = [
-        {"field": "vehicles.V1.start_speed_mph", "value": 50.0, "basis": "default"},
-        {"field": "vehicles.V2.maneuver", "value": "turn_left", "basis": "default"},
-        {"field": "light", "value": "day", "basis": "text"},
+def item(kind, text, reason=""):
+    return {"kind": kind, "text": text, "reason": reason}
+
+
+def test_what_lacks_is_told_with_its_reason_and_what_was_assumed_in_one_line():
+    items = [item("lacks", "V2 strikes V3", "the two do not touch"), item("has", "V1"), item("assumed", "V1 50 mph")]
+    account = {"verdict": "lacking", "told": 2, "has": 1, "lacking": 1, "assumed": 1, "items": items}
+    assert single.lines([RESULT | {"account": account}])[1:] == [
+        "told 2, has 1, lacking 1, assumed 1",
+        "lacking: V2 strikes V3 (the two do not touch)",
+        "assumed: V1 50 mph",
     ]
-    line = single.lines([RESULT | {"facts": facts}])[-1]
-    assert line == "assumed, since the report does not tell: V1 speed 50.0 mph; V2 maneuver turn left"
+
+
+def test_a_result_without_a_scenario_has_no_account_to_tell():
+    assert single.account_lines(RESULT | {"account": {"verdict": "none", "items": []}}) == []
+    assert single.account_lines(RESULT) == []
 
 
 def test_several_cases_and_refused_ones_are_left_to_the_table():

@@ -6,8 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from flows import cli
 from flows.results.writing import _no_formula
 from flows.terminal import escape
+from sgcad_core.errors import BadInput
 
 
 @given(st.text())
@@ -19,6 +21,15 @@ def test_no_control_character_and_no_markup_passes(text):
 
 def test_an_escape_sequence_is_seen():
     assert escape("a\x1b[31mb[bold]") == "a\ufffd[31mb\\[bold]"
+
+
+def test_a_fault_that_names_a_strangers_file_reaches_the_terminal_as_text(capsys, monkeypatch):
+    def fails():
+        raise BadInput("a\x1b[31mb.txt: cannot be read")
+
+    monkeypatch.setattr(cli, "_leave", lambda code: None)
+    cli.guarded(fails)
+    assert capsys.readouterr().err == "sgcad: error: a\ufffd[31mb.txt: cannot be read\n"
 
 
 def test_a_spreadsheet_computes_no_name():

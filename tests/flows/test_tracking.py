@@ -10,6 +10,7 @@ from flows.cases import Case
 from flows.chain import Ending
 from flows.store import CaseFolder
 from sgcad_core.config import load
+from sgcad_core.errors import MissingTool
 from sgcad_core.interfaces import Tracker
 
 RESULT = {"status": "generated", "seconds": {}}
@@ -37,7 +38,7 @@ class Noting(Tracker):
     def end(self, arm, finished):
         if self.fails:
             raise OSError("the database is locked")
-        self._note(f"end {arm.config} {finished}")
+        self._note(f"end {arm.config} {finished}{arm.fault and f' {arm.fault}'}")
 
 
 @pytest.fixture
@@ -106,6 +107,16 @@ def test_a_batch_that_is_interrupted_says_so_and_the_next_one_ends_it(plan, told
     assert told() == ["begin kit 2", "case c2", "end kit True"]
 
 
+def test_a_batch_that_a_fault_ends_says_which(plan, told):
+    def broken():
+        with tracking.following(plan):
+            raise MissingTool("netconvert is not installed: pip install eclipse-sumo")
+
+    with pytest.raises(MissingTool, match="netconvert"):
+        broken()
+    assert told()[-1] == "end kit False MissingTool: netconvert is not installed: pip install eclipse-sumo"
+
+
 def test_a_batch_killed_after_its_last_case_is_ended_by_the_next(plan, told):
     killed = tracking.following(plan)  # never left, as kill -9 leaves it
     killed.__enter__()
@@ -126,7 +137,7 @@ def test_a_tracker_that_cannot_be_told_ends_no_batch_and_is_told_again(plan, tol
     jobs = [Job(j.config.model_copy(update={"tracker": broken}), j.case, j.digest, j.folder) for j in plan]
     with tracking.following(jobs):
         pass
-    assert "the database is locked; run again to mend it" in caplog.text
+    assert "keeps the tracker's database locked: end it (`fuser FILE` names it); then run again" in caplog.text
     assert not any(tracking.tracked(job) for job in jobs)
 
 
@@ -166,5 +177,5 @@ def test_a_database_that_stays_locked_is_tried_twice_and_told_in_one_line(config
     said = [tracking.track_safely(job, SimpleNamespace(result={}, calls=())) for _ in range(4)]
     tracking._failed.clear()
     assert len(tried) == tracking.GIVE_UP_AFTER
-    assert said[0] == "RuntimeError: (sqlite3.OperationalError) database is locked"
+    assert said[0] == "another program keeps the tracker's database locked: end it (`fuser FILE` names it)"
     assert said[-1] == "not tried, since the cases before it could not be logged"

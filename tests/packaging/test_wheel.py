@@ -85,3 +85,16 @@ def test_a_report_becomes_a_scenario(installed, config):
     place = empty / "out" / config.removesuffix(".yaml").replace("/", "-") / "report"
     assert json.loads((place / "result.json").read_text())["status"] == "generated"
     assert {"road.xodr", "scenario.xosc", "player.html"} <= {file.name for file in place.iterdir()}
+
+
+def test_the_desk_has_its_pages(installed):
+    bin_, empty = installed
+    code = (
+        "from pathlib import Path; from starlette.testclient import TestClient\n"
+        "from flows.desk.app import application\n"
+        "client = TestClient(application(Path('.')), base_url='http://localhost')\n"
+        "places = ('/', '/static/desk.css', '/static/mend.js', '/case/none')\n"
+        "print([client.get(place).status_code for place in places])"
+    )
+    done = run([bin_ / "python", "-c", code], empty)
+    assert done.stdout.strip() == "[200, 200, 200, 404]", done.stderr

@@ -104,3 +104,35 @@ def test_no_module_outside_the_registry_spells_a_kind() -> None:
 def test_a_kind_that_is_spelled_is_seen() -> None:
     tree = ast.parse('"""ramp"""\nKind = Literal["ramp"]\nif road.kind in ("ramp", "driveway"):\n    pass\n')
     assert [n.lineno for n in _literals(tree) if n.value in SPELLED] == [3, 3]
+
+
+LAYOUTS = {record.layout for record in kinds.JUNCTIONS if record.layout} | {kinds.ROAD}
+"""Names that mean something else too, so that they are looked for where a kind or a layout is asked for."""
+
+
+def _asked(tree: ast.AST) -> list[int]:
+    """Lines that compare a layout or a kind of road with a text, or make one of such a text."""
+    found = []
+    for node in ast.walk(tree):
+        if not isinstance(node, (ast.Compare, ast.Dict, ast.keyword, ast.AnnAssign)):
+            continue
+        names = {getattr(n, "attr", getattr(n, "id", None)) for n in ast.walk(node)} | {getattr(node, "arg", None)}
+        texts = {n.value for n in ast.walk(node) if isinstance(n, ast.Constant) and isinstance(n.value, str)}
+        keyed = isinstance(node, ast.Dict) and len(LAYOUTS & texts) > 1
+        if LAYOUTS & texts and (keyed or ({"layout", "kind"} & names and not isinstance(node, ast.Dict))):
+            found.append(node.lineno)
+    return found
+
+
+def test_the_generator_spells_no_layout_and_no_kind_of_road() -> None:
+    files = sorted((ROOT / "mini").rglob("*.py"))
+    found = [f"{f.relative_to(ROOT)}:{n}" for f in files for n in _asked(ast.parse(f.read_text(encoding="utf-8")))]
+    assert found == [], "take the name from sgcad_core.kinds"
+
+
+@pytest.mark.parametrize("line", [
+    'crash.layout == "plain"', 'layout in ("four", "t")', 'odds = {"plain": 1.0, "four": 2.0}', 'leg.kind != "road"',
+    'replace(crash, layout="plain")', 'kind: str = "road"',
+])  # fmt: skip
+def test_a_layout_that_is_spelled_is_seen(line: str) -> None:
+    assert _asked(ast.parse(line)) == [1]

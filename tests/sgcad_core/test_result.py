@@ -28,7 +28,7 @@ from sgcad_core.specs import Contact, Evasion, NearCrash
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",
-    "seconds", "notes", "facts", "sentences", "near_crash",
+    "seconds", "notes", "facts", "sentences", "near_crash", "account", "redactions",
 }  # fmt: skip
 AREAS = st.sampled_from(["front", "back", "left", "right"])
 DECLARED = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")
@@ -86,7 +86,7 @@ def test_a_generated_case_has_every_promised_key():
     assert result["collision"]["observed"] == {
         "actor": "V1", "other": "V2", "actor_area": "front", "other_area": "left", "t_s": 4.2,
     }  # fmt: skip
-    assert result["notes"] == ["V3 is out of sight"]
+    assert [(n["kind"], n["subject"], n["text"]) for n in result["notes"]] == [("plan", "V3", "V3 is out of sight")]
     assert result["near_crash"] is None
     assert as_declared(result) is True
     json.dumps(result, allow_nan=False)
@@ -211,4 +211,7 @@ def test_note_findings_stand_among_the_notes():
     repair = Finding(source="xodr", what="a lane is missing")
     road = outcome("road", "exhausted", attempts=(attempt("road", findings=(repair, note)),), reason="r")
     result = result_of(CaseRecord("c", "k", {"road": road}, notes=("cut",)))
-    assert result["notes"] == ["cut", "[xodr] a lane is narrow"]
+    assert [(n["kind"], n["text"]) for n in result["notes"]] == [
+        ("reader", "cut"),
+        ("finding", "[xodr] a lane is narrow"),
+    ]

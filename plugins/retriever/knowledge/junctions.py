@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -20,8 +19,9 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.roads.junction_words import JunctionLeg, describe, marks
 from sgcad_core.roads.layout import COMPASS
+from sgcad_core.scratch import scratch
+from sgcad_core.units import MPS_PER_MPH
 
-MPH = 0.44704
 CONTROLS = {
     "traffic_light": "signal", "traffic_light_right_on_red": "signal", "traffic_light_unregulated": "signal",
     "allway_stop": "all_way_stop", "priority_stop": "stop",
@@ -31,8 +31,8 @@ CONTROLS = {
 
 def junction_chunks(extract: Path, on_skip: Callable[[str, str], None]) -> Iterator[Chunk]:
     """A chunk of every junction of an extract; what cannot be cut is told with its reason."""
-    with tempfile.TemporaryDirectory(prefix="sgcad-osm-") as folder:
-        graph = read_plain(*plain_of(extract, Path(folder)))
+    with scratch("osm") as folder:
+        graph = read_plain(*plain_of(extract, folder))
     source = extract.name.partition(".osm")[0]
     for node in graph.places:
         if len(graph.neighbors(node)) >= 3:
@@ -77,7 +77,7 @@ def _text(legs: Sequence[JunctionLeg], control: str, piece: Cut, graph: PlainGra
     lines = [f"A real junction: {describe(legs, control)}."]
     for leg, other in zip(legs, graph.neighbors(node), strict=True):
         edge = next(e for n in graph.touching[node] if other in ((e := graph.edges[n]).start, e.end))
-        about = ", ".join(p for p in (edge.kind, f"{round(edge.speed_mps / MPH)} mph") if p)
+        about = ", ".join(p for p in (edge.kind, f"{round(edge.speed_mps / MPS_PER_MPH)} mph") if p)
         lines.append(f"- leg {_wind(leg.angle_rad)}: {leg.lanes_in} lanes in, {leg.lanes_out} out; {about}")
     if piece.junctions > 1:
         lines.append(f"{piece.junctions - 1} more junction(s) within 60 m.")

@@ -6,12 +6,9 @@ that was killed is never read. Knows no source of chunks and no plugin.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
-import shutil
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -26,6 +23,8 @@ from plugins.retriever.knowledge.chunk import Chunk
 from plugins.retriever.knowledge.embedders import Embedder
 from plugins.retriever.knowledge.manifest import MANIFEST, Manifest, read_manifest
 from sgcad_core.errors import ConfigError
+from sgcad_core.locks import alone
+from sgcad_core.scratch import beside
 
 TABLE = "chunks"
 BATCH = 256
@@ -42,18 +41,16 @@ def build(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, prog
 
     _check_place(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}-partial-", dir=folder.parent))
     try:
-        dimension = _dimension(embedder)
-        table = lancedb.connect(partial).create_table(TABLE, schema=_schema(dimension))
-        _write(table, chunks, embedder, progress)
-        manifest = _seal(partial, table, embedder.name if embedder else "", dimension, 1)
-        partial.chmod(0o755)
-        _replace(partial, folder)
+        with beside(folder) as partial:
+            dimension = _dimension(embedder)
+            table = lancedb.connect(partial).create_table(TABLE, schema=_schema(dimension))
+            _write(table, chunks, embedder, progress)
+            manifest = _seal(partial, table, embedder.name if embedder else "", dimension, 1)
+            partial.chmod(0o755)
+            _replace(partial, folder)
     except OSError as fault:
         raise ConfigError(f"--out {folder}: cannot be written ({fault}); make room or choose another folder") from fault
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
     return manifest
 
 
@@ -195,19 +192,14 @@ def _replace(partial: Path, folder: Path) -> None:
     if not folder.exists():
         partial.rename(folder)
         return
-    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}-partial-", dir=folder.parent))
-    folder.rename(old / "old")
-    partial.rename(folder)
-    shutil.rmtree(old, ignore_errors=True)
+    with beside(folder) as old:
+        folder.rename(old / "old")
+        partial.rename(folder)
 
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
     """One addition at a time. Raises ConfigError where the folder holds no index."""
     read_manifest(folder)
-    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT, 0o644)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
+    with alone(folder / ".lock", os.O_RDWR | os.O_CREAT):
         yield
-    finally:
-        os.close(handle)

@@ -28,6 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.scratch import scratch
 
 Layer = Literal["parse", "rules", "execution", "limit"]
 MAX_ANSWER = 16_000_000
@@ -123,12 +124,12 @@ def run_script(
     limits = limits or Limits()
     started = time.monotonic()
     secret = secrets.token_hex(16)
-    with tempfile.TemporaryDirectory(prefix="sgcad-script-") as folder:
+    with scratch("script") as folder:
         job = {
-            "source": source, "folder": folder, "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
+            "source": source, "folder": str(folder), "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
             "allow_without_namespace": allow_without_namespace, "unchecked": unchecked, "secret": secret,
         }  # fmt: skip
-        heard, ended = _serve(job, folder, limits.wall_s)
+        heard, ended = _serve(job, str(folder), limits.wall_s)
     status = _status(heard, ended)
     if not status.isolated:
         raise ConfigError(

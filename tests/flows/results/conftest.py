@@ -40,6 +40,10 @@ CAR = {"type": "car", "length_m": 4.6, "width_m": 1.8, "maneuver": "straight"}
 STORY = "V1 was traveling east on a two-lane road. V2 was stopped ahead. The front of V1 struck the rear of V2."
 
 
+LACKING = {"kind": "lacks", "text": "contact 2: V2 strikes V3", "reason": "the two do not touch"}
+ACCOUNT = {"verdict": "lacking", "told": 5, "has": 4, "lacking": 1, "assumed": 3, "items": [LACKING]}
+
+
 def result(case, arm, status="generated", realised=True):
     observed = {"actor": "V1", "other": "V2", "actor_area": "front", "other_area": "back", "t_s": 1.6}
     declared = {"striker": "V1", "struck": "V2", "striker_area": "front", "struck_area": "back"}
@@ -49,6 +53,8 @@ def result(case, arm, status="generated", realised=True):
         "missing": [], "attempts": {"road": 1, "scenario": int(made)},
         "network": {"intersections": 1, "components": 1, "mean_lanes": 1.0, "segments": []} if made else None,
         "actors": [CAR | {"id": "V1"}, CAR | {"id": "V2"}] if made else [],
+        "person": {"facts": 2, "disagreed": 1},
+        "account": ACCOUNT if made else {"verdict": "none", "items": []},
         "collision": {"declared": declared if made else None, "realised": made and realised,
                       "observed": observed if made else None},
         "grounding": {}, "seconds": {"road": 0.1}, "notes": [],

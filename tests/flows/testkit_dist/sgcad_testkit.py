@@ -1,10 +1,12 @@
 """Small real plugins for the flow tests, installed like a stranger's distribution.
 
-What they do is said by words in the report: DIE (the process ends), RAISE (a bug), REFUSE, TOOLLESS, REPAIR
-(a finding that a writer without a model cannot mend), SLOW (takes 3 s).
+What they do is said by words in the report: DIE (the process ends), DIE ONCE FILE (it is killed unless the file is
+there, which is made), RAISE (a bug), REFUSE, TOOLLESS, REPAIR (a finding that a writer without a model cannot mend),
+SLOW (takes 3 s).
 """
 
 import os
+import signal
 import time
 from pathlib import Path
 from typing import ClassVar
@@ -51,7 +53,10 @@ class KitRoad(RoadWriter):
 
     def write(self, context, passages, findings, ask, attempt):
         text = context.narrative
-        if "DIE" in text:
+        if "DIE ONCE" in text and not (mark := Path(text.split()[text.split().index("ONCE") + 1])).exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        if "DIE" in text and "DIE ONCE" not in text:
             os._exit(3)
         if "RAISE" in text:
             raise ZeroDivisionError("a bug in a plugin")

@@ -8,7 +8,7 @@ import zlib
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -62,7 +62,7 @@ def test_a_pdf_of_a_narrative_is_read(tmp_path):
     ("content", "pages", "match"),
     [
         (b" " * 4_000_000, 60, r"hold more than 8,000,000 bytes of drawing"),
-        (b"q Q " * (MAX_DRAWN // 2 + 1), 1, r"draws more than 400,000 things"),
+        (b"q Q " * (MAX_DRAWN // 2 + 1), 1, r"draws more than 100,000 things"),
         (b"BT /F1 12 Tf " + b"(" + b"word " * 30_000 + b") Tj ET", 2, r"more than 100,000 characters"),
     ],
     ids=["shared stream", "many operators", "much text"],
@@ -74,6 +74,7 @@ def test_a_pdf_that_draws_without_end_is_told_in_seconds(tmp_path, content, page
     assert time.process_time() - started < 30
 
 
+@settings(deadline=None)  # a busy machine takes seconds for the first
 @given(st.binary(max_size=400), st.integers(0, 600), st.integers(0, 40))
 def test_a_damaged_pdf_is_read_or_refused(tmp_path_factory, noise, at, cut):
     whole = pdf(b"BT /F1 12 Tf 72 720 Td (The front of V1 struck the rear of V2 there.) Tj ET")
@@ -166,6 +167,7 @@ def test_a_photo_taken_sideways_is_turned_upright():
     assert (shown.width_px, shown.height_px) == (20, 40)
 
 
+@settings(deadline=None)
 @given(st.sampled_from(["PNG", "JPEG", "GIF", "BMP", "TIFF", "WEBP"]), st.integers(0, 2000), st.binary(max_size=60))
 def test_a_damaged_picture_is_read_or_refused(form, at, noise):
     raw = png(format=form)

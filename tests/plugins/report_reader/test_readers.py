@@ -136,10 +136,10 @@ def bomb() -> bytes:
 @pytest.mark.parametrize(
     ("raw", "message"),
     [
-        (b"not a picture", r"diagram.png: no readable picture .*give PNG"),
+        (b"not a picture", r"diagram.png: no picture of a kind that is read: give PNG"),
         (png()[:60], r"diagram.png: no readable picture"),
         (bomb(), r"diagram.png: .*900000000 pixels.*the limit is 40,000,000 pixels: scale it down"),
-        (b"", r"diagram.png: no readable picture"),
+        (b"", r"diagram.png: no picture of a kind that is read"),
     ],
     ids=["no picture", "truncated", "bomb", "empty"],
 )

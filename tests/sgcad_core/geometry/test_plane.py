@@ -17,6 +17,7 @@ from sgcad_core.geometry.plane import (
     contact_area,
     corners,
     corners_of,
+    gaps_where_near,
     local_points,
     offset_polyline,
     overlap,
@@ -116,3 +117,17 @@ def test_gaps_are_those_of_the_corners_on_the_four_axes(first, second):
         gaps.append(max(one.min() - two.max(), two.min() - one.max()))
     found = box_gaps(rows(first), size(first), rows(second), size(second))[0]
     assert found == pytest.approx(max(gaps), abs=1e-9)
+
+
+@settings(max_examples=150, deadline=None)
+@given(first=box, second=box, away=st.floats(0, 6), margin=st.floats(0, 2))
+def test_only_gaps_wider_than_asked_are_left_unmeasured(first: Box, second: Box, away: float, margin: float) -> None:
+    ours = rows(first, first)
+    theirs = rows(second, second._replace(x_m=second.x_m + away * 3, y_m=second.y_m - away))
+    sizes = first[3:], second[3:]
+    gaps, near = box_gaps(ours, sizes[0], theirs, sizes[1]), gaps_where_near(ours, sizes[0], theirs, sizes[1], margin)
+    measured = np.isfinite(near)
+    assert np.array_equal(near[measured], gaps[measured])
+    assert (gaps[~measured] > margin).all()
+    far = rows(second, second._replace(x_m=1000.0))[[1, 1]]
+    assert np.isinf(gaps_where_near(ours, sizes[0], far, sizes[1], margin)).all()
