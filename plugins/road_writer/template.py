@@ -51,7 +51,7 @@ class Template(RoadWriter):
 
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
-        if not _CRASH_WORDS.search(narrative):
+        if not (facts.crash.vehicles or facts.roads or _CRASH_WORDS.search(narrative)):
             raise Refused(
                 "the narrative names neither a vehicle nor a road",
                 ["the road or junction of the crash", "the vehicles and how they traveled"],

@@ -110,7 +110,7 @@ class _Assignment:
         """The way taken behind this one and how ill it fits the maneuver."""
         ways = exits(way, self.ways)
         wanted = TURN_RAD.get(v.maneuver, 0.0)
-        if v.maneuver == "u_turn" or (v.standing and not ways):
+        if v.maneuver == "u_turn" or (v.standing and not ways) or self._backs_up(v, way):
             return None, 0.0
         fitting = [(self._exit_misfit(v, way, w, wanted), w) for w in ways]
         if not fitting:
@@ -119,6 +119,12 @@ class _Assignment:
         if misfit > 0.75:
             return None, 1.5 if wanted else 0.4
         return best, misfit
+
+    @staticmethod
+    def _backs_up(v: VehicleFacts, way: Way) -> bool:
+        """Whether it faces along its lane and rolls back in it; a told direction of a backing vehicle is its travel."""
+        on_street = v.origin not in DRIVES and way.road.kind != DRIVEWAY
+        return v.maneuver == "backing" and on_street and not v.heading_stated
 
     def _exit_misfit(self, v: VehicleFacts, way: Way, onward: Way, wanted: float) -> float:
         off = apart(turn_of(way, onward), wanted) / _QUARTER

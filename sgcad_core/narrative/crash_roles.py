@@ -129,7 +129,8 @@ def _maneuver_signs(crash: CrashFacts) -> Iterator[Sign]:
     for v in crash.vehicles:
         yield Sign(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
     for contact in crash.contacts[:1]:
-        if contact.striker_area == "front" and contact.struck_area == "back":
+        backed = any(v.id == contact.struck and v.maneuver == "backing" for v in crash.vehicles)
+        if contact.striker_area == "front" and contact.struck_area == "back" and not backed:
             yield Sign(contact.striker, _RAN_INTO, "crash_roles.rear end")
 
 

@@ -6,7 +6,7 @@ geometry and no file format.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from sgcad_core.kinds import DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
@@ -104,7 +104,9 @@ class _Builder:
             if v.heading and v.origin not in DRIVES:
                 used[v.heading] = max(used.get(v.heading, 1), _lane_used(v))
         default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
-        return carriageway(road.lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))
+        freeway = road.kind == "freeway"  # its two carriageways stand apart, told or not
+        lanes = replace(road.lanes, divided=road.lanes.divided or freeway)
+        return carriageway(lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))
 
     # -------------------------------------------------------------- legs
     def _plain(self, road: RoadFact) -> tuple[Leg, ...]:

@@ -5,6 +5,7 @@ Evidence is added up: relation words, critical events, maneuvers, and which side
 
 from __future__ import annotations
 
+from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import HIT_FROM, Draft, Settled, apart, bend_deg, end_of
 from sgcad_core.narrative.motion import DRIVES
@@ -56,7 +57,7 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
         if maneuver == "crossing_centerline":
             score[180] += 1.5
         if maneuver in ("lane_change_left", "lane_change_right", "merge"):
-            score[0] += 1.0
+            score[0] += 2.0 if motion.origin == RAMP else 1.0  # a ramp runs beside the road before it joins
         if motion.origin in DRIVES:
             score[90] += 1.0
             score[270] += 1.0

@@ -22,7 +22,7 @@ def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]
 
 
 def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
-    """Striker first: the one that hits with its front where the other does not."""
+    """Striker first: the one that hits with its front where the other does not, or backs into it."""
     told = all(zone is not None and "/" not in zone for zone in (blow.actor_area, blow.other_area))
     a, b = blow.actor, blow.other
     area_a, area_b = _corners(draft, out, blow)
@@ -33,7 +33,8 @@ def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
     if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
         a, b = b, a
     area_a, area_b = complete_areas(out, a, b, area_a, area_b)
-    if area_b == "front" and area_a != "front":
+    leads_b = area_b == "front" and area_a != "front" and not _backs_into(out, a, area_a)
+    if leads_b or (_backs_into(out, b, area_b) and _standing(out, a)):
         a, b, area_a, area_b = b, a, area_b, area_a
     may = {blow.actor: _allowed(blow.actor_area), blow.other: _allowed(blow.other_area)}
     return Joined(a, b, area_a, area_b, told, True, may[a], may[b])
@@ -119,6 +120,10 @@ def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Ar
 def _flank_facing(flank: Area, turn: float) -> Area:
     """The flank of one that stands which faces the told flank of one that passes it."""
     return flank if apart(turn, 180) <= 45 else "right" if flank == "left" else "left"
+
+
+def _backs_into(out: Settled, vehicle: str, area: Area | None) -> bool:
+    return out.maneuvers[vehicle] == "backing" and area == "back"
 
 
 def _standing(out: Settled, vehicle: str) -> bool:
