@@ -104,8 +104,7 @@ class _Builder:
             if v.heading and v.origin not in DRIVES:
                 used[v.heading] = max(used.get(v.heading, 1), _lane_used(v))
         default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
-        freeway = road.kind == "freeway"  # its two carriageways stand apart, told or not
-        lanes = replace(road.lanes, divided=road.lanes.divided or freeway)
+        lanes = _of_freeway(road.lanes) if road.kind == "freeway" else road.lanes
         return carriageway(lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))
 
     # -------------------------------------------------------------- legs
@@ -240,6 +239,12 @@ def _turns(way: Way, lanes_in: int) -> tuple[Turn, ...]:
     if not left:
         uses[-1] = "left_through"
     return tuple(uses)
+
+
+def _of_freeway(told: LaneFacts) -> LaneFacts:
+    """Its carriageways stand apart, told or not, and none has one lane: "two lanes" are those of one of them."""
+    whole = told.total == 2 and not told.one_way and not told.each_way and not told.toward
+    return replace(told, divided=True, each_way=2 if whole else told.each_way)
 
 
 def _center(lanes: Carriageway, lanes_in: int, lanes_out: int) -> bool:

@@ -49,6 +49,12 @@ def test_the_log_begins_with_what_was_assumed() -> None:
     assert write("V1 struck V2 on a street.").log.startswith("template: the")
 
 
+def test_units_in_a_parking_lot_are_vehicles_though_no_vehicle_is_named() -> None:
+    spec = write("Unit 1 was backing out of a parking stall. The back of Unit 1 hit the right side of Unit 2.").spec
+    assert spec is not None
+    assert spec.roads
+
+
 @pytest.mark.parametrize("text", ["", "   ", "The patient slept well and ate breakfast.", "12345"])
 def test_a_text_without_vehicle_or_road_is_refused(text: str) -> None:
     with pytest.raises(Refused, match="neither a vehicle nor a road") as refusal:

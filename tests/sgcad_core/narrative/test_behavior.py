@@ -22,6 +22,14 @@ def _actor(behavior: BehaviorSpec, name: str) -> Actor:
     return next(a for a in behavior.actors if a.id == name)
 
 
+def test_who_backs_up_in_its_lane_stays_on_its_road_and_who_backs_west_drives_west() -> None:
+    ahead = "V1 was stopped westbound. V2, ahead of it, backed up and the back of V2 struck the front of V1."
+    found = _behavior(ahead)
+    assert (_actor(found, "V2").road, _actor(found, "V2").exit_road) == (_actor(found, "V1").road, None)
+    west = "V2 was backing west. V1 was stopped westbound. The back of V2 struck the back of V1."
+    assert _actor(_behavior(west), "V2").exit_road == "W"
+
+
 def test_a_stated_heading_starts_on_the_opposite_leg() -> None:
     found = _behavior("V1 was traveling north. V2 was traveling west. The front of V1 struck the left side of V2.")
     assert (_actor(found, "V1").road, _actor(found, "V1").direction) == ("S", "forward")

@@ -48,6 +48,12 @@ def test_who_runs_into_the_rear_began():
     assert values(text) == {"V1": "responder", "V2": "initiator"}
 
 
+def test_who_backs_into_one_that_stands_began():
+    text = "Vehicle 1 was stopped, facing west. V2, ahead of it, backed up and the back of V2 struck the front of V1."
+    assert values(text) == {"V1": "responder", "V2": "initiator"}
+    assert read(text).crash.contacts[0].striker == "V2"
+
+
 def test_a_critical_event_of_a_stopped_vehicle_ahead_is_its_owners_doing():
     text = (
         "Vehicle 1 was northbound. Vehicle 2 was northbound. The front of V1 struck the rear of V2. "

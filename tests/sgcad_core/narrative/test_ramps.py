@@ -1,5 +1,7 @@
 """Who merges comes by the ramp, and a ramp that leads off the road is drawn ahead."""
 
+import pytest
+
 from plugins.road_writer.template import Template
 from plugins.scenario_writer.rules import Rules
 from sgcad_core.narrative.layout_facts import layout_of_facts
@@ -39,6 +41,20 @@ def test_who_merges_stays_on_the_ramp_and_the_road() -> None:
     assert float(across.max() - across.min()) < 1.0
     beyond = motion.x_m > 2.0
     assert motion.y_m[beyond].min() > -11.5
+
+
+@pytest.mark.parametrize(("count", "each"), [("three", 3), ("two", 2), ("four", 2)])
+def test_a_freeways_lanes_are_those_of_one_carriageway_where_they_cannot_be_of_both(count: str, each: int) -> None:
+    text = f"V1 was eastbound on the interstate, which has {count} lanes. The front of V1 struck the back of V2."
+    assert {(leg.lanes_in, leg.lanes_out) for leg in layout_of_facts(road_facts(text)).legs} == {(each, each)}
+
+
+def test_one_that_merges_from_a_ramp_heads_as_the_road_that_it_joins() -> None:
+    text = (
+        "V2 was on the entrance ramp merging onto the eastbound interstate. V1 was in the right lane. V2 merged into "
+        "the path of V1 and the left side of V2 was struck by the right front of V1."
+    )
+    assert [v.heading for v in road_facts(text).crash.vehicles] == ["E", "E"]
 
 
 def test_an_exit_ramp_leads_off_the_road_ahead() -> None:
