@@ -89,10 +89,13 @@ def vary(
     seed: Annotated[int, typer.Option("--seed", min=0, help="Equal seeds give equal families.")] = 1,
     driver: Annotated[str, typer.Option("--driver", "-d", help="Look for the hardest ones for this driver.")] = "",
     role: Annotated[str, typer.Option("--role", help="Whom it drives.")] = "responder",
+    search: Annotated[
+        str, typer.Option("--search", help="cross-entropy: the hardest corner; map-elites: the hardest in every way.")
+    ] = "cross-entropy",
     role_of: RoleOf = None,
 ) -> None:
     """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
-    from flows.drives.families import family_of
+    from flows.drives.families import METHODS, Search, family_of
     from flows.drives.families import vary as write
     from flows.drives.reading import case_folders
     from sgcad_core.config import driver_entry
@@ -101,6 +104,10 @@ def vary(
     roles = _roles(role)
     if len(roles) != 1:
         raise ConfigError(f"--role {role}: a family is driven in one role; give initiator or responder")
+    method = next((m for m in METHODS if m == search), None)
+    if method is None:
+        raise ConfigError(f"--search {search}: no such search; there are {', '.join(METHODS)}")
+    look = Search(entry, roles[0], method) if entry else None
     for folder in case_folders(cases):
-        place = write(family_of(folder, _given(role_of or [])), count, seed, entry, roles[0])
+        place = write(family_of(folder, _given(role_of or [])), count, seed, look)
         typer.echo(str(place))

@@ -99,6 +99,7 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
     about: dict[str, Any] = {
         "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
         "release_s": order.release_s, "factor": order.factor, "digest": digest,
+        "script_contact_s": round(staging.contact_s, 3) if staging.contact else None,
     }  # fmt: skip
     try:
         driven = drive(staging, entry.driver, release_s=order.release_s, factor=order.factor)

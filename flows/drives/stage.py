@@ -56,7 +56,7 @@ def _figures(told: Mapping[str, Any]) -> dict[str, Any]:
     hardness = {"delta_v_mps": _worst(now) if now else 0.0} if told["outcome"] != "failed" else {}
     hardness |= {"scripted_delta_v_mps": _worst(then)} if then else {}
     outcomes = {o: int(told["outcome"] == o) for o in (*OUTCOMES, "failed")}
-    return {**outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
+    return {"ego": told["ego"], **outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
 
 
 def _worst(hardness: Mapping[str, Any]) -> float:

@@ -64,7 +64,7 @@ def test_a_case_is_driven_in_both_roles_and_its_script_left_alone(case):
 def test_the_page_holds_script_and_drive(case):
     run(case, "--ego", "V1")
     page = (case / "drive/reference/V1/drive.html").read_text()
-    assert all(name in page for name in ('"V1_script"', '"V2_script"', '"V1"', "drives V1, the responder"))
+    assert all(name in page for name in ('"name":"script"', '"over":"script"', '"V1"', "drives V1, the responder"))
 
 
 def test_what_is_driven_is_not_driven_again_until_something_changes(case):
