@@ -119,12 +119,19 @@ def _write(family: Family, count: int, seed: int, place: Path) -> None:
         seen = behavior.model_copy(update={"light": light_of(values)}) if "light" in values else behavior
         text = write_xosc(made.actors, made.trajectories, seen, "../../../road.xodr", f"member {number}")
         (place / "concrete" / f"{number:04d}.xosc").write_text(text, encoding="utf-8")
-    ranges = [_range(p) for p in family.parameters]
-    (place / "logical.xosc").write_text(_logical(family, ranges, behavior), encoding="utf-8")
-    sets = [values for values, _ in found]
-    (place / "deterministic.xosc").write_text(deterministic("logical.xosc", sets), encoding="utf-8")
-    (place / "stochastic.xosc").write_text(stochastic("logical.xosc", ranges, count, seed), encoding="utf-8")
+    for name, text in files_of(family, [values for values, _ in found], seed).items():
+        (place / f"{name}.xosc").write_text(text, encoding="utf-8")
     store.write_json(place / "manifest.json", _manifest(family, found, drawn, seed))
+
+
+def files_of(family: Family, sets: Sequence[Mapping[str, float]], seed: int) -> dict[str, str]:
+    """The logical scenario, and the files that distribute its parameters: as listed, and as drawn."""
+    ranges = [_range(p) for p in family.parameters]
+    return {
+        "logical": _logical(family, ranges, _conditions(family)),
+        "deterministic": deterministic("logical.xosc", sets),
+        "stochastic": stochastic("logical.xosc", ranges, len(sets), seed),
+    }
 
 
 def _conditions(family: Family) -> BehaviorSpec:
