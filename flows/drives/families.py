@@ -165,7 +165,7 @@ def _meets(basis: Basis, actor: str, back: float) -> Meets:
     lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))
     other, per_m = basis.crossed.get(who, ("", 0.0))
     delay = basis.delays.get(who)
-    warp = Warp(f"{who}_reaction_s", delay.t_s + back, delay.linear, delay.square) if delay else None
+    warp = Warp(f"{who}_reaction_s", delay.t_s + back, delay.linear, delay.square, delay.cube) if delay else None
     return Meets(actor, basis.contact_s + back, lanes, ((f"{other}_lane_m", per_m),) if per_m else (), warp)
 
 

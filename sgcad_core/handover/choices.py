@@ -27,7 +27,7 @@ _SCRIPTS_SHARE = 0.5
 LIGHTS: tuple[Light, ...] = ("day", "dusk", "dawn", "dark", "dark_lit")
 _LIGHT_SHARES = (0.68, 0.03, 0.02, 0.1, 0.17)
 """About as in national crash records, where two of three crashes are by day and two of three dark ones under lamps."""
-_LANE_FIELDS = ("lane", "lane_word")
+_LANE_FIELDS = ("lane", "lane_word", "start_lane")
 
 
 def lanes(script: Script, known: Facts, pair: Sequence[str]) -> list[Parameter]:

@@ -2,8 +2,8 @@
 
 The script's braking is moved along the way by the distance that the delay takes; the actor comes to the contact's place
 at the contact's time all the same, faster for having braked later. Between the ends of its range the time at which a
-sample of the line is passed is a quadratic function of the delay, so that a scenario file can tell it in an expression;
-at three delays it is exact. Knows one line; no other actor. SI units.
+sample of the line is passed is a cubic function of the delay, so that a scenario file can tell it in an expression; at
+four delays it is exact. Knows one line; no other actor. SI units.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ _ENDS_S = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Delay:
-    """By sample of a line: when it is passed, t + linear * d + square * d^2, for a delay d in [low, high]."""
+    """By sample of a line when it is passed: t + d * (linear + d * (square + d * cube)); d in [low, high]."""
 
     t_s: Floats
     linear: Floats
     square: Floats
+    cube: Floats
     low_s: float
     high_s: float
 
     def times(self, by_s: float) -> Floats:
         """(n,) times at which the line's samples are passed."""
-        found: Floats = self.t_s + by_s * (self.linear + by_s * self.square)
+        found: Floats = self.t_s + by_s * (self.linear + by_s * (self.square + by_s * self.cube))
         return found
 
     def own(self, at_s: Floats, by_s: float) -> Floats:
@@ -59,11 +60,11 @@ def delay_of(line: Way, contact_s: float) -> Delay | None:
     low, high = _range(line, onset, contact)
     if high - low < 0.2:
         return None
-    points = [low, high] if low < 0 else [high / 2, high]
+    points = [low, high / 2, high] if low < -0.05 else [high / 3, 2 * high / 3, high]
     rows = np.array([_passed(line, onset, contact, d) - line.t_s for d in points])
-    scale = np.array([[d, d * d] for d in points])
-    linear, square = np.linalg.solve(scale, rows)
-    made = Delay(line.t_s, linear, square, low, high)
+    scale = np.array([[d, d**2, d**3] for d in points])
+    linear, square, cube = np.linalg.solve(scale, rows)
+    made = Delay(line.t_s, linear, square, cube, low if low < -0.05 else 0.0, high)
     rising = all((np.diff(made.times(d)) > 1e-4).all() for d in np.linspace(low, high, 9))
     return made if rising else None
 

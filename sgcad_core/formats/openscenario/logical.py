@@ -40,12 +40,13 @@ class Range(NamedTuple):
 
 
 class Warp(NamedTuple):
-    """Times of vertices that move with a parameter d: t + linear * d + square * d^2, over (n,) times of the file."""
+    """Times of vertices that move with a parameter d: t + d * (linear + d * (square + d * cube)), over (n,) times."""
 
     name: str
     t_s: Floats
     linear: Floats
     square: Floats
+    cube: Floats
 
 
 class Meets(NamedTuple):
@@ -114,9 +115,9 @@ def _delay(group: etree._Element, warp: Warp) -> None:
     """Vertices of a trajectory at times that move with a parameter."""
     for vertex in group.iter("Vertex"):
         t = float(vertex.get("time", "0"))
-        linear, square = (float(np.interp(t, warp.t_s, values)) for values in (warp.linear, warp.square))
-        d = f"${warp.name}"
-        vertex.set("time", f"${{{_number(t)} + {d} * ({_number(linear)} + {_number(square)} * {d})}}")
+        d, rows = f"${warp.name}", (warp.linear, warp.square, warp.cube)
+        linear, square, cube = (_number(float(np.interp(t, warp.t_s, row))) for row in rows)
+        vertex.set("time", f"${{{_number(t)} + {d} * ({linear} + {d} * ({square} + {d} * {cube}))}}")
 
 
 def suns(xosc: str, parameter: str, suns_of: Sequence[tuple[float, float, float]]) -> str:
