@@ -38,8 +38,11 @@ def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> 
     record = CaseRecord(case=script.case, config=f"{told['driver']} drives {told['ego']}", execution=execution)
     report = CrashReport(case=script.case, narrative=_words(told))
     figures = {k: v for k, v in told.items() if isinstance(v, int | float) and not isinstance(v, bool)}
+    hard = told.get("severity")
+    change = {s["actor"]: round(s["delta_v_mps"], 3) for s in (hard["first"], hard["second"])} if hard else {}
+    metrics = {"drive": figures} | ({"exact": {"delta_v_mps": change}} if change else {})
     runs, name = {SCRIPT: script.trajectories}, f"{told['driver']} drives {told['ego']}"
-    return View(record, report, {"drive": figures}, result, drawing_of(script.net_xml), movers, runs, name, SCRIPT)
+    return View(record, report, metrics, result, drawing_of(script.net_xml), movers, runs, name, SCRIPT)
 
 
 def _words(told: Mapping[str, Any]) -> str:
