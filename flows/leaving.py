@@ -25,6 +25,7 @@ def leave(run: CaseRun, folder: Path) -> dict[str, Any]:
     if run.trace:
         (folder / "error.txt").write_text(run.trace, encoding="utf-8", errors="replace")
     result = result_of(record) if run.result is None else run.result
+    result["impact"] = _impact(record)
     _draw(run, folder, record, result)
     result["seconds"] = seconds_of(record)  # with those of the drawing
     if run.sharing:
@@ -34,6 +35,15 @@ def leave(run: CaseRun, folder: Path) -> dict[str, Any]:
     store.write_json(folder / person.SPECS, specs)
     store.write_json(folder / "result.json", result)
     return result
+
+
+def _impact(record: CaseRecord) -> dict[str, Any] | None:
+    """Changes of velocity and rest poses of an executed case; None where nothing touches."""
+    if not (record.scenario and record.execution and record.network and record.network.net_xml):
+        return None
+    from flows.drives import stage
+
+    return stage.impact(record)
 
 
 def _hand_over(run: CaseRun, folder: Path, record: CaseRecord) -> None:

@@ -209,7 +209,7 @@
     ink.setTransform(ratio, 0, 0, ratio, 0, 0);
     ink.fillStyle = COLOR.ground; ink.fillRect(0, 0, w, h);
     const halves = beside && other ? 2 : 1;
-    for (let k = 0; k < halves; k++) drawPane({ left: (k * w) / halves, wide: w / halves, actors: k ? inRun(other) : data.actors, name: k ? other.name : "script" }, h, halves);
+    for (let k = 0; k < halves; k++) drawPane({ left: (k * w) / halves, wide: w / halves, actors: k ? inRun(other) : data.actors, name: k ? other.name : data.name || "script" }, h, halves);
     pane = { left: 0, wide: w / halves, actors: data.actors };
     state();
   }

@@ -38,12 +38,14 @@
     }
   }
 
-  // ---------------------------------------------------------------- plots under the slider
-  const near0 = data.near, TTC_S = 6;
+  // ---------------------------------------------------------------- plots under the slider; another run's lines are dashed
+  const near0 = data.near, TTC_S = 6, INK = "#3b444c", FAINT = "#a0447a";
+  const inUnits = (a) => [a.color, a.speed.map((v) => v * UNITS[units][1])];
+  const ofPair = (name) => [near0, other && other.near].flatMap((n, k) => n ? [[k ? FAINT : INK, n[name], k > 0]] : []);
   const PLOTS = [
-    ["speed", () => data.actors.map((a) => [a.color, a.speed.map((v) => v * UNITS[units][1])]), () => UNITS[units][0], Infinity],
-    ["clearance", () => near0 ? [["#3b444c", near0.clearance_m]] : [], () => "m", 40],
-    ["time to collision", () => near0 ? [["#3b444c", near0.ttc_s]] : [], () => "s", TTC_S],
+    ["speed", () => [...data.actors.map(inUnits), ...(other ? inRun(other).map((a) => [...inUnits(a), true]) : [])], () => UNITS[units][0], Infinity],
+    ["clearance", () => ofPair("clearance_m"), () => "m", 40],
+    ["time to collision", () => ofPair("ttc_s"), () => "s", TTC_S],
   ];
   const plots = PLOTS.map(([name, lines, unitOf, most]) => {
     const box = document.createElement("figure"), line = document.createElement("canvas"), caption = document.createElement("figcaption");
@@ -60,10 +62,10 @@
       const pen = line.getContext("2d"); pen.scale(ratio, ratio);
       const values = lines.flatMap(([, v]) => v.filter((x) => x !== null)), top = Math.min(Math.max(...values, 1e-3), plot.most) * 1.08;
       plot.top = top;
-      for (const [color, series] of lines) {
-        pen.beginPath(); pen.strokeStyle = color; pen.lineWidth = 1.8;
+      for (const [color, series, dashed] of lines) {
+        pen.beginPath(); pen.strokeStyle = color; pen.lineWidth = dashed ? 1.3 : 1.8; pen.setLineDash(dashed ? [5, 3] : []);
         let down = false;
-        series.forEach((v, k) => { if (v === null) { down = false; return; } pen[down ? "lineTo" : "moveTo"]((k / Math.max(last, 1)) * w, h - 2 - (Math.min(v, top) / top) * (h - 6)); down = true; });
+        series.slice(0, last + 1).forEach((v, k) => { if (v === null) { down = false; return; } pen[down ? "lineTo" : "moveTo"]((k / Math.max(last, 1)) * w, h - 2 - (Math.min(v, top) / top) * (h - 6)); down = true; });
         pen.stroke();
       }
       if (moment) { pen.strokeStyle = COLOR.hit; pen.lineWidth = 1.5; pen.setLineDash([3, 3]); pen.beginPath(); pen.moveTo((momentStep / Math.max(last, 1)) * w, 0); pen.lineTo((momentStep / Math.max(last, 1)) * w, h); pen.stroke(); }
@@ -73,8 +75,10 @@
   }
   function plotCursor() {                                // where the clock is, and what holds there
     for (const { name, lines, unitOf, line, caption, drawn, most } of plots) {
-      const k = Math.min(Math.round(now), last), told = lines().map(([, v]) => v[Math.min(k, v.length - 1)]);
-      caption.textContent = `${name}: ${told.map((v) => v === null ? "–" : v.toFixed(v < 10 ? 1 : 0)).join(" / ")} ${unitOf()}${near0 && most < Infinity ? ` (${near0.pair.join(" and ")})` : ""}`;
+      const k = Math.min(Math.round(now), last), all = lines();
+      const said = (dashed) => all.filter((l) => Boolean(l[2]) === dashed).map(([, v]) => v[Math.min(k, v.length - 1)]).map((v) => v === null ? "–" : v.toFixed(v < 10 ? 1 : 0)).join(" / ");
+      const beyond = all.some((l) => l[2]) ? `, ${other.name} ${said(true)}` : "";
+      caption.textContent = `${name}: ${said(false)}${beyond} ${unitOf()}${near0 && most < Infinity ? ` (${near0.pair.join(" and ")})` : ""}`;
       if (!drawn) continue;
       const pen = line.getContext("2d"), x = (now / Math.max(last, 1)) * line.width;
       pen.putImageData(drawn, 0, 0);
@@ -98,12 +102,12 @@
     $("other").replaceChildren(...[["", "this run alone"], ...runs.map((r, k) => [String(k), r.name])].map(([value, text]) => Object.assign(document.createElement("option"), { value, textContent: text })));
     $("beside").disabled = !other;
   }
-  function choose(k) { other = runs[k] || null; $("other").value = other ? String(k) : ""; $("beside").disabled = !other; if (!other) { beside = false; $("beside").checked = false; } fit(); }
+  function choose(k) { other = runs[k] || null; $("other").value = other ? String(k) : ""; $("beside").disabled = !other; if (!other) { beside = false; $("beside").checked = false; } fit(); drawPlots(); }
   $("other").onchange = (e) => choose(e.target.value === "" ? -1 : Number(e.target.value));
   $("beside").onchange = (e) => { beside = e.target.checked; fit(); };
   function runIn(name, text) {                           // trajectories.csv, or another player's page
     const page = /<script type="application\/json" id="data">([\s\S]*?)<\/script>/.exec(text);
-    if (page) return { name, actors: JSON.parse(page[1]).actors };
+    if (page) { const shown = JSON.parse(page[1]); return { name, actors: shown.actors, near: shown.near }; }
     const [head, ...lines] = text.trim().split(/\r?\n/), names = head.split(","), found = new Map();
     if (!["actor", "x_m", "y_m", "heading_rad", "speed_mps"].every((n) => names.includes(n))) throw new Error("no trajectories.csv and no player.html");
     for (const line of lines) {

@@ -143,3 +143,4 @@
   window.addEventListener("load", fit);
   const start = /[#&]t=([\d.]+)/.exec(location.hash);          // player.html#t=4.2 opens at that second
   if (start) go(Number(start[1]) / step);
+  if (data.over) choose(runs.findIndex((r) => r.name === data.over));

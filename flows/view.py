@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -48,6 +48,10 @@ class View:
     movers: tuple[Mover, ...]
     runs: Mapping[str, Sequence[Trajectory]] = field(default_factory=dict)
     """Other runs of the same scenario, such as with drivers, by name."""
+    name: str = "script"
+    """What this run is called beside another one."""
+    over: str = ""
+    """The other run that is shown over this one from the start."""
 
     @staticmethod
     def of(
@@ -87,9 +91,17 @@ class View:
         found = [mover for name in names for mover in self.movers if mover.info.id == name]
         return (found[0], found[1]) if len(found) == 2 else None
 
-    def _nearness(self) -> dict[str, Any] | None:
-        """Of the pair, over time: metres between the outlines, and seconds until they touch at constant velocity."""
-        if (pair := self.pair()) is None:
+    def _nearness(self, run: Sequence[Trajectory] = ()) -> dict[str, Any] | None:
+        """Of the pair, over time: metres between the outlines, and seconds until they touch at constant velocity.
+
+        `run`: how it is in another run; None where one of both has no motion there.
+        """
+        pair = self.pair()
+        if pair is not None and run:
+            tracks = {t.actor: t for t in run}
+            found = [replace(m, track=tracks[m.info.id]) for m in pair if m.info.id in tracks]
+            pair = (found[0], found[1]) if len(found) == 2 else None
+        if pair is None:
             return None
         first, second = (_track(mover) for mover in pair)
         ttc = time_to_collision(first, second)
@@ -126,7 +138,12 @@ class View:
             "actors": [_actor(mover) for mover in self.movers],
             "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
             "near": self._nearness(),
-            "runs": [{"name": name, "actors": [_path(t) for t in tracks]} for name, tracks in self.runs.items()],
+            "runs": [
+                {"name": name, "actors": [_path(t) for t in tracks], "near": self._nearness(tracks)}
+                for name, tracks in self.runs.items()
+            ],
+            "name": self.name,
+            "over": self.over,
             "conditions": _conditions(self.record.scenario),
             "narrative": self.report.narrative,
             "sentences": sentences_of(self.report, self.result.get("facts", ())),

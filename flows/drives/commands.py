@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TextIO
 
 import typer
 
@@ -11,7 +12,8 @@ from sgcad_core.errors import ConfigError
 
 Cases = Annotated[list[Path], typer.Argument(help="Folders of finished cases, or a folder of runs.")]
 Drivers = Annotated[
-    list[str] | None, typer.Option("--driver", "-d", help="A name, or YAML such as '{name: reference, model: fuzzy}'.")
+    list[str] | None,
+    typer.Option("--driver", "-d", help="A name, YAML such as '{name: reference, model: fuzzy}', or @FILE: a list."),
 ]
 RoleOf = Annotated[
     list[str] | None, typer.Option("--role-of", help="V1=responder: your word over what was read of the report.")
@@ -46,16 +48,35 @@ def drive(
     from sgcad_core.config import driver_entry
 
     order = Order(
-        drivers=tuple(driver_entry(_yaml(text)) for text in driver or ["reference"]),
+        drivers=tuple(driver_entry(entry) for text in driver or ["reference"] for entry in _entries(text)),
         ego=ego, roles=_roles(role), release_s=release, factor=factor, role_of=_given(role_of or []),
         fresh=fresh, pages=pages,
     )  # fmt: skip
-    told = drive_folders(case_folders(cases), order, jobs)
-    table.show(Console(emoji=False, highlight=False), told)
+    told, tally = drive_folders(case_folders(cases), order, jobs), table.Tally()
+    with _opened(csv) as out:
+        for one in table.as_csv(out, told) if out else told:
+            tally.add(one)
+    table.show(Console(emoji=False, highlight=False), tally)
     if csv:
-        table.write_csv(csv, told)
         typer.echo(f"written: {csv}")
-    raise typer.Exit(int(any(t["outcome"] == "failed" for t in told)))
+    raise typer.Exit(int(tally.failed > 0))
+
+
+def _opened(file: Path | None) -> AbstractContextManager[TextIO | None]:
+    return nullcontext() if file is None else file.open("w", encoding="utf-8", newline="")
+
+
+def _entries(text: str) -> list[Any]:
+    """Drivers of one --driver: one, or with @FILE all of a YAML list."""
+    if not text.startswith("@"):
+        return [_yaml(text)]
+    try:
+        listed = _yaml(Path(text[1:]).read_text(encoding="utf-8"))
+    except OSError as fault:
+        raise ConfigError(f"--driver {text}: cannot be read ({fault.strerror}); give a YAML file") from fault
+    if not isinstance(listed, list) or not listed:
+        raise ConfigError(f"--driver {text}: no list of drivers; write one driver a line, each behind a dash")
+    return listed
 
 
 def _yaml(text: str) -> Any:
@@ -89,10 +110,13 @@ def vary(
     seed: Annotated[int, typer.Option("--seed", min=0, help="Equal seeds give equal families.")] = 1,
     driver: Annotated[str, typer.Option("--driver", "-d", help="Look for the hardest ones for this driver.")] = "",
     role: Annotated[str, typer.Option("--role", help="Whom it drives.")] = "responder",
+    search: Annotated[
+        str, typer.Option("--search", help="cross-entropy: the hardest corner; map-elites: the hardest in every way.")
+    ] = "cross-entropy",
     role_of: RoleOf = None,
 ) -> None:
     """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
-    from flows.drives.families import family_of
+    from flows.drives.families import METHODS, Search, family_of
     from flows.drives.families import vary as write
     from flows.drives.reading import case_folders
     from sgcad_core.config import driver_entry
@@ -101,6 +125,10 @@ def vary(
     roles = _roles(role)
     if len(roles) != 1:
         raise ConfigError(f"--role {role}: a family is driven in one role; give initiator or responder")
+    method = next((m for m in METHODS if m == search), None)
+    if method is None:
+        raise ConfigError(f"--search {search}: no such search; there are {', '.join(METHODS)}")
+    look = Search(entry, roles[0], method) if entry else None
     for folder in case_folders(cases):
-        place = write(family_of(folder, _given(role_of or [])), count, seed, entry, roles[0])
+        place = write(family_of(folder, _given(role_of or [])), count, seed, look)
         typer.echo(str(place))

@@ -3,7 +3,7 @@
     vary/seed-<n>/  manifest.json   every parameter with its reason, every member with its values
                     logical.xosc, deterministic.xosc, stochastic.xosc
                     concrete/0001.xosc ...
-                    hardest.json, decides.png   with --driver: rates, weights, which parameter decides
+                    hardest.json, decides.png   with --driver (flows/drives/searching): rates, weights, what decides
 
 Knows the family's functions and file formats; no plugin by name.
 """
@@ -12,34 +12,44 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from flows import store
-from flows.drives.reading import SURFACES, egos, script_of
+from flows.drives.reading import SURFACES, script_of
 from sgcad_core import scratch
 from sgcad_core.config import DriverEntry
-from sgcad_core.errors import BadInput, ConfigError
-from sgcad_core.formats.openscenario.logical import Meets, Range, deterministic, logical_xosc, stochastic
+from sgcad_core.errors import BadInput
+from sgcad_core.formats.openscenario.entities import SUNS
+from sgcad_core.formats.openscenario.logical import Meets, Range, Warp, deterministic, logical_xosc, stochastic, suns
 from sgcad_core.formats.openscenario.writer import write_xosc
-from sgcad_core.handover.drive import drive
-from sgcad_core.handover.hardest import Searched, decides, search
-from sgcad_core.handover.outcome import Came, came
-from sgcad_core.handover.script import Script, staged
-from sgcad_core.handover.spread import Parameter, spreads
+from sgcad_core.handover.choices import LIGHTS, PAIR, light_of, unvaried
+from sgcad_core.handover.delay import LATER_S
+from sgcad_core.handover.parameter import Parameter
+from sgcad_core.handover.script import Script
+from sgcad_core.handover.spread import spreads
 from sgcad_core.handover.variant import Basis, basis_of, member, prolonged, undisturbed
 from sgcad_core.records import Floats
 from sgcad_core.specs import BehaviorSpec
 
+Method = Literal["cross-entropy", "map-elites"]
+METHODS: tuple[Method, ...] = ("cross-entropy", "map-elites")
 TRIES = 40
 """Draws a member at most: a family of which fewer are the same crash is too wide."""
-ROUNDS = 5
 BACK = 0.45
 """Straight run before the logical file's trajectories, of the time to the contact: the fastest pace needs 0.4."""
+
+
+class Search(NamedTuple):
+    """What is looked for: the hardest members for a driver in a role, by one of both methods."""
+
+    driver: DriverEntry
+    role: str
+    method: Method = "cross-entropy"
 
 
 @dataclass(frozen=True)
@@ -63,18 +73,23 @@ def family_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Family:
     if basis is None:
         raise BadInput(f"{folder}: its first contact is not the declared one, or of no vehicle; nothing to vary about")
     facts = tuple(json.loads((folder / "result.json").read_text(encoding="utf-8")).get("facts", ()))
-    return Family(folder, basis, spreads(script, facts), facts)
+    return Family(folder, basis, spreads(script, facts, basis.delays), facts)
 
 
-def vary(family: Family, count: int, seed: int, driver: DriverEntry | None = None, role: str = "") -> Path:
-    """Write a family of so many members; the folder. Raises BadInput, ConfigError, SimulationFailed."""
+def vary(family: Family, count: int, seed: int, look: Search | None = None) -> Path:
+    """Write a family of so many members, and with a search the hardest ones for a driver; the folder.
+
+    Raises BadInput, ConfigError, SimulationFailed.
+    """
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
     with scratch.beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
-        if driver is not None:
-            _hardest(family, count, seed, driver, role, partial)
+        if look is not None:
+            from flows.drives.searching import hardest  # the family's functions are known there
+
+            hardest(family, count, seed, look, partial)
         shutil.rmtree(place, ignore_errors=True)
         partial.rename(place)
     return place
@@ -100,15 +115,23 @@ def _write(family: Family, count: int, seed: int, place: Path) -> None:
     found, drawn = members(family, count, seed)
     (place / "concrete").mkdir()
     behavior = _conditions(family)
-    for number, (_, made) in enumerate(found, 1):
-        text = write_xosc(made.actors, made.trajectories, behavior, "../../../road.xodr", f"member {number}")
+    for number, (values, made) in enumerate(found, 1):
+        seen = behavior.model_copy(update={"light": light_of(values)}) if "light" in values else behavior
+        text = write_xosc(made.actors, made.trajectories, seen, "../../../road.xodr", f"member {number}")
         (place / "concrete" / f"{number:04d}.xosc").write_text(text, encoding="utf-8")
-    ranges = [_range(p) for p in family.parameters]
-    (place / "logical.xosc").write_text(_logical(family, ranges, behavior), encoding="utf-8")
-    sets = [values for values, _ in found]
-    (place / "deterministic.xosc").write_text(deterministic("logical.xosc", sets), encoding="utf-8")
-    (place / "stochastic.xosc").write_text(stochastic("logical.xosc", ranges, count, seed), encoding="utf-8")
+    for name, text in files_of(family, [values for values, _ in found], seed).items():
+        (place / f"{name}.xosc").write_text(text, encoding="utf-8")
     store.write_json(place / "manifest.json", _manifest(family, found, drawn, seed))
+
+
+def files_of(family: Family, sets: Sequence[Mapping[str, float]], seed: int) -> dict[str, str]:
+    """The logical scenario, and the files that distribute its parameters: as listed, and as drawn."""
+    ranges = [_range(p) for p in family.parameters]
+    return {
+        "logical": _logical(family, ranges, _conditions(family)),
+        "deterministic": deterministic("logical.xosc", sets),
+        "stochastic": stochastic("logical.xosc", ranges, len(sets), seed),
+    }
 
 
 def _conditions(family: Family) -> BehaviorSpec:
@@ -120,16 +143,30 @@ def _conditions(family: Family) -> BehaviorSpec:
 
 
 def _range(p: Parameter) -> Range:
-    return Range(p.name, p.nominal, p.low, p.high, p.mean, p.spread if p.kind == "normal" else 0.0)
+    return Range(p.name, p.nominal, p.low, p.high, p.mean, p.spread if p.kind == "normal" else 0.0, p.values, p.shares)
 
 
 def _logical(family: Family, ranges: Sequence[Range], behavior: BehaviorSpec) -> str:
     basis = family.basis
     nominal = undisturbed(basis, {p.name: p.nominal for p in family.parameters})
-    back = round(BACK * basis.contact_s / 0.05) * 0.05
-    text = write_xosc(nominal.actors, prolonged(nominal, back), behavior, "../../road.xodr", "logical")
-    everybody = [Meets(t.actor, basis.contact_s + back) for t in nominal.trajectories]
+    shifted = max((float(np.abs(d.linear).max()) for d in basis.delays.values()), default=0.0) * LATER_S
+    back = round((BACK * basis.contact_s + shifted) / 0.05) * 0.05
+    lit = any(p.name == "light" for p in family.parameters)
+    seen = behavior.model_copy(update={"light": LIGHTS[0]}) if lit else behavior
+    text = write_xosc(nominal.actors, prolonged(nominal, back), seen, "../../road.xodr", "logical")
+    text = suns(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
+    everybody = [_meets(basis, t.actor, back) for t in nominal.trajectories]
     return logical_xosc(text, ranges, everybody, basis.contact_s)
+
+
+def _meets(basis: Basis, actor: str, back: float) -> Meets:
+    """How an actor's motion in the logical file depends on the parameters, as `variant` has it."""
+    who = basis.owner(actor)
+    lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))
+    other, per_m = basis.crossed.get(who, ("", 0.0))
+    delay = basis.delays.get(who)
+    warp = Warp(f"{who}_reaction_s", delay.t_s + back, delay.linear, delay.square, delay.cube) if delay else None
+    return Meets(actor, basis.contact_s + back, lanes, ((f"{other}_lane_m", per_m),) if per_m else (), warp)
 
 
 def _manifest(
@@ -147,83 +184,9 @@ def _manifest(
         "members": [
             {"file": f"concrete/{number:04d}.xosc", "values": values} for number, (values, _) in enumerate(found, 1)
         ],
-        "not_varied": "lanes, reactions and light: another lane or light would contradict what was planned with it; "
-                      "reactions are the driver's (`sgcad drive`)",
+        "not_varied": unvaried(script, family.facts, family.parameters),
     }  # fmt: skip
 
 
 def _standing(fact: Mapping[str, Any]) -> str:
     return {"stated": "report fact", "inferred": "inferred"}.get(str(fact.get("status")), "default")
-
-
-# ------------------------------------------------------------------ the hardest
-def _hardest(family: Family, count: int, seed: int, driver: DriverEntry, role: str, place: Path) -> None:
-    wanted = egos(family.basis.script, "", [role])
-    if not wanted:
-        raise ConfigError(f"{family.folder}: nobody who can be driven is its {role}; give --role")
-    ego = wanted[0][0]
-    seen: list[Came | None] = []
-    found = search(_hardness(family, driver, ego, seen), len(family.parameters), count, ROUNDS, seed)
-    share = decides(found.latents, found.hardness)
-    store.write_json(place / "hardest.json", _told(family, driver, (ego, role), found, seen) | {
-        "decides": {p.name: round(float(v), 4) for p, v in zip(family.parameters, share, strict=True)},
-    })  # fmt: skip
-    (place / "decides.png").write_bytes(_plot(family.parameters, share, f"{driver.label} drives {ego}"))
-
-
-def _hardness(
-    family: Family, driver: DriverEntry, ego: str, seen: list[Came | None]
-) -> Callable[[Floats], float | None]:
-    """How hard a member is: the larger delta-v where the ego touches, else minus its least clearance."""
-
-    def hardness(latent: Floats) -> float | None:
-        made = undisturbed(family.basis, family.values(latent))
-        if member(family.basis, family.values(latent)) is None:
-            seen.append(None)
-            return None
-        result = came(drive(staged(made, ego), driver.driver))
-        seen.append(result)
-        if result.outcome == "lost":
-            return None
-        return result.severity.worst_delta_v_mps if result.severity else -result.closest_m
-
-    return hardness
-
-
-def _told(
-    family: Family, driver: DriverEntry, who: tuple[str, str], found: Searched, seen: Sequence[Came | None]
-) -> dict[str, Any]:
-    same = np.array([c is not None for c in seen])
-    touched = np.array([c is not None and c.contact is not None for c in seen])
-    inside = found.rate(same)[0]
-    rate, error = found.rate(touched)
-    order = np.argsort(-found.hardness, kind="stable")[:10]
-    return {
-        "driver": driver.label, "fields": driver.raw, "ego": who[0], "role": who[1], "samples": len(seen),
-        "members": int(same.sum()), "effective_samples": round(found.effective, 1),
-        "contact_rate": round(rate / inside, 4) if inside > 0 else None,
-        "contact_rate_error": round(error / inside, 4) if inside > 0 else None,
-        "hardest": [
-            {"values": family.values(found.latents[k]), "hardness": round(float(found.hardness[k]), 4),
-             "weight": round(float(found.weights[k]), 6), "outcome": one.outcome}
-            for k in order if (one := seen[k]) is not None and np.isfinite(found.hardness[k])
-        ],
-    }  # fmt: skip
-
-
-def _plot(parameters: Sequence[Parameter], share: Floats, title: str) -> bytes:
-    import io
-
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 0.4 * len(parameters) + 1.4), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots()
-    order = np.argsort(np.abs(share))
-    axes.barh([parameters[k].name for k in order], share[order], color="#0072b2")
-    axes.axvline(0, color="#2d3436", linewidth=0.8)
-    axes.set(xlim=(-1, 1), xlabel="rank correlation with hardness", title=title)
-    out = io.BytesIO()
-    figure.savefig(out, format="png")
-    return out.getvalue()

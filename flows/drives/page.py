@@ -5,38 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from flows import player
 from flows.drawing import drawing_of
 from flows.view import COLORS, Mover, View
 from sgcad_core.handover.drive import Drive
-from sgcad_core.records import CrashReport, Execution, Trajectory
+from sgcad_core.records import CrashReport, Execution
 from sgcad_core.result import CaseRecord
 
-SCRIPTED = "#9aa0a6"
-"""Of the script's road users, behind those of the drive."""
+SCRIPT = "script"
+"""What the script is called among the player's runs."""
 
 
 def page(driven: Drive, told: Mapping[str, Any]) -> str:
-    """The page as text: the script in grey (its road users are called V1_script), the drive in colors."""
-    script = driven.staging.script
-    count = len(driven.ego.t_s)
-    movers = [Mover(a.model_copy(update={"id": f"{a.id}_script"}), _cut(t, count, f"{t.actor}_script"), SCRIPTED)
-              for a, t in zip(script.actors, script.trajectories, strict=True)]  # fmt: skip
-    infos = {a.id: a for a in script.actors}
-    movers += [
+    """The page as text: the drive, and over it in dashes the script; both beside each other at a click."""
+    infos = {a.id: a for a in driven.staging.script.actors}
+    movers = (
         Mover(infos[t.actor], t, COLORS[k % len(COLORS)]) for k, t in enumerate(driven.trajectories) if t.actor in infos
-    ]
+    )
     return player.page(_view(driven, told, tuple(movers)))
-
-
-def _cut(track: Trajectory, count: int, name: str) -> Trajectory:
-    """A script on the drive's clock: cut, or standing on at its end."""
-    at = np.minimum(np.arange(count), len(track.t_s) - 1)
-    names = ("x_m", "y_m", "heading_rad", "speed_mps")
-    t_s = np.round(np.arange(count) * 0.05, 3)
-    return Trajectory(actor=name, t_s=t_s, **{n: getattr(track, n)[at] for n in names})
 
 
 def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> View:
@@ -52,7 +38,11 @@ def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> 
     record = CaseRecord(case=script.case, config=f"{told['driver']} drives {told['ego']}", execution=execution)
     report = CrashReport(case=script.case, narrative=_words(told))
     figures = {k: v for k, v in told.items() if isinstance(v, int | float) and not isinstance(v, bool)}
-    return View(record, report, {"drive": figures}, result, drawing_of(script.net_xml), movers)
+    hard = told.get("severity")
+    change = {s["actor"]: round(s["delta_v_mps"], 3) for s in (hard["first"], hard["second"])} if hard else {}
+    metrics = {"drive": figures} | ({"exact": {"delta_v_mps": change}} if change else {})
+    runs, name = {SCRIPT: script.trajectories}, f"{told['driver']} drives {told['ego']}"
+    return View(record, report, metrics, result, drawing_of(script.net_xml), movers, runs, name, SCRIPT)
 
 
 def _words(told: Mapping[str, Any]) -> str:
@@ -70,5 +60,5 @@ def _words(told: Mapping[str, Any]) -> str:
         )
     if could.get("steer_by_s") is not None:
         lines.append(f"Moving aside to the {could['steer_to']} had to begin {could['steer_by_s']:.2f} s before it.")
-    lines.append(f"Least clearance {told['closest_m']:.2f} m. Grey: the script.")
+    lines.append(f"Least clearance {told['closest_m']:.2f} m. Dashed: the script.")
     return " ".join(lines)

@@ -11,7 +11,7 @@ import hashlib
 import json
 import shutil
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
@@ -99,6 +99,7 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
     about: dict[str, Any] = {
         "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
         "release_s": order.release_s, "factor": order.factor, "digest": digest,
+        "script_contact_s": round(staging.contact_s, 3) if staging.contact else None,
     }  # fmt: skip
     try:
         driven = drive(staging, entry.driver, release_s=order.release_s, factor=order.factor)
@@ -125,17 +126,23 @@ def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -
         partial.rename(target)
 
 
-def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> list[dict[str, Any]]:
-    """Drive many cases, some at a time; results in the order of the folders, failures among them."""
+def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[dict[str, Any]]:
+    """Drive many cases, some at a time; results as they come, in the order of the folders, failures among them.
+
+    Nothing is kept: who wants many results counts them.
+    """
     if jobs <= 1 or len(folders) == 1:
-        return [told for folder in folders for told in _safely(folder, order)]
+        for folder in folders:
+            yield from _safely(folder, order)
+        return
     from concurrent.futures import ProcessPoolExecutor
     from functools import partial
     from multiprocessing import get_context
 
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         work = partial(_safely, order=order)
-        return [told for found in pool.map(work, folders, chunksize=4) for told in found]
+        for found in pool.map(work, folders):
+            yield from found
 
 
 def _safely(folder: Path, order: Order) -> list[dict[str, Any]]:

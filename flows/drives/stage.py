@@ -10,7 +10,7 @@ from flows.drives.reading import roles_of
 from flows.drives.running import FOLDER, Order, drive_script
 from sgcad_core.config import DriveStage
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.handover.figures import contact_figures
+from sgcad_core.handover.figures import contact_figures, impact_told
 from sgcad_core.handover.outcome import OUTCOMES
 from sgcad_core.handover.script import Script
 from sgcad_core.result import CaseRecord
@@ -31,6 +31,11 @@ def driven(stage: DriveStage, record: CaseRecord, folder: Path) -> dict[str, Any
 def contact(record: CaseRecord) -> dict[str, Any]:
     """How hard the scripted contact is, and until when it could have been avoided."""
     return contact_figures(script_in(record, {}), record.execution.contact if record.execution else None)
+
+
+def impact(record: CaseRecord) -> dict[str, Any] | None:
+    """What result.json tells of the scripted contact; None where nothing touches."""
+    return impact_told(script_in(record, {}), record.execution.contact if record.execution else None)
 
 
 def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:
@@ -56,7 +61,7 @@ def _figures(told: Mapping[str, Any]) -> dict[str, Any]:
     hardness = {"delta_v_mps": _worst(now) if now else 0.0} if told["outcome"] != "failed" else {}
     hardness |= {"scripted_delta_v_mps": _worst(then)} if then else {}
     outcomes = {o: int(told["outcome"] == o) for o in (*OUTCOMES, "failed")}
-    return {**outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
+    return {"ego": told["ego"], **outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
 
 
 def _worst(hardness: Mapping[str, Any]) -> float:

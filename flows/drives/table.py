@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, TextIO
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -20,46 +20,66 @@ WIDTH = 118
 MAX_TOLD = 10
 
 
-def show(console: Console, told: Sequence[Mapping[str, Any]]) -> None:
+class Tally:
+    """Drives counted one by one; none of them is kept but the first that failed."""
+
+    def __init__(self) -> None:
+        self._counts: dict[tuple[str, str], Counter[str]] = {}
+        self.failed, self.faults = 0, list[str]()
+
+    def add(self, told: Mapping[str, Any]) -> None:
+        """Count a drive's result."""
+        if told["outcome"] == "failed":
+            self.failed += 1
+            if self.failed <= MAX_TOLD:
+                self.faults.append(f"{told['case']} {told['driver']} {told['ego']}: {told['reason']}"[:300])
+            return
+        counts = self._counts.setdefault((told["driver"], told["role"]), Counter())
+        counts.update(["n", told["outcome"]])
+        if told["as_declared"] is not None:
+            counts.update({"declared": 1, "as_declared": int(told["as_declared"])})
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One a driver and role: n, counts of the outcomes, shares with intervals, as declared; without failed ones."""
+        drivers = dict.fromkeys(driver for driver, _ in self._counts)
+        cells = ((d, role) for d in drivers for role in CRASH_ROLES if (d, role) in self._counts)
+        return [_row(*cell, self._counts[cell]) for cell in cells]
+
+
+def rows(told: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of some drives."""
+    tally = Tally()
+    for one in told:
+        tally.add(one)
+    return tally.rows()
+
+
+def show(console: Console, tally: Tally) -> None:
     """Print the table and what failed."""
     console.width = max(console.width, WIDTH)
-    console.print(_table(told))
-    failed = [t for t in told if t["outcome"] == "failed"]
-    for t in failed[:MAX_TOLD]:
-        console.print(escape(f"{t['case']} {t['driver']} {t['ego']}: {t['reason']}"[:300]), soft_wrap=True)
-    if len(failed) > MAX_TOLD:
-        console.print(f"... and {len(failed) - MAX_TOLD} more failed")
+    console.print(_table(tally.rows()))
+    for line in tally.faults:
+        console.print(escape(line), soft_wrap=True)
+    if tally.failed > len(tally.faults):
+        console.print(f"... and {tally.failed - len(tally.faults)} more failed")
 
 
-def rows(told: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """One a driver and role: n, counts of the outcomes, shares with intervals, as declared; without failed drives."""
-    drivers = dict.fromkeys(t["driver"] for t in told if t["outcome"] != "failed")
-    found = []
-    for driver in drivers:
-        for role in CRASH_ROLES:
-            mine = [t for t in told if t["driver"] == driver and t["role"] == role and t["outcome"] != "failed"]
-            if mine:
-                found.append(_row(driver, role, mine))
-    return found
-
-
-def _row(driver: str, role: str, mine: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    n = len(mine)
+def _row(driver: str, role: str, counts: Mapping[str, int]) -> dict[str, Any]:
+    n = counts["n"]
     row: dict[str, Any] = {"driver": driver, "role": role, "n": n}
-    row |= {o: sum(t["outcome"] == o for t in mine) for o in OUTCOMES}
+    row |= {o: counts.get(o, 0) for o in OUTCOMES}
     for name in ("avoided", "mitigated"):
         low, high = wilson(row[name], n)
         row |= {f"{name}_share": row[name] / n, f"{name}_low": low, f"{name}_high": high}
-    declared = [t["as_declared"] for t in mine if t["as_declared"] is not None]
-    return row | {"as_declared": sum(declared), "declared": len(declared)}
+    return row | {"as_declared": counts.get("as_declared", 0), "declared": counts.get("declared", 0)}
 
 
-def _table(told: Sequence[Mapping[str, Any]]) -> Table:
+def _table(found: Sequence[Mapping[str, Any]]) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("driver", overflow="fold", min_width=10)
     for name in ("role", "n", "avoided", "95 %", "mitigated", "95 %", "unchanged", "worse", "lost", "as declared"):
         table.add_column(name, justify="right", no_wrap=True)
-    for row in rows(told):
+    for row in found:
         table.add_row(
             escape(row["driver"]), row["role"], str(row["n"]),
             *(cell for name in ("avoided", "mitigated") for cell in _share(row, name)),
@@ -73,16 +93,18 @@ def _share(row: Mapping[str, Any], name: str) -> tuple[str, str]:
     return f"{row[name]} ({100 * row[f'{name}_share']:.0f} %)", interval
 
 
-def write_csv(file: Path, told: Sequence[Mapping[str, Any]]) -> None:
-    """One line a drive: what a figure in the table counts."""
-    names = ("case", "driver", "ego", "role", "outcome", "as_declared", "braked_s", "braked_at_ttc_s",
-             "hardest_mps2", "closest_m", "least_ttc_s", "pet_s", "lag_s", "seconds")  # fmt: skip
-    with file.open("w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out)
-        more = ("delta_v_mps", "scripted_delta_v_mps", "risk", "scripted_risk")
-        writer.writerow([*names, *more])
-        for t in told:
-            writer.writerow([*(t.get(name) for name in names), *_hardness(t)])
+NAMES = ("case", "driver", "ego", "role", "outcome", "as_declared", "braked_s", "braked_at_ttc_s", "hardest_mps2",
+         "closest_m", "least_ttc_s", "pet_s", "lag_s", "seconds")  # fmt: skip
+HARDNESS = ("delta_v_mps", "scripted_delta_v_mps", "risk", "scripted_risk")
+
+
+def as_csv(out: TextIO, told: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    """Write one line a drive as they pass by: what a figure in the table counts."""
+    writer = csv.writer(out)
+    writer.writerow([*NAMES, *HARDNESS])
+    for t in told:
+        writer.writerow([*(t.get(name) for name in NAMES), *_hardness(t)])
+        yield t
 
 
 def _hardness(t: Mapping[str, Any]) -> list[Any]:

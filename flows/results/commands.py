@@ -59,12 +59,13 @@ def report(
     ] = None,
 ) -> None:
     """One HTML file with a study's tables, figures and cases; it needs no server and fetches nothing."""
+    from flows.results.handed_scenes import drive_frames
     from flows.results.page import page
     from flows.results.plots import plots_of
     from flows.results.scenes import scenes_of
 
     tables = _tables(study, out, truth, only)
-    plots = [*plots_of(tables), *scenes_of(tables)]
+    plots = [*plots_of(tables), *scenes_of(tables), *drive_frames(tables)]
     place = html or tables.study.folder / PAGE
     _write(place, page(tables, plots, place).encode("utf-8"))
     if figures:

@@ -15,6 +15,7 @@ from html import escape
 from pathlib import Path
 
 from flows.results.gallery import gallery
+from flows.results.handed import card
 from flows.results.measures import Measure
 from flows.results.plots import Plot
 from flows.results.published import publication
@@ -32,7 +33,7 @@ def page(tables: Tables, plots: Sequence[Plot], place: Path) -> str:
     parts = {
         "%TITLE%": escape(tables.study.title),
         "%LEAD%": _lead(tables),
-        "%TABLES%": "\n".join(map(_table, tables.tables)) + _how(tables),
+        "%TABLES%": "\n".join(map(_table, tables.tables)) + _how(tables) + card(tables.study, place),
         "%FIGURES%": "\n".join(map(_figure, plots)),
         "/*STYLE*/": _part("report.css"),
         "/*SCRIPT*/": _part("report.js"),

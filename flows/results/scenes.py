@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
-from flows.picture import GROUND, RED, draw_network
+from flows.picture import GROUND, RED
+from flows.results.axes import SIDE_IN, bare, car, look, say, star, under
 from flows.results.plots import Plot, as_png, canvas
 from flows.results.reading import Ran, Study, made_of
-from flows.results.scene import Scene, scene_of
+from flows.results.scene import scene_of
 from flows.results.table import Tables
-from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.metrics.truth import compare, truth_figures
 from sgcad_core.narrative.text import sentences
 from sgcad_core.result import as_declared
@@ -26,7 +26,6 @@ MOST_ARMS, MOST_ROWS = 6, 4
 """Arms in a row of networks and rows of it; arms in the frames."""
 MOMENTS_S = (-3.0, -1.0, 0.0, 0.5)
 """Frames, in seconds from the first contact."""
-SIDE_IN = 2.3
 NEAR_M = 28.0
 GOOD, BAD = "#1b7f4d", "#c4203a"
 MARKS = (
@@ -78,43 +77,27 @@ def _telling(tables: Tables) -> list[str]:
     return sorted(written, key=rank)
 
 
-def _bare(axes: Axes) -> None:
-    axes.set_xticks([])
-    axes.set_yticks([])
-    axes.spines[:].set_color("#d5d9d5")
-
-
-def _say(axes: Axes, text: str, color: str = "#66707a") -> None:
-    wrapped = "\n".join(piece for line in text.splitlines() for piece in textwrap.wrap(line, 26) or [""])
-    at = axes.transAxes
-    axes.text(0.5, 0.5, wrapped, transform=at, ha="center", va="center", size=8, color=color, parse_math=False)
-
-
-def _under(axes: Axes, text: str, color: str = "#66707a") -> None:
-    axes.set_xlabel(text, fontsize=7.5, color=color, parse_math=False)
-
-
 def _diagram(axes: Axes, study: Study, case: str) -> None:
-    _bare(axes)
+    bare(axes)
     file = next((f for a in study.arms if (f := study.folder / a.name / case / "diagram.png").is_file()), None)
     if file is None:
-        _say(axes, "no diagram")
+        say(axes, "no diagram")
     else:
         with Image.open(file) as image:
             image.thumbnail((480, 480))
             axes.imshow(np.asarray(image.convert("RGB")))
-    _under(axes, case)
+    under(axes, case)
 
 
 def _truth(axes: Axes, label: Mapping[str, Any] | None) -> None:
     """The label's nodes and segments as a sketch with lanes there / back, or in words where it has none."""
-    _bare(axes)
+    bare(axes)
     if label is None:
-        return _say(axes, "no truth")
+        return say(axes, "no truth")
     nodes = {n["id"]: (n["x"], -n["y"]) for n in label["network"].get("nodes") or () if n.get("x") is not None}
     segments = [s for s in label["network"].get("segments") or () if {s["from"], s["to"]} <= set(nodes)]
     if not segments:
-        return _say(axes, _truth_words(label))
+        return say(axes, _truth_words(label))
     for s in segments:
         a, b = np.array(nodes[s["from"]]), np.array(nodes[s["to"]])
         lanes = (s.get("lanes_towards_to") or 0, s.get("lanes_towards_from") or 0)
@@ -126,7 +109,7 @@ def _truth(axes: Axes, label: Mapping[str, Any] | None) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
     figures = truth_figures(label)
-    return _under(axes, f"junctions {figures.intersections}, mean lanes {figures.mean_lanes or 0:.2f}")
+    return under(axes, f"junctions {figures.intersections}, mean lanes {figures.mean_lanes or 0:.2f}")
 
 
 def _truth_words(label: Mapping[str, Any]) -> str:
@@ -138,29 +121,23 @@ def _truth_words(label: Mapping[str, Any]) -> str:
 
 
 def _network(axes: Axes, ran: Ran | None, label: Mapping[str, Any] | None) -> None:
-    _bare(axes)
+    bare(axes)
     axes.set_facecolor(GROUND)
     scene = scene_of(ran) if ran else None
     if ran is None:
-        return _say(axes, "not done yet")
+        return say(axes, "not done yet")
     if scene is None:
-        return _say(axes, f"{ran.result['status']}\n{ran.result['reason'][:90]}", BAD)
-    _look(axes, scene, scene.middle, scene.half_m)
+        return say(axes, f"{ran.result['status']}\n{ran.result['reason'][:90]}", BAD)
+    look(axes, scene, scene.middle, scene.half_m)
     for track in scene.paths.values():
         axes.plot(track.pose[:, 0], track.pose[:, 1], color=scene.color(track), linewidth=1.1, zorder=3)
     found = ran.result.get("network") or {}
     text = f"junctions {found.get('intersections')}, mean lanes {found.get('mean_lanes', 0):.2f}"
     if label is None:
-        return _under(axes, text)
+        return under(axes, text)
     marks = compare(label, made_of(ran.folder, ran.result))
     wrong = [v for k, v in marks.items() if k.endswith("error_any")] + [1 - marks.get("lanes_total", 1.0)]
-    return _under(axes, text, BAD if any(wrong) else GOOD)
-
-
-def _look(axes: Axes, scene: Scene, middle: tuple[float, float], half_m: float) -> None:
-    axes.set(xlim=(middle[0] - half_m, middle[0] + half_m), ylim=(middle[1] - half_m, middle[1] + half_m))
-    axes.set_aspect("equal")
-    draw_network(axes, scene.drawing, SIDE_IN * 0.9 * 72 / (2 * half_m))
+    return under(axes, text, BAD if any(wrong) else GOOD)
 
 
 # ------------------------------------------------------------------ frames
@@ -224,21 +201,15 @@ def _verdicts(axes: Axes, label: str, ran: Ran | None, truth: Mapping[str, Any] 
 def _moments(grid: Sequence[Axes], ran: Ran | None) -> None:
     scene = scene_of(ran) if ran else None
     for axes, moment in zip(grid, MOMENTS_S, strict=True):
-        _bare(axes)
+        bare(axes)
         axes.set_facecolor(GROUND)
         if ran is None or scene is None or scene.contact_s is None:
-            _say(axes, "" if ran is None else ran.result["status"] if scene is None else "nothing touched", BAD)
+            say(axes, "" if ran is None else ran.result["status"] if scene is None else "nothing touched", BAD)
             continue
-        _look(axes, scene, scene.contact_at, NEAR_M)
+        look(axes, scene, scene.contact_at, NEAR_M)
         for track in scene.paths.values():
             box = scene.box(track, scene.contact_s + moment)
-            _car(axes, box, scene.color(track))
+            car(axes, box, scene.color(track))
         if moment >= 0:
-            axes.plot(*scene.contact_at, marker=(10, 1, 0), markersize=10, color=RED, markeredgecolor="white", zorder=6)
-        _under(axes, f"{moment:+.1f} s".replace("-", "−") if moment else "first contact")
-
-
-def _car(axes: Axes, box: Box, color: str) -> None:
-    from matplotlib.patches import Polygon
-
-    axes.add_patch(Polygon(corners(box), closed=True, facecolor=color, edgecolor="white", linewidth=0.7, zorder=5))
+            star(axes, scene.contact_at, RED)
+        under(axes, f"{moment:+.1f} s".replace("-", "−") if moment else "first contact")

@@ -83,7 +83,13 @@ def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
     parts = {"network": network, "attempts": result.get("attempts"), "seconds": result.get("seconds")}
     figures |= numbers(parts) | numbers({"grounding": result.get("grounding")})
     metrics = read_json(case_dir / "metrics.json") or {}
+    figures |= numbers({"driven": _driven(metrics.get("drive") or {})})
     return figures | numbers({k: v for k, v in metrics.items() if k != "thresholds"})
+
+
+def _driven(drivers: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Role -> figures of the one driver that a config has: arms with different drivers bear the same names."""
+    return next(iter(drivers.values())) if len(drivers) == 1 else {}
 
 
 def attempt_figures(case_dir: Path) -> Iterator[tuple[int, dict[str, float]]]:

@@ -26,13 +26,14 @@ LEAST_SPREAD = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """All samples: latents (n, d), hardness (n,), weights (n,) with mean 1 in expectation, and the last proposal."""
+    """All samples: latents (n, d), hardness (n,), weights (n,) with mean 1 in expectation, and the last proposal, if
+    there is one."""
 
     latents: Floats
     hardness: Floats
     weights: Floats
-    mean: Floats
-    spread: Floats
+    mean: Floats | None = None
+    spread: Floats | None = None
 
     def rate(self, event: ArrayLike) -> tuple[float, float]:
         """Probability of an event under the family, and its standard error."""

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.boxes import apart, mean, touch_points
-from sgcad_core.planner.impact import RESTITUTION, Body, body, collide, mass_kg
+from sgcad_core.planner.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
 from sgcad_core.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.seat import STEP_S
 from sgcad_core.specs import ActorKind
@@ -59,17 +59,25 @@ def severity(contact: ObservedContact, trajectories: Sequence[Trajectory], infos
     """The figures of a first contact, from the motion of both up to the sample before it."""
     track = {t.actor: t for t in trajectories}
     pair = [_body(track[name], infos[name], contact.t_s) for name in (contact.actor, contact.other)]
-    before = [(b.vx, b.vy) for b in pair]
-    energy = sum(b.energy for b in pair)
-    seen = apart(pair[0], pair[1])
-    collide(pair[0], pair[1], mean(touch_points(pair[0], pair[1])), seen.normal, RESTITUTION)
+    before, energy = [(b.vx, b.vy) for b in pair], sum(b.energy for b in pair)
+    changes = exchanged(pair[0], pair[1])
     closing = math.hypot(before[0][0] - before[1][0], before[0][1] - before[1][1])
-    changes = [(b.vx - v[0], b.vy - v[1]) for b, v in zip(pair, before, strict=True)]
     names = contact.actor, contact.other
     struck = [_struck(infos[n], b, v, c, closing) for n, b, v, c in zip(names, pair, before, changes, strict=True)]
     return Severity(
         closing_mps=closing, energy_j=max(energy - sum(b.energy for b in pair), 0.0), first=struck[0], second=struck[1]
     )
+
+
+def exchanged(
+    first: Body, second: Body, restitution: float = RESTITUTION, friction: float = FRICTION
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Let two that touch exchange momentum at once; the changes of velocity of their centers, m/s."""
+    before = [(b.vx, b.vy) for b in (first, second)]
+    at = mean(touch_points(first, second))
+    collide(first, second, at, apart(first, second).normal, restitution, friction)
+    changes = [(b.vx - v[0], b.vy - v[1]) for b, v in zip((first, second), before, strict=True)]
+    return changes[0], changes[1]
 
 
 def _body(track: Trajectory, info: ActorInfo, t_s: float) -> Body:

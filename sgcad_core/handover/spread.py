@@ -1,59 +1,36 @@
 """What a report leaves open, as distributions: narrow where it states a value, wide where it is silent.
 
 Each parameter has the fact that it rests on (or its lack) and the reason of its width. Values vary about those of the
-script; a stated fact is never left: its distribution ends where the report's rounding does. Latent values are standard
-normal and independent; a parameter's value is its distribution's quantile there. Knows scripts and facts; draws none.
+script; a stated fact is never left: its distribution ends where the report's rounding does. Knows scripts and facts;
+draws none.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from statistics import NormalDist
-from typing import Any, Literal
+from typing import Any
 
-from sgcad_core.frozen import Record
+from sgcad_core.handover.choices import lanes, light, reactions
+from sgcad_core.handover.delay import Delay
+from sgcad_core.handover.parameter import Facts, Parameter, field_at, told_of
 from sgcad_core.handover.script import Script
 
-_UNIT = NormalDist()
 _WANDER_M = 0.375
 """Vehicles wander so far within their lane (UN R157, Annex 4, Appendix 3): taken as two standard deviations."""
 _GRIP: Mapping[str | None, tuple[float, float]] = {
     "dry": (0.8, 0.9), "wet": (0.5, 0.7), "snow": (0.15, 0.25), "ice": (0.07, 0.15), None: (0.5, 0.9),
 }  # fmt: skip
 """Peak friction (J. Y. Wong, Theory of Ground Vehicles, table 1.3); of an untold surface dry to wet."""
-Told = Literal["stated", "inferred", "default"]
 
 
-class Parameter(Record):
-    """One thing that varies. `normal`: cut to [low, high]; `uniform`: over it."""
+def spreads(
+    script: Script, facts: Sequence[Mapping[str, Any]], delays: Mapping[str, Delay] | None = None
+) -> tuple[Parameter, ...]:
+    """The parameters of a script whose first contact is declared, in a fixed order.
 
-    name: str
-    kind: Literal["normal", "uniform"]
-    mean: float
-    spread: float
-    """Standard deviation of a normal one."""
-    low: float
-    high: float
-    nominal: float
-    """The script's own value."""
-    told: Told
-    field: str
-    """The fact that it rests on; "" where the report is silent."""
-    reason: str
-
-    def value(self, latent: float) -> float:
-        """The quantile of a standard normal value."""
-        share = min(max(_UNIT.cdf(latent), 1e-9), 1 - 1e-9)
-        if self.kind == "uniform":
-            return self.low + share * (self.high - self.low)
-        normal = NormalDist(self.mean, self.spread)
-        first, last = normal.cdf(self.low), normal.cdf(self.high)
-        return min(max(normal.inv_cdf(first + share * (last - first)), self.low), self.high)
-
-
-def spreads(script: Script, facts: Sequence[Mapping[str, Any]]) -> tuple[Parameter, ...]:
-    """The parameters of a script whose first contact is declared, in a fixed order."""
+    `delays`: by actor, how its braking before the contact can come later (`delay_of`).
+    """
     known = {f["field"]: f for f in facts}
     pair = (script.declared.striker, script.declared.struck) if script.declared else ()
     found: list[Parameter] = []
@@ -63,7 +40,9 @@ def spreads(script: Script, facts: Sequence[Mapping[str, Any]]) -> tuple[Paramet
         found += _size(script, known, actor)
     if len(pair) == 2 and all(_moves(script, a) for a in pair):
         found.append(_late(pair[1]))
-    return (*found, _friction(script, known))
+    found += lanes(script, known, pair)
+    found += reactions(script, known, pair, delays or {})
+    return (*found, _friction(script, known), *light(known))
 
 
 def _moves(script: Script, actor: str) -> bool:
@@ -71,19 +50,10 @@ def _moves(script: Script, actor: str) -> bool:
     return math.hypot(track.x_m[1] - track.x_m[0], track.y_m[1] - track.y_m[0]) > 1e-3 or track.speed_mps.max() > 0.5
 
 
-def _at(actor: str) -> str:
-    return f"{'vehicles' if actor.startswith('V') else 'others'}.{actor}"
-
-
-def _told(known: Mapping[str, Mapping[str, Any]], field: str) -> Told:
-    status = known.get(field, {}).get("status", "default")
-    return status if status in ("stated", "inferred") else "default"
-
-
-def _pace(script: Script, known: Mapping[str, Mapping[str, Any]], actor: str) -> Parameter:
+def _pace(script: Script, known: Facts, actor: str) -> Parameter:
     """Speed over the script's."""
-    field = f"{_at(actor)}.speed_mph"
-    told = _told(known, field)
+    field = field_at(actor, "speed_mph")
+    told = told_of(known, field)
     if told == "stated":
         speed = max(float(known[field]["value"] or 1), 5.0)
         half = min(5.0 / speed, 0.5)
@@ -95,20 +65,20 @@ def _pace(script: Script, known: Mapping[str, Mapping[str, Any]], actor: str) ->
                      told=told, field="", reason=why)  # fmt: skip
 
 
-def _aside(known: Mapping[str, Mapping[str, Any]], actor: str) -> Parameter:
+def _aside(known: Facts, actor: str) -> Parameter:
     """To the left of the script's line, metres."""
-    field = next((f for f in (f"{_at(actor)}.lane", f"{_at(actor)}.lane_word") if f in known), "")
-    why = "vehicles wander in their lane by up to 0.375 m (UN R157); another lane would be another crash"
+    field = next((f for f in (field_at(actor, "lane"), field_at(actor, "lane_word")) if f in known), "")
+    why = "vehicles wander in their lane by up to 0.375 m (UN R157); which lane is a parameter of its own"
     return Parameter(name=f"{actor}_aside_m", kind="normal", mean=0.0, spread=_WANDER_M / 2, low=-0.6, high=0.6,
-                     nominal=0.0, told=_told(known, field), field=field, reason=why)  # fmt: skip
+                     nominal=0.0, told=told_of(known, field), field=field, reason=why)  # fmt: skip
 
 
-def _size(script: Script, known: Mapping[str, Mapping[str, Any]], actor: str) -> list[Parameter]:
+def _size(script: Script, known: Facts, actor: str) -> list[Parameter]:
     """Length and width over the script's."""
-    info, field = script.info(actor), f"{_at(actor)}.kind"
+    info, field = script.info(actor), field_at(actor, "kind")
     if info.type == "object":
         return []
-    told = _told(known, field)
+    told = told_of(known, field)
     spread = 0.05 if told == "stated" else 0.1
     kind = (
         "the kind is stated: sizes within it" if told == "stated" else "the kind is not stated: sizes of cars and more"
@@ -128,9 +98,9 @@ def _late(actor: str) -> Parameter:
                      told="default", field="", reason=why)  # fmt: skip
 
 
-def _friction(script: Script, known: Mapping[str, Mapping[str, Any]]) -> Parameter:
+def _friction(script: Script, known: Facts) -> Parameter:
     low, high = _GRIP[script.surface]
     field = "conditions.surface" if script.surface else ""
     why = f"peak friction of a {script.surface} road" if script.surface else "no surface is told: dry to wet"
     return Parameter(name="friction", kind="uniform", mean=(low + high) / 2, spread=0.0, low=low, high=high,
-                     nominal=(low + high) / 2, told=_told(known, field), field=field, reason=why)  # fmt: skip
+                     nominal=(low + high) / 2, told=told_of(known, field), field=field, reason=why)  # fmt: skip

@@ -1,20 +1,23 @@
 """One member of a family: the script with other speeds, times, offsets and sizes, and the same crash.
 
 Both of the declared pair keep their lines, run at another pace so that they come to the contact's place at its time
-(the struck one later or earlier, if so drawn), beside their lines and in other sizes. A clock that begins earlier
-than the script goes back straight. What touches otherwise than declared is no member. Behind the contact everything is
-settled anew by the planner's wreck. Knows scripts and parameters; no file.
+(the struck one later or earlier, if so drawn), beside their lines, in other lanes and in other sizes; whose lane is
+crossed elsewhere comes as much sooner or later. A told evasion may begin later. A clock that begins earlier than the
+script goes back straight. What touches otherwise than declared is no member. Behind the contact everything is settled
+anew by the planner's wreck. Knows scripts and parameters; no file.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.geometry.plane import Floats, Size
+from sgcad_core.handover.choices import PAIR
+from sgcad_core.handover.delay import Delay, delay_of
 from sgcad_core.handover.script import DRIVEN, Script, staged
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.ground import Drag
@@ -29,6 +32,7 @@ from sgcad_core.seat import STEP_S, Way
 from sgcad_core.specs import ActorKind
 
 Values = Mapping[str, float]
+_CREEPS_MPS = 1.0
 _TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 
 
@@ -41,6 +45,23 @@ class Basis:
     contact_s: float
     coupled: Mapping[str, frozenset[str]]
     """By actor of the pair: what is coupled to it and moves with it."""
+    delays: Mapping[str, Delay] = field(default_factory=dict)
+    """By actor of the pair: how its braking before the contact can come later."""
+    crossed: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    """By actor: whose line it crosses, and how much later on its own line it meets it, s a metre of that one's lane."""
+
+    def owner(self, actor: str) -> str:
+        """Whose parameters move an actor: its own, or those of what it is coupled to."""
+        return next((n for n, with_it in self.coupled.items() if actor in with_it), actor)
+
+    def lane_m(self, who: str, values: Values) -> float:
+        """How far to the left of the script's lane one of the pair comes."""
+        return values.get(f"{who}_lane_m", 0.0) + (values.get(f"{PAIR}_lane_m", 0.0) if who in self.coupled else 0.0)
+
+    def further_s(self, who: str, values: Values) -> float:
+        """How much further on its own line's clock one is at the contact, since the other comes in another lane."""
+        other, per_m = self.crossed.get(who, ("", 0.0))
+        return per_m * values.get(f"{other}_lane_m", 0.0)
 
 
 def basis_of(script: Script) -> Basis | None:
@@ -55,8 +76,23 @@ def basis_of(script: Script) -> Basis | None:
             lines |= dict(with_it.lines) | {name: with_it.way}
     if len(lines) < len(script.trajectories):
         return None
-    coupled = {n: script.coupled_to(n) for n in (contact.actor, contact.other)}
-    return Basis(script, lines, contact.t_s, coupled)
+    pair = contact.actor, contact.other
+    coupled = {n: script.coupled_to(n) for n in pair}
+    delays = {n: d for n in pair if (d := delay_of(lines[n], contact.t_s)) is not None}
+    crossed = {a: (b, _crossing(lines[a], lines[b], contact.t_s)) for a, b in (pair, pair[::-1])}
+    return Basis(script, lines, contact.t_s, coupled, delays, crossed)
+
+
+def _crossing(line: Way, other: Way, contact_s: float) -> float:
+    """Seconds on a line's clock until it meets the other's line a metre further to that one's left."""
+    k = [min(round(contact_s / STEP_S), len(w.t_s) - 1) for w in (line, other)]
+    speed = float(line.speed_mps[k[0]])
+    step = line.pose[k[0], :2] - line.pose[max(k[0] - 1, 0), :2]
+    length = float(np.hypot(*step))
+    if speed < _CREEPS_MPS or length < 1e-6:
+        return 0.0
+    heading = float(other.pose[k[1], 2])
+    return float(-step[0] * np.sin(heading) + step[1] * np.cos(heading)) / length / speed
 
 
 def _drivable(script: Script, name: str) -> bool:
@@ -103,12 +139,14 @@ def _sized(info: ActorInfo, values: Values) -> ActorInfo:
 def _moved(basis: Basis, actor: str, values: Values) -> Trajectory:
     """An actor's motion at its pace, through its line, past the place of the contact."""
     line = basis.lines[actor]
-    who = next((n for n, with_it in basis.coupled.items() if actor in with_it), actor)
+    who = basis.owner(actor)
     pace, late = values.get(f"{who}_pace", 1.0), values.get(f"{who}_late_s", 0.0)
     t = np.round(np.arange(round((basis.contact_s + AFTER_S) / STEP_S) + 1) * STEP_S, 3)
-    own = basis.contact_s + (t - late - basis.contact_s) * pace
+    own = basis.contact_s + (t - late - basis.contact_s) * pace + basis.further_s(who, values)
+    if who in basis.delays and f"{who}_reaction_s" in values:
+        own = basis.delays[who].own(own, values[f"{who}_reaction_s"])
     pose = _poses(line, own)
-    left = values.get(f"{who}_aside_m", 0.0)
+    left = values.get(f"{who}_aside_m", 0.0) + basis.lane_m(who, values)
     pose[:, 0] -= left * np.sin(pose[:, 2])
     pose[:, 1] += left * np.cos(pose[:, 2])
     return _trajectory(actor, t, pose)

@@ -55,10 +55,11 @@ _WHEEL_M: dict[ActorKind, float] = {"truck": 1.0, "bus": 1.0, "trailer": 1.0}
 _TIME: dict[Light, tuple[int, int]] = {
     "day": (12, 0), "dusk": (20, 45), "dawn": (5, 15), "dark": (23, 0), "dark_lit": (23, 0),
 }  # fmt: skip
-_SUN: dict[Light, tuple[float, float, float]] = {
+SUNS: dict[Light, tuple[float, float, float]] = {
     "day": (100000.0, 3.14159, 1.2), "dusk": (400.0, 5.0, 0.02), "dawn": (400.0, 1.2, 0.02),
     "dark": (0.1, 0.0, -0.5), "dark_lit": (15.0, 0.0, -0.5),
 }  # fmt: skip
+"""Illuminance (lux), azimuth and elevation (rad) of the sun."""
 _CLOUD: dict[Weather, str] = {
     "clear": "zeroOktas", "cloudy": "sevenOktas", "rain": "eightOktas", "snow": "eightOktas", "sleet": "eightOktas",
     "fog": "eightOktas",
@@ -126,7 +127,7 @@ def _time_of_day(light: Light | None) -> xosc.TimeOfDay | None:
 def _weather(light: Light | None, weather: Weather | None, minor: int) -> xosc.Weather | None:
     if not (weather or light):
         return None
-    sun = xosc.Sun(*_SUN[light]) if light else None
+    sun = xosc.Sun(*SUNS[light]) if light else None
     if weather is None:
         return xosc.Weather(sun=sun)
     kind, rate = _FALL.get(weather, ("dry", 0.0))

@@ -1,10 +1,12 @@
 """A logical scenario: a written timed .xosc with parameters in place of numbers, and files that distribute them.
 
 The scenario's trajectories run at `<actor>_pace`, `<actor>_late_s` later, `<actor>_aside_m` beside their line; boxes
-are `<actor>_length` and `<actor>_width` times as large; the road has `friction`. Behind the contact the file moves on
-as the one that it was made of; give it motion that no contact disturbs, since contacts come at other times.
+are `<actor>_length` and `<actor>_width` times as large; the road has `friction`. Lanes are a second offset beside the
+line, a delayed reaction moves the times of vertices, the light chooses among suns (a time of day would contradict it
+and is left out). Behind the contact the file moves on as the one that it was made of; give it motion that no contact
+disturbs, since contacts come at other times.
 OpenSCENARIO 1.2: parameters with constraint groups, expressions `${...}`; ParameterValueDistribution, deterministic
-(listed sets) and stochastic. Knows lxml only.
+(listed sets) and stochastic. Knows lxml and numbers.
 """
 
 from __future__ import annotations
@@ -13,16 +15,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.geometry.plane import Floats
 
 _HEADER = {"revMajor": "1", "revMinor": "2", "date": "2000-01-01T00:00:00+00:00", "author": "SG-CADVLM"}
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
 
 class Range(NamedTuple):
-    """A parameter of the file: its distribution and limits. `spread` 0: uniform over the limits."""
+    """A parameter of the file: its distribution and limits. `spread` 0: uniform over the limits, or over `values`."""
 
     name: str
     nominal: float
@@ -30,6 +34,19 @@ class Range(NamedTuple):
     high: float
     mean: float
     spread: float
+    values: tuple[float, ...] = ()
+    shares: tuple[float, ...] = ()
+    """Of a choice: its values and their probabilities."""
+
+
+class Warp(NamedTuple):
+    """Times of vertices that move with a parameter d: t + d * (linear + d * (square + d * cube)), over (n,) times."""
+
+    name: str
+    t_s: Floats
+    linear: Floats
+    square: Floats
+    cube: Floats
 
 
 class Meets(NamedTuple):
@@ -37,6 +54,11 @@ class Meets(NamedTuple):
 
     actor: str
     own_s: float
+    lanes: tuple[str, ...] = ()
+    """Parameters that are metres to the left, beside `<actor>_aside_m`."""
+    further: tuple[tuple[str, float], ...] = ()
+    """(parameter, seconds): so much later on its line's clock the contact comes for each unit of the parameter."""
+    warp: Warp | None = None
 
 
 def logical_xosc(xosc: str, ranges: Sequence[Range], meets: Sequence[Meets], contact_s: float) -> str:
@@ -47,9 +69,9 @@ def logical_xosc(xosc: str, ranges: Sequence[Range], meets: Sequence[Meets], con
     root = etree.fromstring(xosc.encode("utf-8"))
     known = {r.name for r in ranges}
     _declare(root, ranges)
-    for actor, own_s in meets:
-        _move(root, actor, own_s, contact_s, known)
-        _resize(root, actor, known)
+    for one in meets:
+        _move(root, one, contact_s, known)
+        _resize(root, one.actor, known)
     for road in root.iter("RoadCondition"):
         if "friction" in known:
             road.set("frictionScaleFactor", "$friction")
@@ -69,20 +91,61 @@ def _declare(root: etree._Element, ranges: Sequence[Range]) -> None:
         etree.SubElement(group, "ValueConstraint", rule="lessOrEqual", value=_number(r.high))
 
 
-def _move(root: etree._Element, actor: str, own_s: float, contact_s: float, known: set[str]) -> None:
+def _move(root: etree._Element, one: Meets, contact_s: float, known: set[str]) -> None:
     """Time and place of an actor's trajectory: t' = t / pace + offset with the contact kept where it is."""
+    actor = one.actor
     group = next((g for g in root.iter("ManeuverGroup") if _acts(g, actor)), None)
     timing = None if group is None else next(group.iter("Timing"), None)
     if group is None or timing is None:
         raise InvalidOutput(f"{actor} has no timed trajectory in the scenario: write it in the encoding `timed`")
     pace = f"${actor}_pace" if f"{actor}_pace" in known else "1"
     late = f"${actor}_late_s" if f"{actor}_late_s" in known else "0"
+    own = " + ".join([_number(one.own_s), *(f"{_number(k)} * ${name}" for name, k in one.further if name in known)])
+    own = f"({own})" if "+" in own else own
     timing.set("scale", f"${{1 / {pace}}}")
-    timing.set("offset", f"${{{_number(contact_s)} + {late} - {_number(own_s)} / {pace}}}")
-    if f"{actor}_aside_m" in known:
-        places = [*group.iter("WorldPosition"), *_initial(root, actor)]
-        for place in places:
-            _beside(place, f"${actor}_aside_m")
+    timing.set("offset", f"${{{_number(contact_s)} + {late} - {own} / {pace}}}")
+    if one.warp is not None and one.warp.name in known:
+        _delay(group, one.warp)
+    aside = [f"${name}" for name in (f"{actor}_aside_m", *one.lanes) if name in known]
+    for place in [*group.iter("WorldPosition"), *_initial(root, actor)] if aside else ():
+        _beside(place, aside[0] if len(aside) == 1 else f"({' + '.join(aside)})")
+
+
+def _delay(group: etree._Element, warp: Warp) -> None:
+    """Vertices of a trajectory at times that move with a parameter."""
+    for vertex in group.iter("Vertex"):
+        t = float(vertex.get("time", "0"))
+        d, rows = f"${warp.name}", (warp.linear, warp.square, warp.cube)
+        linear, square, cube = (_number(float(np.interp(t, warp.t_s, row))) for row in rows)
+        vertex.set("time", f"${{{_number(t)} + {d} * ({linear} + {d} * ({square} + {d} * {cube}))}}")
+
+
+def suns(xosc: str, parameter: str, suns_of: Sequence[tuple[float, float, float]]) -> str:
+    """A scenario whose sun (illuminance, azimuth, elevation) is one of several, by a parameter that counts them from 0.
+
+    The time of day, which no expression can tell, is taken out. Raises InvalidOutput where there is no sun.
+    """
+    root = etree.fromstring(xosc.encode("utf-8"))
+    sun = next(root.iter("Sun"), None)
+    if sun is None:
+        raise InvalidOutput("the scenario has no sun: write it with a light")
+    for time in list(root.iter("TimeOfDay")):
+        parent = time.getparent()
+        if parent is not None:
+            parent.remove(time)
+    known = [name for name in ("illuminance", "intensity") if sun.get(name) is not None]
+    for names, values in zip((known, ["azimuth"], ["elevation"]), zip(*suns_of, strict=True), strict=True):
+        for name in names:
+            sun.set(name, f"${{{_chosen(f'${parameter}', values)}}}")
+    return _text(root)
+
+
+def _chosen(parameter: str, values: Sequence[float]) -> str:
+    """One of several values by number: a sum of spikes, since expressions know no choice."""
+    spikes = (
+        f"{_number(v)} * max(0, 1 - max({parameter} - {k}, {k} - {parameter}))" for k, v in enumerate(values) if v
+    )
+    return " + ".join(spikes) or "0"
 
 
 def _acts(group: etree._Element, actor: str) -> bool:
@@ -130,6 +193,11 @@ def stochastic(scenario: str, ranges: Sequence[Range], count: int, seed: int) ->
     drawn = etree.SubElement(holder, "Stochastic", numberOfTestRuns=str(count), randomSeed=str(seed))
     for r in ranges:
         entry = etree.SubElement(drawn, "StochasticDistribution", parameterName=r.name)
+        if r.values:
+            chosen = etree.SubElement(entry, "ProbabilityDistributionSet")
+            for value, share in zip(r.values, r.shares, strict=True):
+                etree.SubElement(chosen, "Element", value=_number(value), weight=_number(share))
+            continue
         if r.spread > 0:
             tag, values = "NormalDistribution", {"expectedValue": _number(r.mean), "variance": _number(r.spread**2)}
         else:

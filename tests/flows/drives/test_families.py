@@ -58,6 +58,30 @@ def test_the_hardest_for_a_driver_are_told_with_weights_and_what_decides(case):
     assert (place / "decides.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_map_elites_keeps_the_hardest_of_every_way_of_being_hard(case):
+    ended = run(case, "-n", 30, "--driver", "aeb", "--role", "responder", "--search", "map-elites")
+    assert ended.exit_code == 0, ended.output
+    told = json.loads((case / "vary" / "seed-1" / "hardest.json").read_text())
+    assert (told["search"], told["samples"]) == ("map-elites", 30)
+    cells = [(tuple(e["closing_mps"]), e["braked_at_ttc"]) for e in told["elites"]]
+    assert len(cells) == len(set(cells)) >= 3
+    assert max(e["hardness"] for e in told["elites"]) == told["hardest"][0]["hardness"]
+    assert all(0 < h["weight"] <= 4 for h in told["hardest"])
+
+
+def test_members_in_the_dark_say_so_and_what_stays_has_a_reason(case):
+    run(case, "-n", 12, "--seed", 3)
+    place = case / "vary" / "seed-3"
+    told = json.loads((place / "manifest.json").read_text())
+    light = next(p for p in told["parameters"] if p["name"] == "light")
+    hours = {"day": "T12:00", "dusk": "T20:45", "dawn": "T05:15", "dark": "T23:00", "dark_lit": "T23:00"}
+    for m in told["members"]:
+        word = light["words"][round(m["values"]["light"])]
+        assert hours[word] in (place / m["file"]).read_text()
+    assert len({m["values"]["light"] for m in told["members"]}) > 1
+    assert set(told["not_varied"]) == {"lane", "reaction"}
+
+
 def test_a_case_that_crashes_otherwise_than_declared_is_not_varied(tmp_path):
     made = crossing()
     wrong = made.declared.model_copy(update={"struck_area": "right"})
@@ -73,6 +97,7 @@ def test_a_case_that_crashes_otherwise_than_declared_is_not_varied(tmp_path):
         (["--role", "both"], "a family is driven in one role"),
         (["--driver", "nobody"], "unknown driver"),
         (["-n", "0"], ""),
+        (["--search", "luck"], "no such search; there are cross-entropy, map-elites"),
     ],
 )
 def test_faults_are_named(case, arguments, message):

@@ -29,6 +29,19 @@ def test_an_executed_case_is_handed_over_and_its_result_is_the_scripts(tmp_path,
     assert params_of(config)["drive"]["drivers"][1]["of"] == ["reference", "aeb"]
 
 
+def test_result_json_tells_what_the_contact_changed_and_where_both_come_to_rest(tmp_path, config_file, reports):
+    _, result, folder = go(tmp_path, config_file, reports)
+    impact = json.loads((folder / "result.json").read_text())["impact"]
+    assert impact == result["impact"]
+    seen = result["collision"]["observed"]
+    assert {a["id"] for a in impact["actors"]} == {seen["actor"], seen["other"]}
+    exact = json.loads((folder / "metrics.json").read_text())["exact"]
+    assert {a["id"]: a["delta_v_mps"] for a in impact["actors"]} == exact["delta_v_mps"]
+    last = {row.split(",")[1]: row.split(",") for row in (folder / "trajectories.csv").read_text().split()[1:]}
+    for actor in impact["actors"]:
+        assert [actor["rest"]["x_m"], actor["rest"]["y_m"]] == [round(float(v), 3) for v in last[actor["id"]][2:4]]
+
+
 def test_trackers_get_every_outcome_as_a_figure(tmp_path, config_file, reports):
     _, result, folder = go(tmp_path, config_file, reports)
     figures = case_figures(folder, result)
@@ -41,3 +54,4 @@ def test_a_refused_case_is_not_driven(tmp_path, config_file, reports):
     ending = run_case(config, Case(reports(c1="REFUSE") / "c1", "c1"), tmp_path / "out", "d1")
     assert ending.result["status"] == "refused"
     assert not (tmp_path / "out" / "kit" / "c1" / "drive").exists()
+    assert ending.result["impact"] is None

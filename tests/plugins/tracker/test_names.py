@@ -29,7 +29,7 @@ def logged(tmp_path_factory):
     from sgcad_core.config import load
 
     out, report = tmp_path_factory.mktemp("out"), ROOT / "docs" / "demo" / "rear-end-on-arterial"
-    ending = run_case(load("template.yaml", ("tracker=none",)), Case(report, "c1"), out, "digest")
+    ending = run_case(load("template.yaml", ("tracker=none", "drive.drivers=aeb")), Case(report, "c1"), out, "digest")
     folder = out / "template" / "c1"
     result = ending.result | {"grounding": {"road.$.legs": 0.5}}
     assert json.loads((folder / "result.json").read_text())["status"] == "generated"

@@ -1,11 +1,14 @@
 """Delta-v, energy and risk of a contact, against closed cases."""
 
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sgcad_core.handover.figures import impact_told
 from sgcad_core.handover.severity import fatality_risk, severity
 from sgcad_core.planner.impact import RESTITUTION, body, collide
 from tests.sgcad_core.handover.scenes import crossing, rear_end
@@ -64,3 +67,31 @@ def test_risks_are_the_published_ones():
     assert fatality_risk("car", 35.5 * 0.44704, 0.0) == pytest.approx(1 / 16)
     assert fatality_risk("pedestrian", 0.0, 50 / 3.6) == pytest.approx(0.083, abs=0.002)
     assert fatality_risk("car", 60.0, 0.0) == 1.0
+
+
+def test_rest_is_the_last_pose_with_way_and_turn_since_the_contact():
+    made = rear_end(own=20.0)
+    struck = made.trajectories[1]
+    k, n = round(6.0 / 0.05), len(struck.t_s)
+    pushed = np.clip(np.arange(n) - k, 0, 20)  # from the contact on, a second long, 0.2 m and 0.01 rad a sample
+    moved = struck.model_copy(
+        update={"x_m": struck.x_m + 0.2 * pushed, "heading_rad": struck.heading_rad + 0.01 * pushed}
+    )
+    told = impact_told(replace(made, trajectories=(made.trajectories[0], moved)), made.contact_of("V1"))
+    one, two = told["actors"]
+    assert (one["id"], two["id"]) == ("V1", "V2")
+    assert two["rest"] == {
+        "x_m": 4.0, "y_m": 0.0, "heading_rad": 0.2, "from_s": 7.0, "went_m": 4.0, "turned_rad": 0.2
+    }  # fmt: skip
+    assert one["delta_v_mps"] == pytest.approx(two["delta_v_mps"], abs=1e-3)
+    assert one["ahead_mps"] < 0 < two["ahead_mps"]
+    assert told["closing_mps"] == pytest.approx(20.0, abs=1e-3)
+
+
+def test_who_still_moves_at_the_end_has_no_rest_and_without_a_contact_nothing_is_told():
+    made = rear_end(own=20.0)
+    last = made.trajectories[1]
+    rolling = last.model_copy(update={"x_m": last.x_m + 0.1 * np.clip(np.arange(len(last.t_s)) - 120, 0, None)})
+    told = impact_told(replace(made, trajectories=(made.trajectories[0], rolling)), made.contact_of("V1"))
+    assert told["actors"][1]["rest"]["from_s"] is None
+    assert impact_told(made, None) is None

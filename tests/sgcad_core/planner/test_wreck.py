@@ -179,6 +179,21 @@ def test_a_light_body_between_two_heavy_ones_lies_in_neither():
     assert deepest(movers, poses) < 0.06
 
 
+@pytest.mark.parametrize("gap", [0.8, 0.95, 1.1])
+@pytest.mark.parametrize("start", np.linspace(-20.0, -18.6, 6))
+def test_a_light_body_that_is_shot_at_a_third_does_not_fly_into_it(gap, start):
+    """It stood, out of reach of the third, when the sample began; struck, it crosses a metre and more within it."""
+    movers = (
+        mover("A", (start, 0.0, 0.0), (29.0, 0.0), size=(9.0, 2.5), mass=9000.0),
+        mover("P", (0.0, 0.0, 0.0), (0.0, 0.0), size=(2.2, 0.8), mass=70.0),
+        mover("B", (1.1 + gap + 2.35, 0.0, 0.0), (0.0, 0.0), mass=9000.0),
+    )
+    poses, touches = settled(*movers)
+    assert [(t.first, t.second) for t in touches[:2]] == [("A", "P"), ("P", "B")]
+    assert touches[1].t_s - touches[0].t_s == pytest.approx(gap / 31.0, abs=0.02)
+    assert deepest(movers, poses) < 0.06
+
+
 @settings(max_examples=30, deadline=None)
 @given(st.floats(5, 30), st.floats(-1.2, 1.2), st.floats(-3, 3), st.floats(300, 9000))
 def test_energy_never_grows_behind_the_first_touch(speed, aside, heading, mass):

@@ -6,13 +6,19 @@ import numpy as np
 import pytest
 from lxml import etree
 
+from flows.drives.families import Family, files_of, members
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import first_contact
+from sgcad_core.formats.openscenario.entities import SUNS
+from sgcad_core.formats.openscenario.expressions import evaluated
 from sgcad_core.formats.openscenario.files import play_file, variations
 from sgcad_core.formats.openscenario.logical import Meets, Range, deterministic, logical_xosc, stochastic
 from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.handover.choices import LIGHTS
+from sgcad_core.handover.spread import spreads
 from sgcad_core.handover.variant import basis_of, prolonged, undisturbed
 from tests.sgcad_core.handover.scenes import crossing
+from tests.sgcad_core.handover.test_open_choices import braking, on_road
 
 RANGES = [
     Range("V1_pace", 1.0, 0.6, 1.4, 1.0, 0.2),
@@ -82,3 +88,54 @@ def test_a_file_without_timed_trajectories_is_refused():
         logical_xosc("<OpenSCENARIO><ParameterDeclarations/></OpenSCENARIO>", RANGES, [Meets("V1", 6.0)], 6.0)
     with pytest.raises(InvalidOutput, match="no ParameterDeclarations"):
         logical_xosc("<OpenSCENARIO/>", RANGES, [], 6.0)
+
+
+# ------------------------------------------------------------------ lanes, reactions, light
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory):
+    """A family in which a lane, a reaction and the light are open."""
+    folder = tmp_path_factory.mktemp("open")
+    made = on_road(braking())
+    basis = basis_of(made)
+    facts = [{"field": "vehicles.V2.evasion.brakes", "value": True, "status": "stated"}]
+    family = Family(folder, basis, spreads(made, facts, basis.delays), tuple(facts))
+    rows = members(family, 6, 11)[0]
+    for name, text in files_of(family, [values for values, _ in rows], 11).items():
+        (folder / f"{name}.xosc").write_text(text)
+    return folder, basis, rows
+
+
+def test_open_choices_are_in_the_schema(opened):
+    folder, _, rows = opened
+    assert {"V1_lane_m", "V2_reaction_s", "light"} <= set(rows[0][0])
+    for name in ("logical", "deterministic", "stochastic"):
+        test_every_file_is_in_the_schema((folder, None), name)
+
+
+def test_a_played_set_has_the_members_lane_and_reaction(opened):
+    folder, basis, rows = opened
+    assert len({values["V1_lane_m"] for values, _ in rows}) > 1
+    for (values, _), variation in zip(rows, variations(folder / "deterministic.xosc"), strict=True):
+        played, _ = play_file(variation, ())
+        made = undisturbed(basis, values)
+        for mine, theirs in zip(played.trajectories, made.trajectories, strict=True):
+            n = round(6.0 / 0.05)
+            apart = np.hypot(mine.x_m[:n] - theirs.x_m[:n], mine.y_m[:n] - theirs.y_m[:n])
+            assert apart.max() < 0.05
+
+
+def test_the_light_chooses_the_sun_and_no_time_of_day_contradicts_it(opened):
+    root = etree.parse(opened[0] / "logical.xosc").getroot()
+    assert not list(root.iter("TimeOfDay"))
+    (sun,) = root.iter("Sun")
+    for k, light in enumerate(LIGHTS):
+        told = [
+            evaluated(sun.get(name)[2:-1].replace("$light", str(k))) for name in ("illuminance", "azimuth", "elevation")
+        ]
+        assert [float(v) for v in told] == pytest.approx(SUNS[light])
+
+
+def test_stochastic_choices_are_among_the_values(opened):
+    for variation in variations(opened[0] / "stochastic.xosc"):
+        assert float(variation.given["light"]) in {0.0, 1.0, 2.0, 3.0, 4.0}
+        assert float(variation.given["V1_lane_m"]) in {-3.5, 0.0, 3.5}
