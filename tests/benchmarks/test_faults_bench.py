@@ -5,7 +5,8 @@ import random
 import pytest
 
 from benchmarks.faults import alike
-from benchmarks.faults.__main__ import tables
+from benchmarks.faults.__main__ import Kept, kills, tables
+from benchmarks.faults.disasters import Happened
 from benchmarks.faults.kills import Trial, trial, undisturbed
 from benchmarks.faults.places import Place
 from benchmarks.faults.targets import TARGETS
@@ -44,3 +45,14 @@ def test_the_table_counts_what_was_hit_and_what_went_wrong():
         Trial("index", 9.0, "nothing", ()),
     ]
     assert "| index | 1 | 1 | 1 | 1 |" in tables(told, ())
+
+
+def test_what_is_kept_is_not_tried_again(tmp_path):
+    kept = Kept(tmp_path / "kept", 2)
+    killed, struck = Trial("index", 1.5, "command", ("left",)), Happened("disk", "exit 1", ())
+    kept.add("0 index", killed)
+    kept.add("disk", struck)
+    assert kills(["index"], range(1), kept, tmp_path / "nowhere") == [killed]
+    assert kept.of(Happened) == {"disk": struck}
+    assert Kept(tmp_path / "kept", 3).of(Trial) == {}
+    assert not (tmp_path / "nowhere").exists()
