@@ -1,5 +1,6 @@
 """Faults on purpose: a small campaign, and that its comparison notices what it is for."""
 
+import json
 import random
 
 import pytest
@@ -56,3 +57,11 @@ def test_what_is_kept_is_not_tried_again(tmp_path):
     assert kept.of(Happened) == {"disk": struck}
     assert Kept(tmp_path / "kept", 3).of(Trial) == {}
     assert not (tmp_path / "nowhere").exists()
+
+
+def test_a_case_that_names_no_run_is_told(tmp_path):
+    for name, said in (("a", {"mlflow": "/#/experiments/1/runs/1"}), ("b", {"prefect": "/runs/flow-run/1"})):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "result.json").write_text("{}")
+        (tmp_path / name / "links.json").write_text(json.dumps(said))
+    assert alike.unlinked(tmp_path) == ["b has no link to MLflow"]
