@@ -42,15 +42,16 @@ class Showing:
     def case(self, job: Job, ending: Ending, graph: Graph | None) -> str:
         """Track a case and show what came of it; why it could not be tracked. Raises ConfigError (`track_safely`)."""
         if graph is None or ending.reused:
-            return tracking.track_safely(job, ending)
+            untracked = tracking.track_safely(job, ending)
+            self._link_to_tracker(job)  # a case whose batch ended before it was logged is logged now
+            return untracked
         self._link(job, graph)
         began = time.time()
         untracked = tracking.track_safely(job, ending)
         after = waits_for("track", [step.name for step in ending.steps])
         tracked = Step("track", began, time.time(), after=after)
         graph.tell(replace(tracked, state="Untracked", kind="failed", message=untracked) if untracked else tracked)
-        if page := job.config.tracker.page(job.config.name, job.case.id):
-            links.keep(job.folder.path, {"mlflow": page})
+        self._link_to_tracker(job)
         self.artifact(job.folder.path, job.name, ending.result, graph)
         return untracked
 
@@ -59,6 +60,12 @@ class Showing:
         base = _pages() if self.lasting else ""
         found = {"prefect": f"{base}/runs/flow-run/{graph.flow_run}"}
         links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{graph.task_run}"})
+
+    @staticmethod
+    def _link_to_tracker(job: Job) -> None:
+        """Keep where the tracker shows the case, if it was logged by this process."""
+        if page := job.config.tracker.page(job.config.name, job.case.id):
+            links.keep(job.folder.path, {"mlflow": page})
 
     def artifact(self, folder: Path, name: str, result: Mapping[str, Any], graph: Graph) -> None:
         """Hand Prefect a case's artifact; `name` is the job's."""

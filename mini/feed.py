@@ -2,7 +2,7 @@
 
 The curriculum goes by stage (drawings, narratives, then everything; or mostly narratives; or gists beside those) and by
 progress (0 to 1) of the budget: short texts first, longer ones later. A row's seed, mode and length follow from its
-number and the progress, so a resumed run goes on where it stopped.
+number and the progress at which its pool was ordered. A `Place` holds both, so that a resumed run sees the same rows.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import multiprocessing as mp
 import os
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from queue import Empty
@@ -141,7 +142,7 @@ def _work(folder: str, stage: str, told: str, jobs: Any, done: Any) -> None:
         if job is None:
             break
         number, progress = job
-        done.put((number, progress, make(number, progress)))
+        done.put((number, make(number, progress)))
     done.cancel_join_thread()
 
 
@@ -151,24 +152,47 @@ def _maker(folder: str, stage: str, told: str) -> Callable[[int, float], list[Ro
     return partial(pool, Coder(load_tokenizer(Path(folder))), stage=stage, told=texts)
 
 
+@dataclass
+class Place:
+    """Where a training stands among its rows: so many batches of a pool were used, and at which progress that pool and
+    those behind it were ordered, at most AHEAD of them."""
+
+    pool: int
+    used: int = 0
+    ordered: list[float] = field(default_factory=list)
+
+    @property
+    def made_at(self) -> float:
+        """Progress at which the pool in use was ordered; 0 before there is one."""
+        return self.ordered[0] if self.ordered else 0.0
+
+    def next(self, stride: int) -> None:
+        """On to the next pool of this process."""
+        self.pool, self.used = self.pool + stride, 0
+        del self.ordered[:1]
+
+    def numbers(self) -> list[float]:
+        """The same as numbers, always as many; -1 stands for a pool that is not ordered yet."""
+        return [self.pool, self.used, *self.ordered, *[-1.0] * (AHEAD - len(self.ordered))]
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> Place:
+        """The place that `numbers` told."""
+        return cls(int(numbers[0]), int(numbers[1]), [at for at in numbers[2:] if at >= 0])
+
+
 class Feed:
-    """Pools in order, a few ahead."""
+    """Pools in order, a few ahead; the same rows whatever the number of workers (0: made in this process)."""
 
     def __init__(
-        self,
-        folder: str,
-        workers: int,
-        start: int,
-        stride: int = 1,
-        first: float | None = None,
-        stage: str = "all",
-        told: str = "",
+        self, folder: str, workers: int, place: Place, stride: int = 1, stage: str = "all", told: str = ""
     ) -> None:
+        """`place` is the trainer's, which moves it on; pools are `stride` apart."""
         context = mp.get_context("spawn")
         self.jobs: Any = context.Queue()
         self.done: Any = context.Queue()
-        self.next, self.asked, self.stride, self.first = start, start, stride, first
-        self.ready: dict[int, tuple[float, list[Row]]] = {}
+        self.place, self.asked, self.stride = place, 0, stride
+        self.ready: dict[int, list[Row]] = {}
         self.workers = [
             context.Process(target=_work, args=(folder, stage, told, self.jobs, self.done), daemon=True)
             for _ in range(workers)
@@ -177,27 +201,36 @@ class Feed:
         for worker in self.workers:
             worker.start()
 
-    def pools(self, progress: Callable[[], float]) -> Iterator[tuple[int, float, list[Row]]]:
-        """(number, progress, rows) without end; progress() is asked when a pool is ordered."""
+    def pools(self, progress: Callable[[], float]) -> Iterator[tuple[int, list[Row]]]:
+        """(number, rows) of the place's pool, which has moved on whenever the next is asked for; without end.
+
+        progress() is asked when a pool is ordered, unless the place says it already.
+        """
+        begun = self.place.pool
         while True:
-            if self.make is not None:
-                at = self._progress(progress)
-                yield self.next, at, self.make(self.next, at)
-            else:
-                yield self.next, *self._ordered(progress)
-            self.next += self.stride
+            self._order(progress, begun)
+            number = self.place.pool
+            yield number, self._fetched(number) if self.make is None else self.make(number, self.place.made_at)
 
-    def _ordered(self, progress: Callable[[], float]) -> tuple[float, list[Row]]:
-        """The next pool from the workers, with a few ordered ahead."""
-        while self.asked < self.next + AHEAD * self.stride:
-            self.jobs.put((self.asked, self._progress(progress)))
-            self.asked += self.stride
-        while self.next not in self.ready:
-            number, at, rows = self._made()
-            self.ready[number] = (at, rows)
-        return self.ready.pop(self.next)
+    def _order(self, progress: Callable[[], float], begun: int) -> None:
+        """Order the place's pool and those ahead of it, as far as they are not."""
+        place = self.place
+        while len(place.ordered) < AHEAD:
+            place.ordered.append(round(progress(), 3))
+        for ahead, at in enumerate(place.ordered):
+            number = place.pool + ahead * self.stride
+            if self.make is None and number >= begun + self.asked * self.stride:
+                self.jobs.put((number, at))
+                self.asked += 1
 
-    def _made(self) -> tuple[int, float, list[Row]]:
+    def _fetched(self, wanted: int) -> list[Row]:
+        """A pool that the workers were asked for."""
+        while wanted not in self.ready:
+            number, rows = self._made()
+            self.ready[number] = rows
+        return self.ready.pop(wanted)
+
+    def _made(self) -> tuple[int, list[Row]]:
         """What a worker made. Raises RuntimeError as soon as one has died: its pool would never come."""
         while True:
             try:
@@ -209,11 +242,6 @@ class Feed:
                         f"a process that makes training rows has ended (exit code {ended[0]}), its error stands above; "
                         "call again to go on from the last checkpoint"
                     ) from None
-
-    def _progress(self, progress: Callable[[], float]) -> float:
-        """Now; for the first pool of a resumed run what it was then, so that its rows are the same."""
-        first, self.first = self.first, None
-        return round(progress(), 3) if first is None else first
 
     def close(self) -> None:
         """Stop the workers."""

@@ -7,7 +7,7 @@ other in every product. Uses torch.distributed with gloo over a file.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import torch
 import torch.distributed as dist
@@ -49,6 +49,14 @@ class Ranks:
         sent: Tensor = torch.tensor(values, dtype=torch.float64)
         dist.broadcast(sent, 0)
         return [float(v) for v in sent]
+
+    def gathered(self, values: Sequence[float]) -> list[list[float]]:
+        """Every rank's numbers, by rank and on every rank; each gives as many."""
+        if self.count == 1:
+            return [list(values)]
+        found = [torch.empty(len(values), dtype=torch.float64) for _ in range(self.count)]
+        dist.all_gather(found, torch.tensor(values, dtype=torch.float64))
+        return [one.tolist() for one in found]
 
     def close(self) -> None:
         """Leave the group."""

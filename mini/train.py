@@ -1,15 +1,14 @@
 """Training: `python -m mini.train --out runs/mini --budget 3600` trains for an hour and can be called again.
 
-Imports torch, transformers, safetensors, numpy, Pillow and mini only. The folder holds `state.pt` (masters,
-optimizer, progress; replaced whole), `log.jsonl`, the tokenizer, and after every save an `export/` that
-transformers loads. Called again with the same folder it goes on where it stopped; the budget counts the
-seconds of all calls together, and the learning rate follows the budget.
+Imports torch, transformers, safetensors, numpy, Pillow and mini only. The folder holds `state.pt` (mini/checkpoint.py),
+`log.jsonl`, the tokenizer, and after every save an `export/` that transformers loads. Called again with the same folder
+it goes on from its last save, also after a kill: with `--total-steps` to the same weights, bit for bit. The budget
+counts the seconds of all calls together, and the learning rate follows the budget.
 """
 
 from __future__ import annotations
 
 import json
-import os
 import random
 import subprocess
 import sys
@@ -20,26 +19,21 @@ from typing import Any
 
 import numpy as np
 import torch
-from safetensors.torch import load_file, save_file
 
-from mini import eye, tags
+from mini import checkpoint, tags
 from mini.batch import Batch, Lesson, Taggers
-from mini.export import export
 from mini.eye import Eye
-from mini.feed import Feed, moment
+from mini.feed import Feed, Place, moment
 from mini.generator.notes import ASKED
-from mini.generator.report import make_report
 from mini.grow import BLOCKS, deepened
 from mini.model import Forward, make_config, make_model
 from mini.muon import Optimizer
 from mini.options import Options, parse
 from mini.ranks import Ranks
 from mini.rows import Row, collate
-from mini.tokens import Coder, fragments, load_tokenizer, train_tokenizer
+from mini.tokens import Coder, fragments
 from plugins.precision import native_dtype
 
-TOKENIZER_BASE = 40_000_000
-HEADS = "tags.safetensors"
 EYES = ("model.visual.", "heads.picture.", "eye.")
 """How the names of those parameters begin that see drawings."""
 
@@ -77,7 +71,7 @@ class Trainer:
         np.random.seed(options.seed)
         self.log = Log(options.out / "log.jsonl")
         self.ranks = Ranks(options.rank, options.ranks, str((options.out / "meeting").resolve()))
-        self.tokenizer = self.make_tokenizer(options)
+        self.tokenizer = checkpoint.make_tokenizer(options)
         self.coder = Coder(self.tokenizer)
         self.model = make_model(make_config(len(self.tokenizer), self.coder.special, options.size)).to(options.device)
         self.eye = Eye().to(options.device)
@@ -93,45 +87,28 @@ class Trainer:
         self.optimizer = Optimizer(self.model, options.muon_lr, options.adam_lr, others=others)
         for part in (self.model, *others.values()):
             part.to(getattr(torch, options.dtype) if options.dtype else native_dtype(options.device))
-        self.spent, self.steps, self.rows, self.pool, self.used = 0.0, 0, 0, options.seed * 10_000, 0
-        self.pool_progress: float | None = None
+        self.spent, self.steps, self.rows = 0.0, 0, 0
+        self.place = Place(options.seed * 10_000 + options.rank)
         self._resume()
 
-    @staticmethod
-    def make_tokenizer(options: Options) -> Any:
-        """The folder's tokenizer, trained first where there is none."""
-        folder = options.out / "tokenizer"
-        if options.start and not folder.is_dir():
-            load_tokenizer(Path(options.start)).save_pretrained(folder)
-        if not (folder / "tokenizer.json").is_file():
-            texts = (make_report(TOKENIZER_BASE + i, False, 0.7, {"text": 1.0}).narrative for i in range(options.texts))
-            train_tokenizer(texts).save_pretrained(folder)
-        return load_tokenizer(folder)
-
     def _resume(self) -> None:
-        path = self.options.out / "state.pt"
-        if not path.is_file():
+        options = self.options
+        state = checkpoint.read_state(options.out, self.optimizer, options.device)
+        if state is None:
             self._begin()
             return
-        state = torch.load(path, map_location=self.options.device, weights_only=True)
-        if state["optimizer"]["master"].keys() != self.optimizer.master.keys():
-            raise ValueError(
-                f"{path} is of a model with other layers or heads: train in another folder, "
-                f"--start {self.options.out}/export"
-            )
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.spent, self.steps, self.rows, self.pool = (state[k] for k in ("spent", "steps", "rows", "pool"))
-        self.used, self.pool_progress = state.get("used", 0), state.get("pool_progress")
-        if not self.options.rank:
+        self.spent, self.steps, self.rows = (state[k] for k in ("spent", "steps", "rows"))
+        self.place = checkpoint.place_of(state["places"], options.rank, options.ranks)
+        if not options.rank:
             self.log.write(event="resumed", step=self.steps, seconds=self.spent)
 
     def _begin(self) -> None:
         """Fresh weights, or exported ones; from then on rows that those have not seen."""
         if not self.options.start:
             return
-        found = self._exported(self.options.start)
+        found = checkpoint.exported(self.model, Path(self.options.start))
         if self.options.eyes:
-            eyes = self._exported(self.options.eyes)
+            eyes = checkpoint.exported(self.model, Path(self.options.eyes))
             found = {k: v for k, v in found.items() if not k.startswith(EYES)}  # of a deeper tower nothing may stay
             found |= {k: v for k, v in eyes.items() if k.startswith(EYES)}
         masters = self.optimizer.master
@@ -144,38 +121,18 @@ class Trainer:
             for key, value in fits.items():
                 masters[key].copy_(value)
         self.optimizer.publish()
-        self.pool += 100_000
+        self.place.pool += 100_000
         fresh = sorted(masters.keys() - fits.keys())
         self.log.write(event="begun with", folder=self.options.start, tensors=len(fits), fresh=fresh)
 
-    def _exported(self, folder: str) -> dict[str, torch.Tensor]:
-        """Weights of an export, and of the heads beside them where there are some."""
-        exported = type(self.model).from_pretrained(folder, dtype=torch.float32, local_files_only=True)
-        found = dict(exported.named_parameters())
-        for name, file in (("heads", HEADS), ("eye", eye.FILE)):
-            if (Path(folder) / file).is_file():
-                found |= {f"{name}.{k}": v.float() for k, v in load_file(Path(folder) / file).items()}
-        return found
-
     def save(self) -> None:
-        """State and export, each replaced whole; the first rank's business."""
+        """State and export; every rank has to call it, the first one writes."""
+        places = self.ranks.gathered(self.place.numbers())
         if self.options.rank:
             return
-        path = self.options.out / "state.pt"
-        state = {
-            "optimizer": self.optimizer.state_dict(),
-            "spent": self.spent,
-            "steps": self.steps,
-            "rows": self.rows,
-            "pool": self.pool,
-            "used": self.used,
-            "pool_progress": self.pool_progress,
-        }
-        torch.save(state, path.with_suffix(".new"))
-        os.replace(path.with_suffix(".new"), path)
-        export(self.model, self.eye, self.tokenizer, self.options.out / "export")
-        heads = {k: v.contiguous() for k, v in self.taggers.state_dict().items()}
-        save_file(heads, self.options.out / "export" / HEADS)
+        state = {"optimizer": self.optimizer.state_dict(), "spent": self.spent, "steps": self.steps}
+        checkpoint.write_state(self.options.out, state | {"rows": self.rows, "places": places})
+        checkpoint.write_export(self.model, self.eye, self.tokenizer, self.taggers, self.options.out)
 
     @property
     def progress(self) -> float:
@@ -186,42 +143,41 @@ class Trainer:
 
     def run(self) -> None:
         """Train until the budget, the call or the steps are spent; saves at the end."""
-        options, begun = self.options, time.monotonic()
+        options = self.options
         feed = Feed(
-            str(options.out / "tokenizer"),
-            options.workers,
-            self.pool + options.rank,
-            options.ranks,
-            self.pool_progress,
-            *(options.stage, options.told),
+            str(options.out / "tokenizer"), options.workers, self.place, options.ranks, options.stage, options.told
         )
-        saved, before, over = begun, self.spent, False
         try:
-            for rows in self._batches(feed):
-                self.spent = before + time.monotonic() - begun
-                stop = self.progress >= 1 or time.monotonic() - begun > options.call or self.steps >= options.max_steps
-                self.spent, over = (number := self.ranks.from_first(self.spent, stop))[0], bool(number[1])
-                if over:
-                    break
-                self._step(rows)
-                if time.monotonic() - saved > options.save_every:
-                    self.save()
-                    saved = time.monotonic()
+            self._loop(feed)
         finally:
             feed.close()
         self.save()
         self.ranks.close()
 
+    def _loop(self, feed: Feed) -> None:
+        """Steps; the first rank's clock says for all when to save and when it is over."""
+        options, begun, before = self.options, time.monotonic(), self.spent
+        saved = begun
+        for rows in self._batches(feed):
+            now = time.monotonic()
+            self.spent = before + now - begun
+            over = self.progress >= 1 or now - begun > options.call or self.steps >= options.max_steps
+            due = now - saved > options.save_every
+            self.spent, *told = self.ranks.from_first(self.spent, over, due)
+            over, due = map(bool, told)
+            if over:
+                return
+            self._step(rows)
+            self.place.used += 1
+            if due:
+                self.save()
+                saved = time.monotonic()
+
     def _batches(self, feed: Feed) -> Iterator[list[Row]]:
-        """Batches without end; a resumed run passes over those of the first pool that were used before."""
-        skip = self.used
-        for number, made_at, rows in feed.pools(lambda: self.progress):
-            self.pool_progress = made_at
-            for index, batch in enumerate(batches(rows, self.options.tokens, number)):
-                if index >= skip:
-                    yield batch
-                    self.used = index + 1
-            self.pool, self.used, skip = number + self.options.ranks - self.options.rank, 0, 0
+        """Batches without end; a resumed run passes over those of its first pool that were used before."""
+        for number, rows in feed.pools(lambda: self.progress):
+            yield from list(batches(rows, self.options.tokens, number))[self.place.used :]
+            self.place.next(self.options.ranks)
 
     def _candidates(self, wanted: torch.Tensor) -> torch.Tensor:
         """Answer tokens and a tenth of the others, which keeps those down at a tenth of the price."""
@@ -232,7 +188,7 @@ class Trainer:
 
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""
-        if moment(self.options.stage, self.pool_progress or 0.0)[0] != "pictures":
+        if moment(self.options.stage, self.place.made_at)[0] != "pictures":
             return self.forward.lesson(batch, self._candidates(batch.allowed[batch.allowed >= 0]), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())
@@ -286,7 +242,7 @@ def main() -> None:
     if options.rank == 0 and options.ranks > 1:
         options.out.mkdir(parents=True, exist_ok=True)
         (options.out / "meeting").unlink(missing_ok=True)
-        Trainer.make_tokenizer(options)
+        checkpoint.make_tokenizer(options)
         others = [
             subprocess.Popen([sys.executable, "-m", "mini.train", *sys.argv[1:], "--rank", str(rank)])  # noqa: S603 - ourselves
             for rank in range(1, options.ranks)

@@ -15,9 +15,11 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+from flows import links
+
 TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)')
-SKIPPED = (".tracked", ".tracking")
-"""A tracker's marks hold when its database was made."""
+SKIPPED = (".tracked", ".tracking", "links.json")
+"""A tracker's marks hold when its database was made, links the ids of runs."""
 STAGED = re.compile(rb"sgcad-scratch-inbox-\w+")
 """A folder of random name, in which the inbox keeps a copy of a report while it works on it."""
 
@@ -37,6 +39,12 @@ def _tree(folder: Path, place: Path) -> dict[str, str]:
 def _content(file: Path, place: Path) -> bytes:
     """A file's bytes without times and without the place where the trial lies."""
     return STAGED.sub(b"STAGED", TIMES.sub(b"", file.read_bytes())).replace(os.fsencode(place), b"PLACE")
+
+
+def unlinked(folder: Path) -> list[str]:
+    """Cases of a config's folder that do not say where MLflow has them."""
+    cases = sorted(case for case in folder.iterdir() if (case / "result.json").is_file())
+    return [f"{case.name} has no link to MLflow" for case in cases if "mlflow" not in links.kept(case)]
 
 
 def unlogged(database: Path, cases: dict[str, int]) -> list[str]:
@@ -73,7 +81,7 @@ def weights(folder: Path) -> Any:
     import torch
 
     state = torch.load(folder / "state.pt", map_location="cpu", weights_only=True)
-    found = {k: state[k] for k in ("steps", "rows", "pool", "used")}
+    found = {k: state[k] for k in ("steps", "rows", "places")}
     found["optimizer"] = _digest(state["optimizer"])
     export = sorted(f for f in (folder / "export").rglob("*") if f.is_file())
     return found | {f.name: hashlib.sha256(f.read_bytes()).hexdigest() for f in export}

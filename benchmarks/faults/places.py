@@ -33,11 +33,13 @@ class Place:
     folder: Path
     home: Path | None = None
     """A Prefect home to begin with a copy of; None: begin with none, as on a new machine."""
+    stays: bool = False
+    """The folder may be there from an earlier call."""
     mark: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     def __post_init__(self) -> None:
-        self.folder.mkdir(parents=True)
-        self.temporary.mkdir()
+        self.folder.mkdir(parents=True, exist_ok=self.stays)
+        self.temporary.mkdir(exist_ok=self.stays)
         if self.home:
             shutil.copytree(self.home, self.prefect)
 

@@ -63,6 +63,7 @@ def _sgcad(*arguments: str) -> list[str]:
 def _results(folder: str, configs: tuple[str, ...]) -> Callable[[Path, Path], list[str]]:
     def faults(ours: Path, theirs: Path) -> list[str]:
         told = [f for c in configs for f in alike.differences(ours, theirs, Path("out", folder, c))]
+        told += [f for c in configs for f in alike.unlinked(ours / "out" / folder / c)]
         return told + alike.unlogged(ours / "out" / "mlflow.db", dict.fromkeys(configs, CASES))
 
     return faults

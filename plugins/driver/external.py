@@ -9,9 +9,11 @@ from now on. At the end {"leave": true}. docs/examples/driver_socket.py is such 
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import json
 import socket
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -35,7 +37,7 @@ class External(Driver):
     """Of a server on this machine."""
     host: str = "127.0.0.1"
     timeout_s: float = Field(5.0, gt=0, le=600)
-    """Longest wait for an answer."""
+    """Longest wait for a whole answer, in however many pieces it comes."""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> External:
@@ -91,31 +93,66 @@ def _callable(target: str) -> Answer:
 def _connected(say: External) -> tuple[Answer, Callable[[], None]]:
     where = f"{say.host}:{say.port}"
     try:
-        line = socket.create_connection((say.host, say.port or 0), timeout=say.timeout_s)
+        door = socket.create_connection((say.host, say.port or 0), timeout=say.timeout_s)
     except OSError as fault:
         raise SimulationFailed(
             f"driver external: nobody listens at {where} ({fault}); start the driver first"
         ) from fault
-    file = line.makefile("rwb")
+    line = _Line(door, say.timeout_s)
 
     def answer(message: dict[str, Any]) -> Any:
         try:
-            file.write(json.dumps(message).encode() + b"\n")
-            file.flush()
-            said = file.readline(_LONGEST_LINE)
-            return json.loads(said)
-        except (OSError, ValueError, RecursionError) as fault:  # a line of brackets is deeper than json goes
-            raise SimulationFailed(f"the external driver at {where} is gone ({fault})") from fault
-
-    def close() -> None:
+            said = line.asked(json.dumps(message).encode())
+        except TimeoutError as fault:
+            raise SimulationFailed(
+                f"the external driver at {where} has not answered within timeout_s = {say.timeout_s:g} s"
+            ) from fault
+        except OSError as fault:
+            raise SimulationFailed(f"the external driver at {where} has hung up ({fault})") from fault
         try:
-            file.write(b'{"leave": true}\n')
-            file.flush()
-            line.close()
-        except OSError:
-            line.close()
+            return json.loads(said)
+        except (ValueError, RecursionError) as fault:  # a line of brackets is deeper than json goes
+            raise SimulationFailed(
+                f"the external driver at {where} answered {said[:80]!r}: expected one JSON object a line, "
+                f"below {_LONGEST_LINE} bytes ({fault})"
+            ) from fault
 
-    return answer, close
+    return answer, line.close
+
+
+class _Line:
+    """Lines over a socket. The limit is for a whole question and its answer, in however many pieces they go."""
+
+    def __init__(self, door: socket.socket, timeout_s: float) -> None:
+        self._door, self._timeout_s, self._read = door, timeout_s, bytearray()
+
+    def asked(self, question: bytes) -> bytes:
+        """The line that comes back. Raises TimeoutError (not within the limit), OSError (hung up)."""
+        until = time.monotonic() + self._timeout_s
+        self._door.settimeout(self._timeout_s)
+        self._door.sendall(question + b"\n")
+        while (end := self._read.find(b"\n")) < 0 and len(self._read) < _LONGEST_LINE:
+            self._door.settimeout(_left(until))
+            piece = self._door.recv(1 << 16)
+            if not piece:
+                raise ConnectionResetError("no line came back")
+            self._read += piece
+        said = bytes(self._read[: end if end >= 0 else None])
+        del self._read[: len(said) + 1]
+        return said
+
+    def close(self) -> None:
+        """Say that the drive is over, if anybody still listens."""
+        with self._door, contextlib.suppress(OSError):
+            self._door.settimeout(self._timeout_s)
+            self._door.sendall(b'{"leave": true}\n')
+
+
+def _left(until: float) -> float:
+    """Seconds left. Raises TimeoutError if there are none."""
+    if (left := until - time.monotonic()) <= 0:
+        raise TimeoutError
+    return left
 
 
 # ------------------------------------------------------------------ messages

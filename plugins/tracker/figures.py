@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from array import array
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -105,12 +107,21 @@ def attempt_figures(case_dir: Path) -> Iterator[tuple[int, dict[str, float]]]:
         yield int(number), {f"{stage}_{name}": float(value) for name, value in figures.items()}
 
 
-def means(cases: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Every figure's mean over the cases that have it, under its own name, and how many cases ended how."""
-    names = {name for figures in cases for name in figures if not name.startswith(OF_ONE_CASE)}
-    found = {name: fmean(figures[name] for figures in cases if name in figures) for name in sorted(names)}
-    counts = {f"cases_{status}": float(sum(c.get(status, 0.0) for c in cases)) for status in STATUSES}
-    return found | counts | {"cases": float(len(cases))}
+def means(cases: Iterable[Mapping[str, float]]) -> dict[str, float]:
+    """Every figure's mean over the cases that have it, under its own name, and how many cases ended how.
+
+    Takes 8 bytes a figure and case, since arms of 10,000 cases are asked for theirs again and again.
+    """
+    columns: dict[str, array[float]] = defaultdict(lambda: array("d"))
+    count = 0
+    for figures in cases:
+        count += 1
+        for name, value in figures.items():
+            if not name.startswith(OF_ONE_CASE):
+                columns[name].append(value)
+    found = {name: fmean(columns[name]) for name in sorted(columns)}
+    counts = {f"cases_{status}": float(sum(columns.get(status, ()))) for status in STATUSES}
+    return found | counts | {"cases": float(count)}
 
 
 def read_json(path: Path) -> Any:

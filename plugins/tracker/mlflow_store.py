@@ -14,7 +14,7 @@ import logging
 import re
 import sqlite3
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ from sgcad_core.locks import alone
 
 MAX_VALUE = 500
 """Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
-MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 1000
+MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 50
 """MLflow's limits of a batch, and of a page of runs."""
 LEVEL, CASE, CONFIG, BATCH, PARENT = "sgcad.level", "sgcad.case", "sgcad.config", "sgcad.batch", "mlflow.parentRunId"
 """Tags that runs are found by; the last one is what MLflow's pages nest runs by."""
@@ -196,20 +196,25 @@ class Parent:
     @cached_property
     def runs(self) -> dict[str, str]:
         """Run ids by case; those of an earlier batch are there from the start."""
-        return {case: str(run.info.run_id) for case, run in self._newest().items()}
+        return {case: str(run.info.run_id) for case, run in self._newest()}
 
-    def _newest(self) -> dict[str, Any]:
-        return {run.data.tags.get(CASE, ""): run for run in self._children()}
+    def _newest(self) -> Iterator[tuple[str, Any]]:
+        """The newest run of every case, with its name."""
+        seen: set[str] = set()
+        for run in self._children():
+            if (case := run.data.tags.get(CASE, "")) not in seen:
+                seen.add(case)
+                yield case, run
 
-    def _children(self) -> Iterable[Any]:
-        """All runs of cases, oldest first."""
+    def _children(self) -> Iterator[Any]:
+        """All runs of cases, newest first, a page in memory at a time."""
         token: str | None = None
         while True:
             page = self.store.client.search_runs(
                 [self.store.experiment_id],
                 f"tags.`{PARENT}` = '{self.run}'",
                 max_results=MAX_RUNS,
-                order_by=["attributes.start_time ASC"],
+                order_by=["attributes.start_time DESC"],
                 page_token=token,
             )
             yield from page
@@ -251,9 +256,9 @@ class Parent:
         """The arm's figures at this time; the step is seconds since the arm's very first begin."""
         self.store.log(self.run, {max(0, int(time.time() - self.started)): figures})
 
-    def figures(self) -> list[dict[str, float]]:
+    def figures(self) -> Iterator[dict[str, float]]:
         """Last figures of every case."""
-        return [run.data.metrics for run in self._newest().values()]
+        return (run.data.metrics for _, run in self._newest())
 
     def tag(self, tags: Mapping[str, str]) -> None:
         """Set tags of the arm's run."""

@@ -1,11 +1,13 @@
 """Faults on purpose: a small campaign, and that its comparison notices what it is for."""
 
+import json
 import random
 
 import pytest
 
 from benchmarks.faults import alike
-from benchmarks.faults.__main__ import tables
+from benchmarks.faults.__main__ import Kept, kills, tables
+from benchmarks.faults.disasters import Happened
 from benchmarks.faults.kills import Trial, trial, undisturbed
 from benchmarks.faults.places import Place
 from benchmarks.faults.targets import TARGETS
@@ -44,3 +46,22 @@ def test_the_table_counts_what_was_hit_and_what_went_wrong():
         Trial("index", 9.0, "nothing", ()),
     ]
     assert "| index | 1 | 1 | 1 | 1 |" in tables(told, ())
+
+
+def test_what_is_kept_is_not_tried_again(tmp_path):
+    kept = Kept(tmp_path / "kept", 2)
+    killed, struck = Trial("index", 1.5, "command", ("left",)), Happened("disk", "exit 1", ())
+    kept.add("0 index", killed)
+    kept.add("disk", struck)
+    assert kills(["index"], range(1), kept, tmp_path / "nowhere") == [killed]
+    assert kept.of(Happened) == {"disk": struck}
+    assert Kept(tmp_path / "kept", 3).of(Trial) == {}
+    assert not (tmp_path / "nowhere").exists()
+
+
+def test_a_case_that_names_no_run_is_told(tmp_path):
+    for name, said in (("a", {"mlflow": "/#/experiments/1/runs/1"}), ("b", {"prefect": "/runs/flow-run/1"})):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "result.json").write_text("{}")
+        (tmp_path / name / "links.json").write_text(json.dumps(said))
+    assert alike.unlinked(tmp_path) == ["b has no link to MLflow"]

@@ -2,6 +2,7 @@
 
 import json
 import os
+from types import SimpleNamespace
 
 import pytest
 
@@ -118,3 +119,19 @@ def test_an_artifact_of_a_refused_case_tells_why(folder):
 @pytest.mark.parametrize(("name", "key"), [("kit/Case 1_a", "kit-case-1-a"), ("Ü/", "case"), ("x" * 300, "x" * 200)])
 def test_a_key_is_one_that_prefect_takes(name, key):
     assert artifact.key_of(name) == key
+
+
+def test_a_case_that_is_logged_by_a_later_batch_links_to_its_run(folder, monkeypatch):
+    """Its own batch ended before; a case that nobody logs now keeps what it has."""
+    from flows import showing, tracking
+
+    monkeypatch.setattr(tracking, "track_safely", lambda job, ending: "")
+    pages = {"c1": MLFLOW}
+    tracker = SimpleNamespace(page=lambda config, case: pages.pop(case, ""))
+    job = SimpleNamespace(
+        folder=SimpleNamespace(path=folder), config=SimpleNamespace(name="kit", tracker=tracker),
+        case=SimpleNamespace(id="c1"),
+    )  # fmt: skip
+    for _ in range(2):
+        assert showing.Showing(False, None).case(job, SimpleNamespace(reused=True), None) == ""
+        assert links.kept(folder) == {"mlflow": MLFLOW}

@@ -1,4 +1,4 @@
-"""The model and its training: the fast forward is transformers' own, a resumed run is the unbroken run."""
+"""The model and its training: the fast forward is transformers' own."""
 
 import json
 import subprocess
@@ -9,9 +9,10 @@ import pytest
 import torch
 from safetensors.torch import load_file, save_file
 
+from mini.checkpoint import HEADS
 from mini.decode import Answerer
 from mini.eye import Eye
-from mini.feed import STAGES, WORDS, Feed, drawing
+from mini.feed import STAGES, WORDS, Feed, Place, drawing
 from mini.generator.report import make_report
 from mini.grow import deepened
 from mini.model import Forward, make_config, make_model
@@ -19,10 +20,11 @@ from mini.muon import orthogonal
 from mini.options import CHOICES, parse
 from mini.rows import collate, evidence, training_row
 from mini.tokens import Coder, train_tokenizer
-from mini.train import EYES, HEADS, Trainer, schedule
+from mini.train import EYES, Trainer, schedule
 from plugins.precision import native_dtype
 from sgcad_core import settings
 from tests.mini.reports import text_report
+from tests.mini.trainings import options
 
 torch.set_num_threads(1)
 
@@ -163,24 +165,6 @@ def test_the_learning_rate_decays_to_a_fiftieth() -> None:
     assert schedule(0.6, hold=0.6) == pytest.approx(1.0)
 
 
-def options(folder: Path, steps: int) -> list[str]:
-    return [
-        "--out", str(folder), "--size", "tiny", "--workers", "0", "--ranks", "1", "--texts", "100", "--tokens", "1500",
-        "--total-steps", "8", "--max-steps", str(steps), "--budget", "1000", "--stage", "all",
-    ]  # fmt: skip
-
-
-@pytest.mark.slow
-def test_a_resumed_run_is_the_unbroken_run(tmp_path: Path) -> None:
-    Trainer(parse(options(tmp_path / "whole", 4))).run()
-    Trainer(parse(options(tmp_path / "broken", 2))).run()
-    Trainer(parse(options(tmp_path / "broken", 4))).run()
-    whole, broken = (torch.load(tmp_path / name / "state.pt", weights_only=True) for name in ("whole", "broken"))
-    assert whole["steps"] == broken["steps"] == 4
-    for key, value in whole["optimizer"]["master"].items():
-        assert torch.equal(value, broken["optimizer"]["master"][key]), key
-
-
 @pytest.mark.slow
 def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) -> None:
     from transformers import AutoModelForImageTextToText, AutoTokenizer
@@ -254,8 +238,8 @@ def test_two_ranks_leave_what_is_not_trained_as_it_is(
 
 
 def test_a_dead_worker_is_told_at_once() -> None:
-    feed = Feed(str(settings.ROOT / "mini" / "weights"), 1, 0)
-    for worker in feed.workers:
+    made = Feed(str(settings.ROOT / "mini" / "weights"), 1, Place(0))
+    for worker in made.workers:
         worker.kill()
     with pytest.raises(RuntimeError, match=r"has ended \(exit code -9\).*call again"):
-        next(feed.pools(lambda: 0.0))
+        next(made.pools(lambda: 0.0))

@@ -48,7 +48,8 @@ _FORBIDDEN = frozenset((  # noqa: SIM905 - as above
     "gi_frame gi_code gi_yieldfrom cr_frame cr_code cr_await ag_frame ag_code tb_frame tb_next tb_lasti f_back "
     "f_globals f_locals f_builtins f_code co_code co_consts func_globals func_code mro with_traceback format_map"
 ).split())  # fmt: skip
-_PRIVATE_IN_TEXT = re.compile(r"__\w+__|\{[^{}]*\._")
+_PRIVATE_IN_TEXT = re.compile(rf"__\w+__|\{{[^{{}}]*\.(?:_|(?:{'|'.join(sorted(_FORBIDDEN))})\b)")
+"""Private names, and templates that read a forbidden attribute when they are formatted."""
 
 
 class Breach(NamedTuple):

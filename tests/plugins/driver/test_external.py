@@ -1,15 +1,17 @@
 """Somebody else's driver: a callable, and a program behind a socket."""
 
+import contextlib
 import socket
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
 
-from plugins.driver.external import External
+from plugins.driver.external import External, _Line
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.handover.drive import drive
 from sgcad_core.handover.outcome import came
@@ -97,21 +99,81 @@ def test_nobody_at_the_port_is_told_and_so_is_one_who_hangs_up():
         drive(staged_rear_end(), External(port=port))
     with socket.create_server(("127.0.0.1", 0)) as server:
         threading.Thread(target=lambda: server.accept()[0].close(), daemon=True).start()
-        with pytest.raises(SimulationFailed, match="is gone"):
+        with pytest.raises(SimulationFailed, match="has hung up"):
             drive(staged_rear_end(), External(port=server.getsockname()[1]))
+
+
+def served(answers):
+    """A server on a port of its own that gives its first caller to `answers`."""
+    server = socket.create_server(("127.0.0.1", 0))
+
+    def serve():
+        line, _ = server.accept()
+        with server, line:
+            answers(line)
+
+    threading.Thread(target=serve, daemon=True).start()
+    return server.getsockname()[1]
+
+
+def dripping(line):
+    """A byte every 50 ms, each within the limit of 0.4 s, and never a whole line."""
+    with contextlib.suppress(OSError):
+        while True:
+            line.sendall(b" ")
+            time.sleep(0.05)
+
+
+def test_an_answer_that_comes_byte_by_byte_has_the_time_of_one_answer():
+    began = time.monotonic()
+    with pytest.raises(SimulationFailed, match=r"has not answered within timeout_s = 0\.4 s"):
+        drive(staged_rear_end(), External(port=served(dripping), timeout_s=0.4))
+    assert 0.4 <= time.monotonic() - began < 3.0
+
+
+def test_one_who_says_nothing_is_waited_for_as_long():
+    with pytest.raises(SimulationFailed, match=r"has not answered within timeout_s = 0\.2 s"):
+        drive(staged_rear_end(), External(port=served(lambda line: time.sleep(2.0)), timeout_s=0.2))
+
+
+def test_one_who_does_not_listen_is_not_waited_for_either():
+    """Its buffers are full at some time; the question is part of the limit."""
+    line = _Line(socket.create_connection(("127.0.0.1", served(lambda line: time.sleep(5.0)))), 0.3)
+    began = time.monotonic()
+    with pytest.raises(TimeoutError):
+        line.asked(b" " * 50_000_000)
+    assert time.monotonic() - began < 3.0
+    line.close()
+
+
+def test_an_answer_in_pieces_is_one_answer_and_what_follows_is_the_next():
+    def pieces(line):
+        file = line.makefile("rb")
+        file.readline()
+        for piece in (b'{"a"', b": 1", b'}\n{"b": 2}\n'):
+            line.sendall(piece)
+            time.sleep(0.02)
+        file.readline()
+
+    line = _Line(socket.create_connection(("127.0.0.1", served(pieces))), 5.0)
+    assert line.asked(b"{}") == b'{"a": 1}'
+    assert line.asked(b"{}") == b'{"b": 2}'
+    line.close()
 
 
 def test_an_answer_deeper_than_json_goes_is_told():
-    def answers(server):
-        line, _ = server.accept()
-        line.recv(100)
+    def answers(line):
+        line.makefile("rb").readline()
         line.sendall(b"[" * 300_000 + b"\n")
-        line.close()
 
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        threading.Thread(target=answers, args=(server,), daemon=True).start()
-        with pytest.raises(SimulationFailed, match="is gone"):
-            drive(staged_rear_end(), External(port=server.getsockname()[1]))
+    with pytest.raises(SimulationFailed, match=r"answered b'\[+': expected one JSON object a line"):
+        drive(staged_rear_end(), External(port=served(answers)))
+
+
+def test_an_answer_without_an_end_is_told():
+    port = served(lambda line: (line.makefile("rb").readline(), line.sendall(b"1" * (1 << 21)), time.sleep(1.0)))
+    with pytest.raises(SimulationFailed, match=r"answered b'1+': expected one JSON object a line, below 1048576 bytes"):
+        drive(staged_rear_end(), External(port=port))
 
 
 def test_one_door_is_needed_and_not_two():

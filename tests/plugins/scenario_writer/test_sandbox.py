@@ -98,8 +98,8 @@ def _breached(source):
 def test_no_text_becomes_code_or_a_private_name():
     """What the rules let pass runs, all in one script: each attempt fails, and the script lives to its end."""
     passing = [source.removeprefix(U) for source in CODED.values() if not _breached(source)]
-    assert len(CODED) + len(FORGED) >= 200
-    assert 20 < len(passing) < len(CODED)
+    assert len(CODED) >= 300
+    assert 100 < len(passing) < len(CODED)
     bodies = [
         f"def attempt{i}():\n{textwrap.indent(source, '    ')}\n    return found\n"
         f"try:\n    held = attempt{i}()\nexcept Exception:\n    pass\nelse:\n    print({i}, held)\n"

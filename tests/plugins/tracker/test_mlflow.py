@@ -10,6 +10,8 @@ from itertools import count
 
 import pytest
 
+from plugins.tracker import mlflow_store
+from plugins.tracker.figures import means
 from plugins.tracker.mlflow import MlflowTracker
 from plugins.tracker.mlflow_store import KIND, NOTE, store_of
 from sgcad_core.errors import ConfigError
@@ -294,3 +296,24 @@ def test_a_database_that_is_none_is_refused_with_a_remedy(out, tmp_path):
     (tmp_path / "no.db").write_text("this is no database, and it is long enough not to look empty " * 20)
     with pytest.raises(ConfigError, match=r"no.db: this is no database of MLflow's.*tracker=jsonl"):
         MlflowTracker(database=tmp_path / "no.db").log_case("kit", PARAMS, out / "kit" / "c1", RESULT)
+
+
+def test_means_are_read_page_by_page_and_a_case_done_again_counts_once(out, tracker, monkeypatch):
+    """A batch of 10,000 cases must not hold all their runs at a time."""
+    monkeypatch.setattr(mlflow_store, "MAX_RUNS", 2)
+    made = tracker()
+    made.begin(arm(out))
+    for case, result in (("c1", RESULT), ("c2", REFUSED), ("c3", RESULT), ("c4", RESULT), ("c1", REFUSED)):
+        log(made, out, case, result)
+        time.sleep(0.002)  # runs are in order of their starts
+    made.end(arm(out), finished=True)
+    _, (parent,), _ = runs_of(made)
+    assert parent.data.metrics["cases"] == 4
+    assert parent.data.metrics["generated"] == 0.5
+
+
+def test_means_take_what_comes_once():
+    assert means(iter([{"a": 1.0, "generated": 1.0, "attempt_road": 9.0}, {"a": 2.0}])) == {
+        "a": 1.5, "generated": 1.0, "cases_generated": 1.0, "cases_refused": 0.0, "cases_exhausted": 0.0,
+        "cases_failed": 0.0, "cases": 2.0,
+    }  # fmt: skip
