@@ -62,8 +62,10 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        if role == "rest" and who.counted and all(t.role != "impact" for t in told):
-            role = "approach"  # one account in order: nobody is at rest for good before the blow
+        if role in ("rest", "health") and who.counted and all(t.role != "impact" for t in told):
+            role = (
+                "approach"  # one account in order: nobody is at rest for good before the blow, or asked of his health
+            )
         current = _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several))
         several = _of_several(text, several)
@@ -114,11 +116,17 @@ def _cut(told: Statement, who: Roster) -> list[Segment]:
     starts = subject_starts(told, who)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
     found = [
-        Segment(subjects, told.text[begin:end].lower().strip(" ,"), told.role, told.number, begin)
-        for (_, begin, subjects), end in zip(starts, ends, strict=True)
+        Segment(subjects, _own(told.text[begin:end].lower().strip(" ,"), n), told.role, told.number, begin)
+        for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
         if subjects
     ]
     return [*_opening(told, starts), *found]
+
+
+def _own(text: str, before: int) -> str:
+    """Without what a main subject `before` does on behind a relative clause: "hit V1, which stood, and drove on"."""
+    aside = rule("clauses.stood_aside").match(text) if before else None
+    return text[: aside.end()] if aside else text
 
 
 def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:

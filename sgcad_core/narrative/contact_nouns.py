@@ -25,6 +25,8 @@ class Touch(NamedTuple):
     by: bool = False
 
 
+_PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
+"""Groups of who is pushed, into whom, and where."""
 _NAMED = rule("contact_nouns.named")
 _TOOK = rule("contact_nouns.took")
 _CAUSED = rule("contact_nouns.caused")
@@ -39,7 +41,7 @@ def touches(text: str) -> Iterator[Touch]:
         if not _NOTHING.search(text[: m.start()]):
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "between")
     for m in says.PUSHED.finditer(text):
-        a, b, area = (m["v1"], m["v2"], m["a2"]) if m["v1"] else (m["v3"], m["v4"], m["a4"])
+        a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
     for m in _TOOK.finditer(text):
         yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True)

@@ -106,6 +106,8 @@ def _read(text: str, is_subject: bool) -> tuple[float, str] | None:
     if rule("crash_roles.reason").search(text):
         none = rule("crash_roles.reason_none").search(text)
         return (-_REASON, "crash_roles.reason_none") if none else (_REASON, "crash_roles.reason")
+    if is_subject and rule("crash_roles.came_over").search(text):
+        return _BROKE, "crash_roles.came_over"
     if rule("critical_events.event").search(text):
         return _read_event(text)
     if rule("crash_roles.cited").search(text) and not rule("crash_roles.not_cited").search(text):

@@ -20,13 +20,15 @@ _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", 
 """What a vehicle may wait or prepare to do and never does."""
 _ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
 """Ways of moving that are no maneuver of their own, and may be waited for."""
+_BEFORE = ("came_on", "moved_on")
+"""What may be told behind what it came before: "stopped after passing the crosswalk"."""
 
 
 def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
     """Add what one segment tells; `at`: where in its sentence it begins."""
     for m in _TURNING.finditer(text):
         side = next(
-            filter(None, (m.groupdict().get(k) for k in ("side", "side2", "side3", "side4", "side5"))), "left"
+            filter(None, (m.groupdict().get(k) for k in ("side", "side2", "side3", "side4", "side5", "side6"))), "left"
         ).lower()
         before = text[max(0, m.start() - 60) : m.start()]
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
@@ -45,8 +47,10 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
 
 
 def _only_hoped(kind: str, before: str) -> bool:
-    """Whether the words before a deed say that it was waited for, prepared or meant, not done."""
+    """Whether the words before a deed say that it was waited for or meant, or done before what they tell."""
     if kind in _HOPED and _LATER.search(before):
+        return True
+    if kind in _BEFORE and rule("deeds.earlier").search(before):
         return True
     return kind in _ONWARD and bool(rule("deeds.unmoved").search(before))
 

@@ -13,7 +13,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
-from sgcad_core.narrative.maneuvers import Decision, changed_lanes_after_turn, decide, turned_before
+from sgcad_core.narrative.maneuvers import SHIFTED, Decision, changed_lanes_after_turn, decide, turned_before
 from sgcad_core.narrative.motion import Heard, Motion
 from sgcad_core.narrative.relative import contact_prefers, relative
 from sgcad_core.narrative.sides import join_contacts
@@ -70,7 +70,8 @@ def _change_hands(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
     """Of a change of lane to a hand that nobody tells: towards the flank by which the two touched, away from a lane
     that is told."""
     for v in draft.who.ids:
-        if out.maneuvers[v] != "lane_change_left" or v in out.told_maneuvers:
+        cue = out.sources.get(f"{v} maneuver")
+        if out.maneuvers[v] != "lane_change_left" or v in out.told_maneuvers or (cue and cue.rule in SHIFTED):
             continue
         hit = next((b for b in pairs if v in (b.actor, b.other)), None)
         own, other = (hit.actor_area, hit.other_area) if hit and hit.actor == v else (

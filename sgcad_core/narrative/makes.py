@@ -30,7 +30,7 @@ _MODEL_KIND: dict[ActorKind, tuple[str, ...]] = {
 
 
 def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
-    """Kind of vehicle from its description, and whether a body word states it."""
+    """Kind of road user or thing from its description, and whether a word states it; a car where none does."""
     text = words.lower()
     for user in sorted(ROAD_USERS, key=len, reverse=True):
         if rule("makes.whole_word").given(word=user).search(text):
@@ -40,7 +40,10 @@ def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
             if BODY_WORDS[body] == "truck" and body == "truck" and _by_model(text, model) == "pickup":
                 return "pickup", True
             return BODY_WORDS[body], True
-    return _by_model(text, model) or _by_make(text) or "car", False
+    known = _by_model(text, model) or _by_make(text)
+    if known is None and (other := rule("makes.other").fullmatch(text.strip(" ,."))):
+        return ("pedestrian" if other["person"] else "object"), True
+    return known or "car", False
 
 
 def is_animal(words: str) -> bool:

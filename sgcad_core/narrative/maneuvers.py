@@ -51,6 +51,10 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
 
 _STANDING = ("stopped", "parked")
 _CHANGES: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
+_SHIFTS: dict[str, Maneuver] = {"shifted_left": "lane_change_left", "shifted_right": "lane_change_right"}
+"""Moves aside: a change of lane of anybody but the report's own vehicle, which moves aside to make room."""
+SHIFTED = tuple(f"deeds.{kind}" for kind in _SHIFTS)
+"""Rules of such moves: the hand is told, that it is a change of lane is not."""
 _MOVING = (
     "moved_on",
     "came_on",
@@ -108,6 +112,8 @@ def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
         return _as_told(wants[-1])
     if deed := next((d for d in since if d.kind == "lane_change"), None):
         return Decision("lane_change_left", False, deed)
+    if not motion.watched and (deed := next((d for d in since if d.kind in _SHIFTS), None)):
+        return Decision(_SHIFTS[deed.kind], False, deed)
     slowing = next((d for d in since if d.kind == "slowing"), None)
     return Decision("slowing" if slowing else "straight", deed=slowing or (since[-1] if since else None))
 
@@ -132,7 +138,9 @@ def _went_on(turn: Deed, since: list[Deed]) -> bool:
     if any(d.kind == "turn_done" and d.when > turn.when for d in since):
         return True
     later = [d for d in since if d.number > turn.number]
-    return any(d.kind in ("straight", *_CHANGES) or rule("deeds.on_its_way").match(d.words) for d in later)
+    return any(
+        d.kind in ("straight", "overtaking", *_CHANGES) or rule("deeds.on_its_way").match(d.words) for d in later
+    )
 
 
 def _begun_turn(motion: Motion, since: list[Deed]) -> Deed | None:

@@ -58,6 +58,8 @@ class Motion:
 
     at: int = 0
     """The sentence that is being read."""
+    watched: bool = False
+    """Whether it is the report's own vehicle."""
     ordered: bool = False
     """Whether the deeds are one account in order, up to the contact."""
     headings: list[Heard] = field(default_factory=list)

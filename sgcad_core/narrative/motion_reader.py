@@ -33,7 +33,7 @@ def motions(
     told: Sequence[Statement], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
 ) -> dict[str, Motion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
-    found = {v: Motion(ordered=who.counted) for v in who.ids}
+    found = {v: Motion(watched=v == who.ids[0], ordered=who.counted) for v in who.ids}
     for identity in who.vehicles if who.counted else ():
         _read_part(found[identity.id], identity, who)
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))

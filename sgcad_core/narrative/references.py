@@ -28,6 +28,9 @@ _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
+_NO_VEHICLE = ("pedestrian", "bicycle", "animal")
+_TRUCK_PARTS, _TRUCKS = ("cab", "flatbed", "tractor"), ("truck", "pickup")
+"""Words for a part of a truck that also name vehicles of their own."""
 _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehicle")
 
 
@@ -134,6 +137,7 @@ class _Cast:
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
         others = [a for a in others if phrase.part in (None, a.part)] or [a for a in others if not a.part]
         fitting = [a for a in others if phrase.head in a.heads] or [a for a in others if _fits(a, phrase)]
+        fitting = fitting or [a for a in others if phrase.head in _TRUCK_PARTS and a.kind in _TRUCKS]
         if phrase.stands and (standing := [a for a in fitting if a.stands]):
             fitting = standing
         if phrase.order is not None:
@@ -142,7 +146,14 @@ class _Cast:
         subject = self.subject()
         if subject and self.automated and phrase.branded and phrase.kind == "vehicle":
             return subject
-        return fitting[0] if fitting else subject if subject and _may_be_subject(subject, phrase) else None
+        if fitting or subject is None:
+            return fitting[0] if fitting else None
+        return subject if _may_be_subject(subject, phrase) or self._own(phrase) else None
+
+    def _own(self, phrase: _Phrase) -> bool:
+        """Whether "the truck" is the automated vehicle: a large one, where no other vehicle was named."""
+        large = phrase.kind in ("truck", "bus") and not phrase.match["make"] and not _beside(phrase)
+        return self.automated and large and all(a.subject or a.kind in _NO_VEHICLE for a in self.actors)
 
     def open(self, phrase: _Phrase) -> _Actor | None:
         """Whom the opening of the report announced and nobody has told of since, if the words fit."""
@@ -153,17 +164,22 @@ def _fits(actor: _Actor, phrase: _Phrase) -> bool:
     """Whether the words of a phrase may mean an actor."""
     if phrase.head in actor.heads or phrase.kind == actor.kind:
         return True
-    vehicle = actor.kind not in ("pedestrian", "bicycle", "animal")
+    vehicle = actor.kind not in _NO_VEHICLE
     if phrase.kind == "vehicle" or actor.kind == "vehicle":
-        return vehicle and phrase.kind not in ("pedestrian", "bicycle", "animal")
+        return vehicle and phrase.kind not in _NO_VEHICLE
     return phrase.head == "truck" and actor.kind in ("truck", "pickup")
 
 
 def _may_be_subject(subject: _Actor, phrase: _Phrase) -> bool:
     """Whether "the vehicle" or "the shuttle" is the report's own."""
-    if phrase.part or rule("references.elsewhere").match(phrase.match.string, phrase.match.end()):
+    if _beside(phrase):
         return False
     return phrase.kind == "vehicle" or any(head.endswith(phrase.head) for head in subject.heads)
+
+
+def _beside(phrase: _Phrase) -> bool:
+    """Whether a phrase says of a vehicle that it is one beside the report's own."""
+    return bool(phrase.part or rule("references.elsewhere").match(phrase.match.string, phrase.match.end()))
 
 
 # ------------------------------------------------------------------ numbering
@@ -181,24 +197,6 @@ def number_actors(text: Traced) -> Traced:
     numbering = _Numbering(cast)
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
-
-
-def number_parked(text: Traced) -> Traced:
-    """A numbered text with the one parked vehicle that somebody hits and that has no number given the next one."""
-    named = list(rule("references.parked").finditer(text.text))
-    hits = {m.start("who") for m in rule("references.parked_hit").finditer(text.text)}
-    hit = next((m.start() for m in named if m.start() in hits), None)
-    if hit is None or not numbers_somebody(text.text):
-        return text
-    number = max(int(m.group()[1:]) for m in rule("common.vehicle").finditer(text.text)) + 1
-    return text.sub(rule("references.parked"), lambda m: _parked(m, f"V{number}", m.start() - hit))
-
-
-def _parked(match: re.Match[str], id: str, behind: int) -> str:
-    """The number; where it is hit first (`behind` 0) with the words that describe it; another one stays as it is."""
-    if behind == 0:
-        return f"an unnumbered {match['what']} ({id}), which was parked"
-    return id if behind > 0 and match["det"].lower() == "the" else match.group()
 
 
 def _numbered(block: Traced, numbering: _Numbering) -> Traced:
@@ -257,6 +255,8 @@ class _Numbering:
         if match["many"] and (not owner or rule("references.several").search(before)):
             return True
         if match["user"] and match["user"][0].isupper() and not match["det"]:
+            return True
+        if phrase.head in _TRUCK_PARTS and match.string.startswith(" of ", match.end()):
             return True
         if not match["det"] and not match["automated"]:
             return bool(match.start()) or not phrase.order

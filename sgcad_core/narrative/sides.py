@@ -94,6 +94,9 @@ def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area 
 
 def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Area | None) -> tuple[Area, Area]:
     """Sides that the text leaves open, from headings and maneuvers; a is the grammatical striker."""
+    area_a, area_b = (
+        "back" if side is None and out.maneuvers[v] == "backing" else side for v, side in ((a, area_a), (b, area_b))
+    )
     if area_a and area_b:
         return area_a, area_b
     turn = between(out.headings.get(a, "N"), out.headings.get(b, "N")) if a in out.headings and b in out.headings else 0

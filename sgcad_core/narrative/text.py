@@ -10,7 +10,8 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
-from sgcad_core.narrative.references import number_actors, number_parked
+from sgcad_core.narrative.parked import number_parked
+from sgcad_core.narrative.references import number_actors
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.study import named_in_full
 from sgcad_core.narrative.traced import Traced, joined

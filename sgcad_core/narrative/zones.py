@@ -57,7 +57,7 @@ def _of_subject(told: Statement) -> str:
 
 def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
     starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
-    owner = starts[-1][0] if starts else told.subject
+    owner = starts[-1][0] if starts and starts[-1] else told.subject
     return f"the {match['area']} of {owner}" if owner else match.group()
 
 

@@ -23,6 +23,8 @@ def values(text):
         ("The critical precrash event for V1 was other vehicle encroachment from the crossing street. ", "V2"),
         ("The driver of V2 was cited for failure to yield. ", "V2"),
         ("V2 ran the red light. ", "V2"),
+        ("V1 encroached into the lane of V2. ", "V1"),
+        ("V2 encroached into the lane of V1. ", "V2"),
     ],
 )
 def test_codes_citations_and_broken_rules_tell_who_began(told, initiator):

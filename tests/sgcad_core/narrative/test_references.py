@@ -80,7 +80,21 @@ MANEUVERS = [
      "made contact with the front of the Acme AV.", ("stopped", "straight")),
     ("The Acme AV was waiting for an opportunity to pass a bus. A van drove around the left of the Acme AV "
      "and its right "
-     "side made contact with the rear left corner of the stopped Acme AV.", ("stopped", "straight")),
+     "side made contact with the rear left corner of the stopped Acme AV.", ("stopped", "overtaking")),
+    ("The Acme AV was stopped. A van behind it maneuvered to the left as it approached, and its right front corner "
+     "made contact with the left rear corner of the Acme AV.", ("stopped", "lane_change_left")),
+    ("A van crossed over into the lane of the Acme AV. The Acme AV veered right, and the front of the van made contact "
+     "with the left side of the Acme AV.", ("straight", "straight")),
+    ("The Acme AV braked to a stop soon after passing the crosswalk. A van made contact with its rear.",
+     ("stopped", "straight")),
+    ("The Acme AV was going north in the right lane, traffic to its left was stopped. The front of a van made contact "
+     "with the rear of the Acme AV.", ("straight", "straight")),
+    ("The Acme AV was en route to a rider when it stopped for a dog. A van backed out and made contact with its left "
+     "side.", ("stopped", "backing")),
+    ("The Acme AV slowed and moved into the left lane. The front of a van made contact with its rear.",
+     ("lane_change_left", "straight")),
+    ("A van was heading north. A cyclist made contact with the left side of the stopped Acme AV, backed up a little, "
+     "and rode on.", ("stopped", "straight")),
 ]  # fmt: skip
 
 
