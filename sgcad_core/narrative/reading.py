@@ -118,7 +118,7 @@ def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
     """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
     who = roster((s.text for s in found), counted)
     told = tell(found, who)
-    if counted and (gone := bystanders(blows(told, who) or near_misses(told, who), who)):
+    if who.counted and (gone := bystanders(blows(told, who) or near_misses(told, who), who)):
         who = who.without(gone)
         told = tell(found, who)
     return Mentions(who, told)

@@ -28,7 +28,8 @@ _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
-_NO_VEHICLE = ("pedestrian", "bicycle", "animal")
+_PEOPLE = ("pedestrian", "bicycle")
+_NO_VEHICLE = (*_PEOPLE, "animal")
 _TRUCK_PARTS, _TRUCKS = ("cab", "flatbed", "tractor"), ("truck", "pickup")
 """Words for a part of a truck that also name vehicles of their own."""
 _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehicle")
@@ -194,12 +195,16 @@ def number_actors(text: Traced) -> Traced:
         return text
     automated = _automated(text.text)
     cast = _Cast([_Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
-    numbering = _Numbering(cast)
+    return numbered(text, Numbering(cast))
+
+
+def numbered(text: Traced, numbering: Numbering) -> Traced:
+    """The text with a number for everybody whom the numbering takes, block by block."""
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 
 
-def _numbered(block: Traced, numbering: _Numbering) -> Traced:
+def _numbered(block: Traced, numbering: Numbering) -> Traced:
     pieces: list[Traced] = []
     at = 0
     for end in [m.end() for m in rule("text.end").finditer(block.text)] + [len(block.text)]:
@@ -216,7 +221,7 @@ def _automated(text: str) -> bool:
 
 
 @dataclass
-class _Numbering:
+class Numbering:
     """Fills in numbers, phrase by phrase in the order of the text."""
 
     cast: _Cast
@@ -289,4 +294,22 @@ class _Numbering:
             return f"V{actor.number}{owner}{phrase.clauses}"
         det, words = match["det"] or "the", match.group()[len(match["det"] or "") :].strip()
         det = {"another": "a", "one": "a", "its": "the"}.get(det.lower(), det)
-        return f"{det} {words} (V{actor.number}){phrase.clauses}"
+        return self._introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
+
+    def _introduced(self, words: str, number: str) -> str:
+        return f"{words} {number}"
+
+
+class People(Numbering):
+    """Numbers people and cyclists alone, beside the one vehicle that a report numbers, and marks them as ours."""
+
+    @staticmethod
+    def beside_v1() -> People:
+        """V1 is there, and no other phrase means it."""
+        return People(_Cast([_Actor(1, "vehicle", set(), subject=True)], automated=True))
+
+    def _is_nobody(self, phrase: _Phrase) -> bool:
+        return phrase.kind not in _PEOPLE or not phrase.match["user"] or super()._is_nobody(phrase)
+
+    def _introduced(self, words: str, number: str) -> str:
+        return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"

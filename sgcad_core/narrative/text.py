@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.parked import number_parked
+from sgcad_core.narrative.people import number_people
 from sgcad_core.narrative.references import number_actors
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.study import named_in_full
@@ -134,7 +135,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    blocks = [block for block in number_parked(number_actors(named_in_full(text))).split_at("\n\n") if block.text]
+    blocks = [block for block in number_parked(number_people(number_actors(named_in_full(text)))).split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):
             found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))

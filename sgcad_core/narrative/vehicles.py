@@ -23,7 +23,7 @@ _NO_MODEL = rule("vehicles.no_model")
 
 _STOP = rule("vehicles.stop")
 _BESIDE = rule("references.unnumbered")
-"""A mark that `references.number_parked` leaves, since no report writes so."""
+"""A mark that `number_parked` and `number_people` leave, since no report writes so."""
 
 
 @dataclass(frozen=True)
@@ -129,8 +129,13 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
     found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
-    found = tuple(replace(v, beside=any(_BESIDE.search(c.words) for c in v.described)) for v in found)
+    found = tuple(_marked(v) if any(_BESIDE.search(c.words) for c in v.described) else v for v in found)
     return Roster(found, _aliases(found))
+
+
+def _marked(identity: Identity) -> Identity:
+    """Numbered here though the report numbers others: somebody on foot or on a bicycle, else a parked vehicle."""
+    return replace(identity, counted=True) if identity.kind in _LETTERS else replace(identity, beside=True)
 
 
 _LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}

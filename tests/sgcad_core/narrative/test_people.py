@@ -1,0 +1,41 @@
+"""People and cyclists beside the one vehicle that a report numbers."""
+
+import pytest
+
+from sgcad_core.narrative.reading import read
+
+CYCLIST = (
+    "Vehicle 1 was traveling south on Oak Street. A cyclist was riding east on Elm Avenue. The front of Vehicle 1 struck "
+    "the left side of the bicycle."
+)
+
+
+def test_a_cyclist_without_a_number_has_a_way_and_sides_of_its_own() -> None:
+    crash = read(CYCLIST).crash
+    assert [(v.id, v.kind, v.heading) for v in crash.vehicles] == [("V1", "car", "S"), ("B1", "bicycle", "E")]
+    contact = crash.contacts[0]
+    assert (contact.striker, contact.struck, contact.struck_area) == ("V1", "B1", "left")
+
+
+def test_a_pedestrian_who_is_struck_is_one_actor_under_every_word() -> None:
+    text = "V1 was northbound. A pedestrian was crossing the road from the right. V1 struck the pedestrian with its front."
+    crash = read(text).crash
+    assert [v.id for v in crash.vehicles] == ["V1", "P1"]
+    assert [(c.striker, c.struck) for c in crash.contacts] == [("V1", "P1")]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "V1 was northbound and swerved around a pedestrian. V1 struck a tree with its front.",
+        "V1 was northbound. V2 was stopped for a pedestrian. The front of V1 struck the back of V2.",
+    ],
+)
+def test_who_touches_nobody_is_no_actor(text: str) -> None:
+    assert all(v.id.startswith("V") for v in read(text).crash.vehicles)
+
+
+def test_the_sentences_keep_their_places() -> None:
+    reading = read(CYCLIST)
+    said = next(f for f in reading.facts if f.field == "vehicles.B1.heading")
+    assert CYCLIST[said.start : said.end].startswith("A cyclist")
