@@ -94,7 +94,7 @@ clean: ## remove environments and caches, never results
 	rm -rf $(VENV) .venv-qc .venv-tools site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
 test-hosts: setup ## a study on two hosts that lose network and power (Linux, root, PostgreSQL and iproute2; else skipped)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,hosts]' 'moto[s3]>=5.1'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint deploy/constraints.txt -e '.[dev,hosts]' 'moto[s3]>=5.1'
 	$(BIN)/python -m tests.hosts.run
 
 lint: setup ## ruff (rules and format), mypy, import-linter

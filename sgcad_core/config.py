@@ -116,7 +116,7 @@ def name_of(file: Path) -> str:
     inner = file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
     name = "-".join(inner.with_suffix("").parts)
     if name.startswith(".") or not name.isprintable():
-        raise ConfigError(f"{file}: its name would name the folder of its results: begin it with a letter, as my.yaml")
+        raise ConfigError(f"{file}: its results go to a folder of its name: begin the name with a letter")
     return name
 
 

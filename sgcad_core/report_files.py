@@ -45,7 +45,7 @@ def read_regular(path: Path, inside: Path | None = None, most: int = MAX_FILE_BY
     with os.fdopen(opened, "rb") as file:
         about = os.fstat(opened)
         if not stat.S_ISREG(about.st_mode):
-            raise BadInput(f"{path}: is no regular file: give a text, an XML file, a PDF or a folder with them")
+            raise BadInput(f"{path}: is not a regular file: give a text, an XML file, a PDF or a folder with them")
         if about.st_size > most:
             raise BadInput(f"{path}: {about.st_size:,} bytes, the limit is {most:,}: cut the file")
         try:

@@ -49,13 +49,13 @@ def load_weights(prompt: str) -> Mapping[str, Weights]:
     file = settings.PROMPTS / f"{prompt}.json"
     remedy = "fit them with `python -m benchmarks.opinions`"
     if not file.is_file():
-        raise ConfigError(f"second_opinion {prompt!r}: no weights in {file}; {remedy}")
+        raise ConfigError(f"second_opinion {prompt!r}: its file of weights {file} is missing; {remedy}")
     try:
         found = {key: Weights(**entry) for key, entry in json.loads(file.read_text(encoding="utf-8")).items()}
     except (ValueError, AttributeError, TypeError) as fault:
-        raise ConfigError(f"{file}: no weights of a gist's fields ({fault}); {remedy}") from fault
+        raise ConfigError(f"{file}: is not a file of weights for the fields of a gist ({fault}); {remedy}") from fault
     if strange := sorted(found.keys() - set(FIELDS)):
-        raise ConfigError(f"{file}: {', '.join(strange)} are no fields of a gist; use {', '.join(FIELDS)}")
+        raise ConfigError(f"{file}: {', '.join(strange)} are not fields of a gist; use {', '.join(FIELDS)}")
     return found
 
 

@@ -92,7 +92,7 @@ def _vehicle(raw: Mapping[str, Any], source: str) -> VehicleLabel:
 
 def _impact(pair: Any, source: str) -> tuple[str, str]:
     if not isinstance(pair, list | tuple) or len(pair) != 2 or not all(isinstance(one, str) for one in pair):
-        raise BadInput(f"{source}, impacts: {pair!r} is no pair of names; write [actor, other]")
+        raise BadInput(f"{source}, impacts: {pair!r} is not a pair of names; write [actor, other]")
     return pair[0], pair[1]
 
 

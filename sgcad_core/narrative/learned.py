@@ -181,7 +181,7 @@ def load(file: Path = WEIGHTS) -> Learned:
     """The weights of a file. Raises ConfigError where it is missing or holds something else."""
     remedy = "make it with `python -m benchmarks.second_reader`"
     if not file.is_file():
-        raise ConfigError(f"second_opinion {LEARNED!r}: no weights in {file}; {remedy}")
+        raise ConfigError(f"second_opinion {LEARNED!r}: its file of weights {file} is missing; {remedy}")
     try:
         with np.load(file) as kept:
             arrays = dict(kept)
@@ -191,7 +191,7 @@ def load(file: Path = WEIGHTS) -> Learned:
             arrays["word_hashes"], arrays["reading_hashes"], fields, float(about["takes"]), float(about["least_known"])
         )
     except (ValueError, KeyError, TypeError, OSError) as fault:
-        raise ConfigError(f"{file}: no weights of a second reader ({fault}); {remedy}") from fault
+        raise ConfigError(f"{file}: is not a file of weights for the learned reader ({fault}); {remedy}") from fault
 
 
 def _field(arrays: Mapping[str, Any], key: str, about: Mapping[str, Any]) -> Field:

@@ -189,7 +189,7 @@ def test_kappa_is_one_for_the_same_and_none_for_chance():
         ({"vehicles": {"V1": {"maneuver": "flying"}}}, "maneuver is 'flying'; allowed are straight"),
         ({"vehicles": {"V1": {"evasion": ["jump"]}}}, "evasion is 'jump'; allowed are brake"),
         ({"vehicles": {"V1": {"rest": {"where": "moon"}}}}, "rest.where is 'moon'; allowed are road"),
-        ({"impacts": [["V1"]]}, r"\['V1'\] is no pair of names; write \[actor, other\]"),
+        ({"impacts": [["V1"]]}, r"\['V1'\] is not a pair of names; write \[actor, other\]"),
     ],
 )
 def test_a_faulty_label_is_named_with_what_is_allowed(label, message):

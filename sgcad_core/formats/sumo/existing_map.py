@@ -40,7 +40,7 @@ def read_map(file: Path) -> PlainXml:
     nodes, edges, links = _parts(file)
     found = _with_junction(list(edges.iterfind("edge")))
     if not 0 < len(found) <= MOST_EDGES:
-        raise ConfigError(f"{file}: {len(found)} directions of roads, 1 to {MOST_EDGES} make a map; cut it smaller")
+        raise ConfigError(f"{file}: {len(found)} one-way edges, a map has 1 to {MOST_EDGES}: cut it smaller")
     return _renamed(nodes, found, links)
 
 

@@ -58,10 +58,10 @@ def test_a_report_without_an_answer_stays_the_rules_and_says_so() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "no weights in .*benchmarks.opinions"),
-        ('{"touched": {"agree": 2}}', "no weights of a gist's fields"),
-        ("[1]", "no weights of a gist's fields"),
-        ('{"wheels": {}}', "wheels are no fields of a gist; use touched"),
+        (None, "its file of weights .* is missing; .*benchmarks.opinions"),
+        ('{"touched": {"agree": 2}}', "is not a file of weights for the fields of a gist"),
+        ("[1]", "is not a file of weights for the fields of a gist"),
+        ('{"wheels": {}}', "wheels are not fields of a gist; use touched"),
     ],
 )
 def test_faults_of_weights_name_the_file_and_the_remedy(tmp_path, monkeypatch, text, message) -> None:

@@ -110,10 +110,10 @@ def test_weights_come_back_from_their_file_in_eight_bits(tmp_path: Path) -> None
 
 
 def test_missing_and_broken_weights_are_told_with_the_remedy(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"no weights in .*; make it with"):
+    with pytest.raises(ConfigError, match=r"its file of weights .* is missing; make it with"):
         learned.load(tmp_path / "none.npz")
     (tmp_path / "bad.npz").write_bytes(b"PK no archive")
-    with pytest.raises(ConfigError, match="no weights of a second reader"):
+    with pytest.raises(ConfigError, match="is not a file of weights for the learned reader"):
         learned.load(tmp_path / "bad.npz")
 
 
