@@ -27,6 +27,8 @@ from sgcad_core.roads.lane_graph import network_figures
 SUBJECT = "V1"
 MEASURES = ("generated", "actors", "contact", "subject_manoeuvre", "other_manoeuvre", "areas", "intersection", "whole")
 _LETTERS: Mapping[str, str] = {"pedestrian": "P", "cyclist": "B", "animal": "APO", "object": "OTV"}
+_SILENT = ("the text gives no account of the crash", "the account of the crash is blacked out")
+"""Words of refusals of reports from which nobody could draw a crash."""
 _STANDS_MPS, _STANDS_M = 0.5, 1.0
 _STRAIGHT_DEG, _TURN_DEG, _ACROSS_DEG = 30.0, 10.0, 60.0
 _BACK_M, _ACROSS_M = 0.3, 0.7
@@ -40,6 +42,8 @@ class Run:
     tracks: Mapping[str, Trajectory]
     sizes: Mapping[str, Size]
     junctions: int
+    silent: bool = False
+    """Whether it was refused because its report gives no account of a crash, or one that was blacked out."""
 
     @staticmethod
     def of(folder: Path) -> Run:
@@ -51,7 +55,8 @@ class Run:
         known = read_trajectories(motion) if motion.exists() and result.get("status") == "generated" else ()
         tracks = {track.actor: track for track in known if track.actor in sizes}
         drawn = network_figures(parse_net(net.read_text(encoding="utf-8"))) if net.exists() else None
-        return Run(str(result.get("status", "none")), tracks, sizes, drawn.intersections if drawn else 0)
+        silent = any(words in str(result.get("reason")) for words in _SILENT)
+        return Run(str(result.get("status", "none")), tracks, sizes, drawn.intersections if drawn else 0, silent)
 
     def meeting(self) -> ObservedContact | None:
         """The subject's first contact with anybody."""

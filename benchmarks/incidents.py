@@ -9,7 +9,8 @@ Runs `sgcad evaluate` with a config, the template one unless told otherwise, ove
 totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their hashes fall; blind and
 dev are always taken whole. Beside the measures stand how many were generated, refused and exhausted, and the false
 successes: a contact is told, none came about, and the status is "generated". The first part of an id, up to "-", is its
-genre; `--only` takes one.
+genre; `--only` takes one. Where some reports give no account of a crash (they refer to another report, or it is blacked
+out), a second line has the figures of those that do: what could be read at all.
 """
 
 from __future__ import annotations
@@ -87,6 +88,9 @@ def table(incidents: Sequence[Incident], runs: Path) -> list[str]:
     for group, genre in sorted({(i.group, i.genre) for i in incidents}):
         members = [i for i in incidents if (i.group, i.genre) == (group, genre)]
         lines.append(_line(f"{group} {genre}", members, runs))
+        telling = [i for i in members if not Run.of(runs / i.id).silent]
+        if len(telling) < len(members):
+            lines.append(_line(f"{group} {genre} with an account", telling, runs))
     return lines
 
 

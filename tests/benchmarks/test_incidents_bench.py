@@ -97,6 +97,20 @@ def test_the_table_names_groups_and_no_report(tmp_path: Path) -> None:
     assert "made-1" not in line
 
 
+def test_reports_without_an_account_are_left_out_of_a_second_line(tmp_path: Path) -> None:
+    made = [Incident("made-1", "x", TRUTH, "dev"), Incident("made-2", "x", TRUTH, "dev")]
+    write_run(tmp_path / "made-1", -4.5)
+    (tmp_path / "made-2").mkdir()
+    refused = {
+        "status": "refused",
+        "reason": "road: the text gives no account of the crash, only what it says of itself",
+    }
+    (tmp_path / "made-2" / "result.json").write_text(json.dumps(refused))
+    whole, telling = table(made, tmp_path)
+    assert whole.startswith("dev made: generated 0.500 (2)")
+    assert telling.startswith("dev made with an account: generated 1.000 (1)")
+
+
 def test_cases_are_written_and_scored_by_the_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
