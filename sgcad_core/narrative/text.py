@@ -135,7 +135,8 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    blocks = [block for block in number_parked(number_people(number_actors(named_in_full(text)))).split_at("\n\n") if block.text]
+    numbered = number_parked(number_people(number_actors(named_in_full(text))))
+    blocks = [block for block in numbered.split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):
             found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))

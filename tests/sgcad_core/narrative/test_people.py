@@ -5,8 +5,8 @@ import pytest
 from sgcad_core.narrative.reading import read
 
 CYCLIST = (
-    "Vehicle 1 was traveling south on Oak Street. A cyclist was riding east on Elm Avenue. The front of Vehicle 1 struck "
-    "the left side of the bicycle."
+    "Vehicle 1 was traveling south on Oak Street. A cyclist was riding east on Elm Avenue. The front of Vehicle 1 "
+    "struck the left side of the bicycle."
 )
 
 
@@ -18,7 +18,7 @@ def test_a_cyclist_without_a_number_has_a_way_and_sides_of_its_own() -> None:
 
 
 def test_a_pedestrian_who_is_struck_is_one_actor_under_every_word() -> None:
-    text = "V1 was northbound. A pedestrian was crossing the road from the right. V1 struck the pedestrian with its front."
+    text = "V1 was northbound. A pedestrian was crossing from the right. V1 struck the pedestrian with its front."
     crash = read(text).crash
     assert [v.id for v in crash.vehicles] == ["V1", "P1"]
     assert [(c.striker, c.struck) for c in crash.contacts] == [("V1", "P1")]
