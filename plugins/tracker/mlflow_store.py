@@ -208,19 +208,14 @@ class Parent:
 
     def _children(self) -> Iterator[Any]:
         """All runs of cases, newest first, a page in memory at a time."""
-        token: str | None = None
-        while True:
+        where, order = f"tags.`{PARENT}` = '{self.run}'", ["attributes.start_time DESC"]
+        token: str | None = ""
+        while token is not None:
             page = self.store.client.search_runs(
-                [self.store.experiment_id],
-                f"tags.`{PARENT}` = '{self.run}'",
-                max_results=MAX_RUNS,
-                order_by=["attributes.start_time DESC"],
-                page_token=token,
+                [self.store.experiment_id], where, max_results=MAX_RUNS, order_by=order, page_token=token or None
             )
             yield from page
-            token = page.token
-            if not token:
-                return
+            token = page.token or None
 
     def new_case(self, case: str, tags: Mapping[str, str], started_s: float) -> Any:
         """A fresh run of a case, which began at a Unix time; the one before, if any, goes to MLflow's bin."""

@@ -28,15 +28,14 @@ _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
-_PEOPLE = ("pedestrian", "bicycle")
-_NO_VEHICLE = (*_PEOPLE, "animal")
+_NO_VEHICLE = ("pedestrian", "bicycle", "animal")
 _TRUCK_PARTS, _TRUCKS = ("cab", "flatbed", "tractor"), ("truck", "pickup")
 """Words for a part of a truck that also name vehicles of their own."""
 _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehicle")
 
 
 @dataclass
-class _Actor:
+class Actor:
     """Somebody who was named: `heads` are the nouns used, `order` which one of its kind it is said to be."""
 
     number: int
@@ -54,7 +53,7 @@ class _Actor:
 
 
 @dataclass(frozen=True)
-class _Phrase:
+class Phrase:
     """One noun phrase; `head` lower case."""
 
     match: re.Match[str]
@@ -116,24 +115,24 @@ def _is_car(head: str) -> bool:
 
 
 @dataclass
-class _Cast:
+class Cast:
     """Everybody named so far."""
 
-    actors: list[_Actor] = field(default_factory=list)
+    actors: list[Actor] = field(default_factory=list)
     automated: bool = False
     """Whether the subject has words of its own, so that no other phrase means it as long as another actor fits."""
 
-    def subject(self) -> _Actor | None:
+    def subject(self) -> Actor | None:
         return next((a for a in self.actors if a.subject), None)
 
-    def add(self, phrase: _Phrase, subject: bool, announced: bool) -> _Actor | None:
+    def add(self, phrase: Phrase, subject: bool, announced: bool) -> Actor | None:
         if len(self.actors) == _MOST:
             return None
-        actor = _Actor(len(self.actors) + 1, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)
+        actor = Actor(len(self.actors) + 1, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)
         self.actors.append(actor)
         return actor
 
-    def meant(self, phrase: _Phrase) -> _Actor | None:
+    def meant(self, phrase: Phrase) -> Actor | None:
         """Whom a definite phrase means: the last one that its words fit, best fit first; None: nobody so far."""
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
         others = [a for a in others if phrase.part in (None, a.part)] or [a for a in others if not a.part]
@@ -151,17 +150,17 @@ class _Cast:
             return fitting[0] if fitting else None
         return subject if _may_be_subject(subject, phrase) or self._own(phrase) else None
 
-    def _own(self, phrase: _Phrase) -> bool:
+    def _own(self, phrase: Phrase) -> bool:
         """Whether "the truck" is the automated vehicle: a large one, where no other vehicle was named."""
         large = phrase.kind in ("truck", "bus") and not phrase.match["make"] and not _beside(phrase)
         return self.automated and large and all(a.subject or a.kind in _NO_VEHICLE for a in self.actors)
 
-    def open(self, phrase: _Phrase) -> _Actor | None:
+    def open(self, phrase: Phrase) -> Actor | None:
         """Whom the opening of the report announced and nobody has told of since, if the words fit."""
         return next((a for a in self.actors if a.announced and _fits(a, phrase)), None)
 
 
-def _fits(actor: _Actor, phrase: _Phrase) -> bool:
+def _fits(actor: Actor, phrase: Phrase) -> bool:
     """Whether the words of a phrase may mean an actor."""
     if phrase.head in actor.heads or phrase.kind == actor.kind:
         return True
@@ -171,14 +170,14 @@ def _fits(actor: _Actor, phrase: _Phrase) -> bool:
     return phrase.head == "truck" and actor.kind in ("truck", "pickup")
 
 
-def _may_be_subject(subject: _Actor, phrase: _Phrase) -> bool:
+def _may_be_subject(subject: Actor, phrase: Phrase) -> bool:
     """Whether "the vehicle" or "the shuttle" is the report's own."""
     if _beside(phrase):
         return False
     return phrase.kind == "vehicle" or any(head.endswith(phrase.head) for head in subject.heads)
 
 
-def _beside(phrase: _Phrase) -> bool:
+def _beside(phrase: Phrase) -> bool:
     """Whether a phrase says of a vehicle that it is one beside the report's own."""
     return bool(phrase.part or rule("references.elsewhere").match(phrase.match.string, phrase.match.end()))
 
@@ -194,7 +193,7 @@ def number_actors(text: Traced) -> Traced:
     if numbers_somebody(text.text):
         return text
     automated = _automated(text.text)
-    cast = _Cast([_Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
+    cast = Cast([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
     return numbered(text, Numbering(cast))
 
 
@@ -224,7 +223,7 @@ def _automated(text: str) -> bool:
 class Numbering:
     """Fills in numbers, phrase by phrase in the order of the text."""
 
-    cast: _Cast
+    cast: Cast
     announcing: bool = False
     at: int = 0
 
@@ -235,9 +234,9 @@ class Numbering:
 
     def fill(self, match: re.Match[str]) -> str:
         """What stands for a phrase: the number alone, or behind the words that first describe somebody."""
-        phrase = _Phrase(match)
+        phrase = Phrase(match)
         self.at += 1
-        if self._is_nobody(phrase):
+        if self.is_nobody(phrase):
             return match.group()
         if match["attendant"]:
             return f"{'The' if match.group()[0].isupper() else 'the'} driver of V1"
@@ -252,7 +251,7 @@ class Numbering:
         actor.part = actor.part or phrase.part
         return self._written(phrase, actor, known is None)
 
-    def _is_nobody(self, phrase: _Phrase) -> bool:
+    def is_nobody(self, phrase: Phrase) -> bool:
         match = phrase.match
         before = match.string[max(0, match.start() - _NEAR) : match.start()]
         behind = rule("references.part").match(match.string, match.end())
@@ -271,12 +270,12 @@ class Numbering:
     def _has(self, kind: str) -> bool:
         return any(a.kind == kind for a in self.cast.actors)
 
-    def _is_subject(self, phrase: _Phrase) -> bool:
+    def _is_subject(self, phrase: Phrase) -> bool:
         if self.cast.subject():
             return False
         return bool(phrase.match["automated"]) if self.cast.automated else phrase.kind not in ("pedestrian", "animal")
 
-    def _known(self, phrase: _Phrase) -> _Actor | None:
+    def _known(self, phrase: Phrase) -> Actor | None:
         match = phrase.match
         subject = self.cast.subject()
         if phrase.match["automated"] and subject and rule("references.aboard").match(match.string, match.end()):
@@ -287,29 +286,14 @@ class Numbering:
             return self.cast.meant(phrase) or self.cast.open(phrase)
         return self.cast.open(phrase) if not self.announcing else None
 
-    def _written(self, phrase: _Phrase, actor: _Actor, first: bool) -> str:
+    def _written(self, phrase: Phrase, actor: Actor, first: bool) -> str:
         match = phrase.match
         owner = "'s" if match["many"] else ""
         if (actor.subject and match["automated"]) or not first:
             return f"V{actor.number}{owner}{phrase.clauses}"
         det, words = match["det"] or "the", match.group()[len(match["det"] or "") :].strip()
         det = {"another": "a", "one": "a", "its": "the"}.get(det.lower(), det)
-        return self._introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
+        return self.introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
 
-    def _introduced(self, words: str, number: str) -> str:
+    def introduced(self, words: str, number: str) -> str:
         return f"{words} {number}"
-
-
-class People(Numbering):
-    """Numbers people and cyclists alone, beside the one vehicle that a report numbers, and marks them as ours."""
-
-    @staticmethod
-    def beside_v1() -> People:
-        """V1 is there, and no other phrase means it."""
-        return People(_Cast([_Actor(1, "vehicle", set(), subject=True)], automated=True))
-
-    def _is_nobody(self, phrase: _Phrase) -> bool:
-        return phrase.kind not in _PEOPLE or not phrase.match["user"] or super()._is_nobody(phrase)
-
-    def _introduced(self, words: str, number: str) -> str:
-        return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"

@@ -10,8 +10,8 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
+from sgcad_core.narrative.cyclists import number_cyclists
 from sgcad_core.narrative.parked import number_parked
-from sgcad_core.narrative.people import number_people
 from sgcad_core.narrative.references import number_actors
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
 from sgcad_core.narrative.study import named_in_full
@@ -135,7 +135,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    numbered = number_parked(number_people(number_actors(named_in_full(text))))
+    numbered = number_parked(number_cyclists(number_actors(named_in_full(text))))
     blocks = [block for block in numbered.split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):

@@ -23,7 +23,7 @@ _NO_MODEL = rule("vehicles.no_model")
 
 _STOP = rule("vehicles.stop")
 _BESIDE = rule("references.unnumbered")
-"""A mark that `number_parked` and `number_people` leave, since no report writes so."""
+"""A mark that `number_parked` and `number_cyclists` leave, since no report writes so."""
 
 
 @dataclass(frozen=True)
@@ -134,8 +134,8 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
 
 
 def _marked(identity: Identity) -> Identity:
-    """Numbered here though the report numbers others: somebody on foot or on a bicycle, else a parked vehicle."""
-    return replace(identity, counted=True) if identity.kind in _LETTERS else replace(identity, beside=True)
+    """Numbered here though the report numbers others: somebody on a bicycle, else a parked vehicle."""
+    return replace(identity, counted=True) if identity.kind == "bicycle" else replace(identity, beside=True)
 
 
 _LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
