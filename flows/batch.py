@@ -153,6 +153,8 @@ class Crew:
 
     batch: Batch
     on_turn: OnTurn | None = None
+    done: frozenset[str] = frozenset()
+    """Jobs that this command has done already, under a crew before: not done again where all is done anew."""
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
     _workers: list[Worker] = field(default_factory=list)
@@ -182,7 +184,8 @@ class Crew:
 
     def reusable(self, job: Job) -> Ending | None:
         """The ending of a job that is done already."""
-        result = None if self.batch.fresh else job.folder.finished(job.digest)
+        anew = self.batch.fresh and job.name not in self.done
+        result = None if anew else job.folder.finished(job.digest)
         return Ending(result, reused=True) if result is not None else None
 
     def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:

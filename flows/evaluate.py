@@ -16,7 +16,7 @@ from prefect.client.orchestration import get_client
 from prefect.events.worker import EventsWorker
 from prefect.futures import as_completed
 from prefect.runtime import flow_run
-from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
+from prefect.settings import PREFECT_API_URL, PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
 
 from flows import cases, tracking
 from flows.batch import MAX_JOBS, Batch, Crew, Job, batch_of
@@ -24,11 +24,12 @@ from flows.chain import Ending
 from flows.showing import Showing, showing, shows_every_step
 from flows.tasks import Board, case_task, hush_prefect, plain, threads
 from flows.tracking import OnEnding
+from sgcad_core import settings
 
 MOST_NAMED = 3
 """Configs that the name of a flow run names."""
 DRAIN_S, STOP_S = 60.0, 2.0
-"""How long the last states may take to reach the server, at an ordinary end and at Ctrl-C."""
+"""How long the last states may take to reach the server, at an ordinary end and after a fault or Ctrl-C."""
 
 
 def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = False) -> None:
@@ -41,16 +42,23 @@ def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding,
     watches this one.
     """
     hush_prefect()
-    run: list[tuple[str, int]] = []
-    try:
-        with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
+    with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None} | _server_named()):
+        run: list[tuple[str, int]] = []
+        patience = STOP_S  # after a fault nobody may be there to take the last states
+        try:
             flow_of = _flow(batch, plan, crew, on_ending, run, lasting)
             flow_of([c.name for c in batch.configs], len(batch.cases), str(batch.out))
-    finally:
-        patience = STOP_S if crew.stopping.is_set() else DRAIN_S
-        EventsWorker.drain_all(timeout=patience)
-    for identity, task_runs in run:
-        _settle(identity, task_runs, patience)
+            patience = DRAIN_S
+        finally:
+            EventsWorker.drain_all(timeout=patience)
+        for identity, task_runs in run:
+            _settle(identity, task_runs, patience)
+
+
+def _server_named() -> dict[Any, str]:
+    """The server of now: Prefect read its settings when it was imported, and a lost server has a successor."""
+    url = settings.prefect_url()
+    return {PREFECT_API_URL: url} if url else {}
 
 
 def run_name(batch: Batch) -> str:

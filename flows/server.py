@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from sgcad_core import settings
-from sgcad_core.errors import MissingTool
+from sgcad_core.errors import MissingTool, SgcadError
 
 START_S = 180.0
 """The first start makes the database: 14 s on two idle cores, a minute on busy ones."""
@@ -45,6 +45,14 @@ LEAN = BULK | {
 """
 
 
+class ServerLost(MissingTool):
+    """A server of our own ended while it was needed; `how`, in a few words."""
+
+    def __init__(self, how: str) -> None:
+        super().__init__(f"{how}; finished cases are kept, run the same command again to go on")
+        self.how = how
+
+
 class Server:
     """A server process; `wait` until it answers."""
 
@@ -62,18 +70,27 @@ class Server:
                 )
 
     def wait(self) -> None:
-        """Return when the server answers. Raises MissingTool if it never does."""
+        """Return when the server answers. Raises MissingTool if it never does, ServerLost if somebody killed it."""
         deadline = time.monotonic() + START_S
         while self.process.poll() is None and time.monotonic() < deadline:
             if answers(self.address):
                 return
             time.sleep(0.05)
         code = self.process.poll()
+        if code is not None and code < 0:
+            raise ServerLost(self.lost())
         ended = f"silent for {START_S:g} s" if code is None else f"ended with code {code}"
         raise MissingTool(
             f"Prefect's server does not start ({ended}); look at its messages above, at PREFECT_HOME (can it be "
             "written?), or name a running server: export PREFECT_API_URL=http://.../api"
         )
+
+    def lost(self) -> str:
+        """How the process ended though nobody stopped it; empty while it runs."""
+        if (code := self.process.poll()) is None:
+            return ""
+        how = f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"
+        return f"Prefect's server {how}"
 
     def stop(self) -> None:
         """End the process."""
@@ -101,7 +118,7 @@ def prefect_server() -> Iterator[Server | None]:
     """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
 
     Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
-    if the user's server does not answer.
+    if the user's server does not answer, ServerLost where the block fails because ours has ended.
     """
     if url := settings.prefect_url():
         if not answers(url):
@@ -115,6 +132,12 @@ def prefect_server() -> Iterator[Server | None]:
     settings.use_prefect_url(server.address)
     try:
         yield server
+    except SgcadError:
+        raise
+    except Exception as fault:
+        if told := server.lost():
+            raise ServerLost(told) from fault
+        raise
     finally:
         settings.use_prefect_url("")
         server.stop()

@@ -5,6 +5,7 @@ Knows when to import Prefect, and that a batch with nothing left to do needs non
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 from flows import tracking
 from flows.batch import Batch, Crew, Job, OnTurn
 from flows.chain import Ending
-from flows.server import Server, prefect_server
+from flows.server import Server, ServerLost, prefect_server
 from flows.tracking import OnEnding
 from sgcad_core import settings
 
@@ -50,7 +51,25 @@ def evaluate(
 
 
 def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
-    """Do what is left to do; processor seconds of the server."""
+    """Do what is left to do; processor seconds of the server.
+
+    A server of our own that is lost gets one successor, since cases do not need it to be done: it only shows them.
+    """
+    told: set[str] = set()
+
+    def tell(job: Job, ending: Ending, untracked: str) -> None:
+        if job.name not in told:
+            told.add(job.name)
+            on_ending(job, ending, untracked)
+
+    try:
+        return _under_a_server(batch, plan, crew, tell)
+    except ServerLost as lost:
+        logging.getLogger(__name__).warning("%s; now another is started", lost.how)
+    return _under_a_server(batch, plan, Crew(batch, crew.on_turn, frozenset(told)), tell)
+
+
+def _under_a_server(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
     try:
         with prefect_server() as server:
             if server:  # it takes seconds to start

@@ -162,23 +162,23 @@ def _hunted(peace: Undisturbed, folder: Path, name: str, most: int = 5, after: s
     process, hits = place.start(peace.target.command(folder)), 0
     if after:
         _wait_for(folder / "out", after)
-    deadline = time.monotonic() + 120
+    deadline, command = time.monotonic() + 120, psutil.Process(process.pid)
     while hits < most and process.poll() is None and time.monotonic() < deadline:
-        hits += _kill_one(place, name)
-        time.sleep(0.005)
+        hits += _kill_one(command, name)
+        time.sleep(0.001)
     code, faults = _ended(process, place)
     faults += [] if hits else [f"{name} was never seen"]
     return _told(name, code, faults, place, again(peace, place))
 
 
-def _kill_one(place: Place, name: str) -> int:
-    for process in place.alive():
-        try:
-            if any(name in part for part in process.cmdline()[:4]):
-                process.kill()
-                return 1
-        except psutil.Error:
-            continue
+def _kill_one(command: psutil.Process, name: str) -> int:
+    """Kill the first descendant of a command that has the name; netconvert lives for 20 ms, so look quickly."""
+    with contextlib.suppress(psutil.Error):
+        for process in command.children(recursive=True):
+            with contextlib.suppress(psutil.Error):
+                if any(name in part for part in process.cmdline()[:4]):
+                    process.kill()
+                    return 1
     return 0
 
 

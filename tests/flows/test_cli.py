@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import httpx
+import psutil
 import pytest
 
 from flows import cli
@@ -359,6 +360,35 @@ def test_a_killed_batch_goes_on_where_it_stopped_and_leaves_no_process(reports, 
     assert statuses(tmp_path / "out") == {"a": "generated", "b": "generated", "c": "generated"}
     assert (tmp_path / "out" / "kit" / "a" / "result.json").stat().st_mtime_ns == before
     assert not list((tmp_path / "out" / "kit").glob(".partial-*"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("when", ["as it starts", "after the first case"])
+def test_a_batch_whose_prefect_server_is_killed_ends_under_another(server, reports, config_file, tmp_path, when):
+    """No case needs the server; before, a traceback ended the batch."""
+    folder, config, out = reports(a="", b="SLOW", c=""), config_file(), tmp_path / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("PREFECT_API_URL")
+        command = [*SGCAD, "evaluate", str(folder), "--config", str(config), "--out", str(out)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while when != "as it starts" and not (out / "kit" / "a" / "result.json").is_file():
+            time.sleep(0.02)
+        _server_of(process).kill()
+        said, complaints = process.communicate(timeout=200)
+    assert process.returncode == 0, complaints
+    assert "Prefect's server was killed by signal 9; now another is started" in complaints
+    assert "Traceback" not in complaints
+    assert statuses(out) == {"a": "generated", "b": "generated", "c": "generated"}
+    row = next(line for line in said.splitlines() if line.split()[:1] == ["kit"]).split()
+    assert row[1:4] == ["3", "0", "0"]
+
+
+def _server_of(process):
+    while True:
+        for child in psutil.Process(process.pid).children():
+            if "flows.server" in child.cmdline():
+                return child
+        time.sleep(0.02)
 
 
 @pytest.mark.slow
