@@ -157,6 +157,8 @@ class Crew:
     """Jobs that this command has done already, under a crew before: not done again where all is done anew."""
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
+    """Jobs in worker processes that nobody has asked for yet; an ending is handed out once and not kept."""
+    _began: set[str] = field(default_factory=set)
     _workers: list[Worker] = field(default_factory=list)
     _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
     _threads: ThreadPoolExecutor | None = None
@@ -179,6 +181,7 @@ class Crew:
         for worker in self._workers:
             self._idle.put(worker)
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
+        self._began = {job.name for job in waiting}
         for job in waiting:
             self._begun[job.name] = self._threads.submit(self._in_worker, job)
 
@@ -191,7 +194,7 @@ class Crew:
     def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:
         """Wait for a job, or do it here and now, telling every step. Raises MissingTool, ConfigError."""
         if job.name in self._begun:
-            return self._begun[job.name].result()
+            return self._begun.pop(job.name).result()
         if done := self.reusable(job):
             return done
         watched = self._unless_stopped(job, on_attempt)
@@ -202,7 +205,7 @@ class Crew:
 
     def began(self, job: Job) -> bool:
         """Whether the job runs in a worker process (its steps are then told when it ends)."""
-        return job.name in self._begun
+        return job.name in self._began
 
     def _in_worker(self, job: Job) -> Ending:
         self._check()

@@ -120,8 +120,8 @@ def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding, shown:
         job = submitted[done]
         if job.name not in board.endings:
             done.result()  # the task itself crashed: Prefect's own fault, said as it is
-        ending = board.endings[job.name]
-        on_ending(job, ending, shown.case(job, ending, board.graphs.get(job.name)))
+        ending, graph = board.take(job.name)
+        on_ending(job, ending, shown.case(job, ending, graph))
 
 
 @flow(name="evaluate-deployed", flow_run_name="evaluate {folders}", task_runner=threads(MAX_JOBS), persist_result=False)

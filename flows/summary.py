@@ -4,7 +4,10 @@ Writes to stdout; what is shown on the way stands in flows/watching.py."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -25,6 +28,11 @@ TABLE_WIDTH = 104
 """Columns where the output is no terminal; rich would take 80 and drop a column."""
 
 
+FEW = 10
+"""Of so many endings everything is kept; of more what the summary tells, since a result is some 50 kB of memory."""
+_KEPT = ("case", "status", "reason", "seconds", "judge", "person", "near_crash")
+
+
 @dataclass
 class Tally:
     """Endings of a batch, counted config by config."""
@@ -32,21 +40,23 @@ class Tally:
     batch: Batch
     endings: list[tuple[Job, Ending]] = field(default_factory=list)
     untracked: list[str] = field(default_factory=list)
+    statuses: Counter[str] = field(default_factory=Counter)
 
     def add(self, job: Job, ending: Ending, untracked: str = "") -> None:
         """Count one ending."""
-        self.endings.append((job, ending))
+        whole = len(self.batch.configs) * len(self.batch.cases) <= FEW
+        self.endings.append((job, Ending(ending.result if whole else _brief(ending.result), reused=ending.reused)))
+        self.statuses[ending.result["status"]] += 1
         if untracked:
             self.untracked.append(f"{job.name}: {untracked}")
 
     def exit_code(self) -> int:
         """1 if a case failed or was exhausted, else 0."""
-        return int(any(e.result["status"] in ("failed", "exhausted") for _, e in self.endings))
+        return int(self.statuses["failed"] + self.statuses["exhausted"] > 0)
 
     def in_words(self) -> str:
         """Counts of the statuses so far, in words."""
-        counts = {s: sum(e.result["status"] == s for _, e in self.endings) for s in STATUSES}
-        return ", ".join(f"{n} {status}" for status, n in counts.items() if n)
+        return ", ".join(f"{self.statuses[status]} {status}" for status in STATUSES if self.statuses[status])
 
     def of(self, config: str) -> list[Ending]:
         """Endings of one config."""
@@ -58,6 +68,17 @@ class Tally:
         folders = (CaseFolder(batch.out, config.name, case.id) for config in batch.configs for case in batch.cases)
         pages = (folder.path / "player.html" for folder in folders)
         return next((str(page) for page in pages if page.is_file()), None)
+
+
+def _brief(result: Mapping[str, Any]) -> dict[str, Any]:
+    """What the summary of a long batch tells of a result."""
+    found = {key: result[key] for key in _KEPT if key in result}
+    if "collision" in result:
+        found["collision"] = {key: result["collision"][key] for key in ("declared", "realised")}
+    if account := result.get("account"):
+        lacking = [item for item in account["items"] if item["kind"] == "lacks"]
+        found["account"] = {**account, "items": lacking}
+    return found | {"notes": [note for note in result.get("notes", ()) if note["kind"] == "limit"]}
 
 
 def show(tally: Tally) -> None:

@@ -45,11 +45,14 @@ class Board:
     """Whether every step of a case is shown."""
     fatal: SgcadError | None = None
 
-    @property
-    def steps(self) -> int:
-        """How many task runs of steps were shown; tracking is one of them."""
-        told = ((self.graphs[name], ending) for name, ending in self.endings.items() if not ending.reused)
-        return sum(graph.every + sum(map(graph.shows, ending.steps)) for graph, ending in told)
+    steps: int = 0
+    """How many task runs of steps were shown of the cases taken; tracking is one of them."""
+
+    def take(self, job: str) -> tuple[Ending, Graph]:
+        """What a task left of a job; handed out once, since a long batch would keep 80 kB of memory a case."""
+        ending, graph = self.endings.pop(job), self.graphs.pop(job)
+        self.steps += 0 if ending.reused else graph.every + sum(map(graph.shows, ending.steps))
+        return ending, graph
 
 
 def plain(name: str) -> str:

@@ -17,7 +17,8 @@ from typing import Any
 
 from flows import links
 
-TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)')
+TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)|"shared": ?\[[^\]]*\]')
+"""How long something took, and which stages another arm had done by then: both go by who was first."""
 SKIPPED = (".tracked", ".tracking", "links.json")
 """A tracker's marks hold when its database was made, links the ids of runs."""
 STAGED = re.compile(rb"sgcad-scratch-inbox-\w+")
