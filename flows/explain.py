@@ -38,7 +38,7 @@ def _of_run(folder: Path) -> str:
 
 
 def _sentences(report: CrashReport) -> list[tuple[int, int, str]]:
-    return [(s.start, s.end, s.text) for s in report.reading.sentences]
+    return [(s.start, s.end, report.reading.text_of(s)) for s in report.reading.sentences]
 
 
 def account(title: str, sentences: Sequence[tuple[int, int, str]], facts: Sequence[Fact]) -> str:

@@ -108,8 +108,10 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
 
 def _sentences(reading: Reading | None) -> list[dict[str, Any]]:
     """The sentences that facts point to: places in the narrative as it was written, the text as it was read."""
-    told = reading.sentences if reading else ()
-    return [{"start": s.start, "end": s.end, "role": s.role, "text": s.text} for s in told]
+    if reading is None:
+        return []
+    told = reading.sentences
+    return [{"start": s.start, "end": s.end, "role": s.role, "text": reading.text_of(s)} for s in told]
 
 
 def seconds_of(record: CaseRecord) -> dict[str, float]:

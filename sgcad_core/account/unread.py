@@ -17,8 +17,9 @@ from sgcad_core.narrative.text import NUMBERS, Sentence
 from sgcad_core.roads.drawn import junctions
 
 _VEHICLE = rule("common.vehicle")
-_COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS = (
+_COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
     rule("account.counted"), rule("account.further"), rule("account.animal"), rule("account.many_legs"),
+    rule("account.introduced"),
 )  # fmt: skip
 _TURNING = rule("deeds.turning")
 _ASIDE = ("lane_change", "merge", "overtaking", "crossing_centerline", "turn_", "u_turn", "departing_road")
@@ -58,11 +59,17 @@ def _lacks(sentence: Sentence, what: str, value: str, text: str, reason: str) ->
 
 
 # ------------------------------------------------------------------ who
+def _named(made: Made, sentence: Sentence) -> set[str]:
+    """Ids of everybody whom a sentence names."""
+    return {made.reading.actor(m[0]) for m in _VEHICLE.finditer(sentence.text)}
+
+
 def _numbers(made: Made, sentence: Sentence) -> Iterator[Item]:
     """Numbered vehicles that nobody read, and more vehicles counted than there are."""
-    known = {v.id for v in made.reading.crash.vehicles}
-    for name in sorted({m[0] for m in _VEHICLE.finditer(sentence.text)} - known):
-        yield _lacks(sentence, "vehicle", name, f"{name} is named", "it is not in the scenario")
+    known = {v.id for v in made.reading.crash.vehicles} | set(made.tracks)
+    for name in sorted(_named(made, sentence) - known):
+        who = next((f"{m['words']!r}" for m in _INTRODUCED.finditer(sentence.text) if m["id"] == name), name)
+        yield _lacks(sentence, "vehicle", name, f"{who} is named", "it is not in the scenario")
     for match in _COUNTED.finditer(sentence.text):
         count = NUMBERS.get(match["n"].lower()) or int(match["n"])
         there = sum(name.startswith("V") for name in made.tracks)
@@ -110,7 +117,7 @@ def _contact(made: Made, sentence: Sentence) -> Iterator[Item]:
     """Two vehicles in a sentence that tells a contact, of whom no contact was read."""
     if sentence.role != "impact" or made.reading.crash.near_crash:
         return
-    names = {m[0] for m in _VEHICLE.finditer(sentence.text)}
+    names = _named(made, sentence)
     crash = made.reading.crash
     pairs = [{c.striker, c.struck} for c in crash.contacts if c.stated] + [{i.actor, i.other} for i in crash.impacts]
     carried = any(f.start == sentence.start and f.field.startswith(("contacts", "impacts")) for f in made.reading.facts)
@@ -121,7 +128,7 @@ def _contact(made: Made, sentence: Sentence) -> Iterator[Item]:
 
 def _deeds(made: Made, sentence: Sentence) -> Iterator[Item]:
     """A turn, a change of lane or the like before the first contact that none of the named vehicles makes or means."""
-    names = {m[0] for m in _VEHICLE.finditer(sentence.text)}
+    names = _named(made, sentence)
     vehicles = [v for v in made.reading.crash.vehicles if v.id in names]
     if not vehicles or sentence.start > _first_told(made):
         return

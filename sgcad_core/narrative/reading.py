@@ -67,6 +67,16 @@ class Reading:
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
     edits: tuple[Edit, ...] = ()
     """What people said otherwise; all of the above then follows them (`sgcad_core.narrative.mended`)."""
+    called: Mapping[str, str] = field(default_factory=dict)
+    """Of a text that numbers nobody: number that a sentence gives somebody -> id of that person, cyclist or animal."""
+
+    def actor(self, name: str) -> str:
+        """The id of whom a sentence names so."""
+        return self.called.get(name, name)
+
+    def text_of(self, sentence: Sentence) -> str:
+        """A sentence as it was understood, with everybody's id in it."""
+        return rule("common.vehicle").sub(lambda m: self.actor(m[0]), sentence.text) if self.called else sentence.text
 
 
 def read(narrative: str | Traced) -> Reading:
@@ -169,7 +179,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
     lost = bool(_LOST.search(narrative))
-    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts)
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, called=called)
 
 
 def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
