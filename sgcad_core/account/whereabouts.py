@@ -49,7 +49,9 @@ def _at_sign(made: Made, sentence: Sentence) -> Iterator[Item]:
     """Who stops at a sign comes on a leg that has one."""
     spec, behavior = made.network.spec, made.scenario.behavior
     for match in _AT_SIGN.finditer(sentence.text):
-        actor = next((a for a in behavior.actors if a.id == made.reading.actor(match["who"])), None) if behavior else None
+        actor = (
+            next((a for a in behavior.actors if a.id == made.reading.actor(match["who"])), None) if behavior else None
+        )
         road = next((r for r in spec.roads if actor and r.id == actor.road), None) if spec else None
         if spec is None or actor is None or road is None:
             continue

@@ -81,9 +81,10 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions = road_mentions(_telling(told), who.ids)
     crash = _oriented(crash, mentions, told)
-    headings = {v.id: v.heading for v in crash.vehicles if v.heading}
+    driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
+    headings = {v.id: v.heading for v in driven if v.heading}
     gathered = gather(mentions, headings)
-    junction = replace(junction_of(told, crash.vehicles, gathered), unsupported=unsupported_places(told))
+    junction = replace(junction_of(told, driven, gathered), unsupported=unsupported_places(told))
     limits, bends = speed_limits(told, headings), curves(told, headings)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)

@@ -17,6 +17,8 @@ from sgcad_core.account.unread import unread_items
 from sgcad_core.account.words import named, phrase, shown
 from sgcad_core.config import load
 from sgcad_core.facts import Fact
+from sgcad_core.narrative.text import split_sentences
+from sgcad_core.narrative.traced import Traced
 from sgcad_core.settings import ROOT
 
 DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
@@ -190,3 +192,11 @@ def test_a_note_points_at_the_fact_that_it_is_about():
 def test_a_note_on_two_vehicles_points_at_their_contact():
     facts = {f.field: f for f in (fact("contacts.0.striker", "V1"), fact("contacts.0.struck", "V2"))}
     assert notes_of("plan", ["the contact of V1 and V2 came late"], facts)[0].field == "contacts.0.striker"
+
+
+def test_whom_the_text_describes_and_the_scenario_lacks_is_told_by_its_words(made):
+    text = "The car (V1) was northbound. An old tractor (V7) stood by. A man on foot (V8) looked on."
+    reading = replace(made.reading, sentences=tuple(split_sentences(Traced.of(text))), called={"V8": "V1"})
+    found = [item.text for item in unread_items(replace(made, reading=reading)) if item.field == "text.vehicle"]
+    assert found == ["'old tractor' is named"]
+    assert reading.text_of(reading.sentences[-1]) == "A man on foot (V1) looked on."

@@ -56,6 +56,17 @@ def test_a_lane_that_is_crossed_or_blocked_is_no_width_of_a_street(more: str) ->
     assert _counts(f"V1 was traveling north on a one-way street. {more}") == {"N": None}
 
 
+@pytest.mark.parametrize(
+    "walker",
+    ["stepped from between two parked cars on the east side of the street", "walked into the road from the right"],
+)
+def test_who_walks_across_makes_no_road(walker: str) -> None:
+    facts = road_facts(f"A pedestrian {walker} and was hit by the front of a northbound taxi.")
+    assert {v.id: v.heading for v in facts.crash.vehicles} == {"P1": "W", "V1": "N"}
+    assert facts.junction.kind == "none"
+    assert [road.axis for road in facts.roads] == ["N"]
+
+
 def test_another_one_way_street_told_later_lends_no_lanes() -> None:
     text = ("V1 was northbound on a one-way street. V2 was westbound on a four-lane two-way road. A one-way street "
             "with three lanes runs parallel to the scene.")  # fmt: skip
