@@ -90,3 +90,8 @@ def apart(a: float, b: float) -> float:
 def side_hit(from_deg: float) -> Area:
     """The side that a vehicle heading `from_deg` clockwise of mine hits with its front."""
     return min(HIT_FROM, key=lambda area: apart(HIT_FROM[area], from_deg))
+
+
+def is_sideswipe(blow: Blow) -> bool:
+    """Whether the blow's verb says that flanks touched."""
+    return blow.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap"))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.draft import HIT_FROM, Draft, Settled, apart, bend_deg, end_of
+from sgcad_core.narrative.draft import HIT_FROM, Draft, Settled, apart, bend_deg, end_of, is_sideswipe
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.specs import Area
 
@@ -22,6 +22,7 @@ def relative(draft: Draft, out: Settled, a: str, b: str, pairs: list[Blow]) -> i
     _add_maneuvers(score, draft, out, a, b)
     blow = next((x for x in pairs if {a, b} == {x.actor, x.other}), None)
     if blow:
+        score[0] += 0.5 if is_sideswipe(blow) else 0.0  # five in six sideswipes are of two who drive the same way
         _add_contact(score, out, a, b, blow)
     return max(QUARTERS, key=lambda q: score[q])
 
@@ -56,7 +57,7 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
             score[180] += 2.0
         if maneuver == "crossing_centerline":
             score[180] += 1.5
-        if maneuver in ("lane_change_left", "lane_change_right", "merge"):
+        if motion.origin == RAMP or maneuver in ("lane_change_left", "lane_change_right", "merge"):
             score[0] += 2.0 if motion.origin == RAMP else 1.0  # a ramp runs beside the road before it joins
         if motion.origin in DRIVES:
             score[90] += 1.0

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from sgcad_core.narrative.compass import between
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.draft import AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, side_hit
+from sgcad_core.narrative.draft import (
+    AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, is_sideswipe, side_hit,
+)  # fmt: skip
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area
 
@@ -28,7 +30,7 @@ def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
     area_a, area_b = _corners(draft, out, blow)
     if draft.who.counted and not (area_a and area_b):
         area_a, area_b = _brushed(out, blow, area_a, area_b)
-    if area_a is None and area_b is None and blow.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap")):
+    if area_a is None and area_b is None and is_sideswipe(blow):
         area_a, area_b = _sideswiped(out, a, b)
     if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
         a, b = b, a
