@@ -135,7 +135,7 @@ def _mention(
     if how == "on" and not axis:
         axis = _travel_axis(lead)
     return RoadMention(
-        said, _kind(phrase, head), axis or _axis_of_lanes(facts), toward, _relation(phrase, lead),
+        said, _kind(phrase, head, lead), axis or _axis_of_lanes(facts), toward, _relation(phrase, lead),
         bool(rule("mentions.definite").match(phrase)),
         vehicles, how, facts, told.number,
     )  # fmt: skip
@@ -222,12 +222,12 @@ def _how(tail: str) -> How | None:
     return "on" if on and not _LEFT_IT.search(tail) else None
 
 
-def _kind(phrase: str, head: str) -> Kind:
+def _kind(phrase: str, head: str, lead: str) -> Kind:
     word = head.lower()
     if RAMP in word:
         return RAMP
     if rule("mentions.driveway").search(word) or rule("mentions.private").search(phrase):
         return DRIVEWAY
-    if rule("mentions.freeway").search(phrase):
+    if rule("mentions.freeway").search(phrase) and not rule("mentions.aside").search(lead):
         return "freeway"
     return "crossroads" if "intersection" in word else "road"

@@ -98,7 +98,7 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
 
 
 def _informative(m: RoadMention) -> bool:
-    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in JOINING)
+    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in (*JOINING, "freeway"))
 
 
 def _special(roads: list[GatheredRoad], mention: RoadMention, headings: Mapping[str, Compass]) -> None:

@@ -284,6 +284,27 @@ def test_a_turn_that_is_made_is_no_lane() -> None:
     assert legs(text)["N"] == legs(text)["S"] == (2, 2)
 
 
+@pytest.mark.parametrize(
+    ("told", "kind"),
+    [
+        ("A van slowed on the interstate", "freeway"),
+        ("A van was merging from an on-ramp onto the freeway", "freeway"),
+        ("A van was on Elm Street near the freeway", "road"),
+        ("A van came from the freeway onto Elm Street", "road"),
+    ],
+)
+def test_a_freeway_is_the_road_of_whom_it_carries(told: str, kind: str) -> None:
+    assert road_facts(f"{told} and was sideswiped by a pickup in the right lane.").streets[0].kind == kind
+
+
+def test_two_whose_flanks_touch_on_a_ramp_s_road_drive_the_same_way() -> None:
+    facts = road_facts("While merging from the on-ramp onto the freeway, a truck sideswiped an SUV in the right lane.")
+    (contact,) = facts.crash.contacts
+    assert len({v.heading for v in facts.crash.vehicles}) == 1
+    assert facts.crash.vehicles[0].origin == facts.junction.kind == "ramp"
+    assert (contact.striker_area, contact.struck_area) == ("right", "left")
+
+
 @pytest.mark.parametrize(("road", "mph"), [("freeway", 60), ("rural road", 50), ("road", None)])
 def test_the_kind_of_road_stands_in_for_its_limit(road: str, mph: int | None) -> None:
     found = layout(V + f"was traveling north in the left lane of a four-lane {road}.")
