@@ -8,7 +8,7 @@ export HF_HUB_OFFLINE := 1
 SIDE_BY_SIDE = -n $(or $(WORKERS),logical) --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-fast test-thorough test-hosts up down check-deploy lint bench bench-decode bench-faults train-mini qc clean pages
+.PHONY: help setup demo test test-slow test-fast test-thorough test-hosts up down check-deploy lint bench bench-decode bench-faults train-mini qc clean pages
 .PHONY: docs docs-serve lock licenses sbom
 
 help: ## list the targets
@@ -27,14 +27,16 @@ $(READY): pyproject.toml deploy/constraints.txt
 demo: setup ## three bundled reports become scenarios; prints where to look and what to do next
 	@$(BIN)/python -m flows.demo
 
-test: setup ## the whole test suite, as many tests at once as there are cores (WORKERS=2)
-	$(BIN)/python -m pytest $(SIDE_BY_SIDE)
+test: setup ## the tests but the slow ones, as many at once as there are cores (WORKERS=2)
+	$(BIN)/python -m pytest -m "not slow" $(SIDE_BY_SIDE)
+
+test-slow: setup ## the rest: programs killed for real, wheels and plugins in fresh environments, browsers, trainings
+	$(BIN)/python -m pytest -m slow $(SIDE_BY_SIDE)
 
 test-thorough: setup ## the property tests with many more examples: before a release, or after a change to the planner
 	SGCAD_THOROUGH=1 $(BIN)/python -m pytest tests/sgcad_core/planner tests/sgcad_core/formats $(SIDE_BY_SIDE)
 
-test-fast: setup ## the tests that take no more than seconds
-	$(BIN)/python -m pytest -m "not slow" $(SIDE_BY_SIDE)
+test-fast: test ## what `make test` was called before
 
 up: setup ## server, worker, MLflow and deployments on this machine (UP="--server-port 4300 ...")
 	$(BIN)/python -m deploy.local up $(UP)

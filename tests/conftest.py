@@ -4,12 +4,16 @@ A shell without job control starts background jobs with SIGINT ignored, and chil
 makes them start with the usual one. A worker of pytest-xdist (`make test`) has one core for itself and its programs:
 torch and its like would start as many threads in each as there are cores, and wait for each other.
 
+Compiled modules are kept, also where the environment forbids it, as images for containers do: each worker and each
+program that a test starts would compile the project anew.
+
 Property tests draw the same examples in every run, so that a verdict depends on the change, not on luck or load; `make
 test-thorough` draws new ones, and more.
 """
 
 import os
 import signal
+import sys
 
 from hypothesis import settings
 
@@ -17,6 +21,9 @@ from tests.effort import THOROUGH
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 if "PYTEST_XDIST_WORKER" in os.environ:
     for threads in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS"):

@@ -116,6 +116,14 @@ def test_the_tree_in_the_readme_is_the_tree():
     assert named == top - prose
 
 
+def test_ci_runs_the_tests_that_make_test_leaves_out():
+    rules = dict(re.findall(r"^(test|test-slow): setup .*\n\t(.*)", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    assert rules["test"].replace('-m "not slow"', "-m slow") == rules["test-slow"]
+    lines = (ROOT / ".ci" / "run").read_text().splitlines()
+    assert {"make test", "make test-slow"} <= set(lines)
+    assert "set -euo pipefail" in lines
+
+
 def test_import_costs_nothing_heavy():
     heavy = ("torch", "prefect", "mlflow", "lancedb")
     code = f"import sys, sgcad_core.config, flows.cli; print([m for m in {heavy} if m in sys.modules])"

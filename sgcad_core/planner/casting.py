@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import cast
 
 from sgcad_core.planner.course import Course, find_course
 from sgcad_core.planner.motion import Motion
@@ -21,6 +22,14 @@ _SPEED_SHOWS_S = 0.3
 
 
 def course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
+    """The course of an actor, made once: of other readings of a report most actors stay as they are."""
+    if (known := graph.derived.get((actor, gentle))) is not None:
+        return cast("Course", known)
+    course = graph.derived[actor, gentle] = _course_of(graph, actor, gentle)
+    return course
+
+
+def _course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
     course = find_course(graph, actor, gentle)
     if actor.maneuver == "backing" and course.stalls:
         return out_of_stall(course, size_m(actor)[0])

@@ -54,6 +54,20 @@ class _Touches(NamedTuple):
     second: Floats
 
 
+class _Judged(NamedTuple):
+    """Touches with the side codes of both motions, the smaller of both margins, and how deep they really are."""
+
+    touches: _Touches
+    sides: tuple[Ints, Ints]
+    margins: Floats
+    depth: Floats
+
+
+_KEPT = 2_000
+_known: dict[tuple[bytes, bytes], tuple[_Judged | None]] = {}
+"""Touches of pairs of motions, some 4 KB each: other readings of a report, and other sides, try many pairs again."""
+
+
 def meet(
     first: Motion,
     second: Motion,
@@ -66,10 +80,10 @@ def meet(
 
     `spins`: how each is to turn behind it: 1 counter-clockwise, -1 clockwise, 0 as it comes. `glances`: off center.
     """
-    touches = _touches(first, second)
-    if touches is None:
+    judged = _judged(first, second)
+    if judged is None:
         return None
-    sides, margins, depth = _judge(first, second, touches.first, touches.second)
+    touches, sides, margins, depth = judged
     good = (depth > 0.2 * DEPTH_M) & (depth < 1.2 * DEPTH_M) & (margins > _LEAST_MARGIN)
     if wanted is not None:
         good &= (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
@@ -87,6 +101,19 @@ def meet(
 def _side(code: int) -> Area:
     names: tuple[Area, ...] = ("front", "left", "back", "right")
     return names[int(code)]
+
+
+def _judged(first: Motion, second: Motion) -> _Judged | None:
+    """Where two motions touch, told once for all who ask; None where they do not."""
+    key = first.digest, second.digest
+    if known := _known.get(key):
+        return known[0]
+    touches = _touches(first, second)
+    if len(_known) >= _KEPT:
+        _known.clear()
+    found = touches and _Judged(touches, *_judge(first, second, touches.first, touches.second))
+    _known[key] = (found,)
+    return found
 
 
 def _touches(first: Motion, second: Motion) -> _Touches | None:
@@ -117,8 +144,12 @@ def _near(p: Floats, q: Floats, reach_m: float) -> tuple[Ints, Ints]:
     for _ in range(2):
         rows = rows[_about(p[rows], q[columns], reach_m)]
         columns = columns[_about(q[columns], p[rows], reach_m)]
-    dx, dy = p[rows, None, 0] - q[None, columns, 0], p[rows, None, 1] - q[None, columns, 1]
-    i, j = np.nonzero(dx * dx + dy * dy < reach_m * reach_m)
+    apart = p[rows, 0][:, None] - q[columns, 0]
+    apart *= apart  # in place: these matrices have some 100,000 numbers
+    north = p[rows, 1][:, None] - q[columns, 1]
+    north *= north
+    apart += north
+    i, j = np.divmod(np.flatnonzero(apart < reach_m * reach_m), max(len(columns), 1))
     return rows[i], columns[j]
 
 

@@ -6,6 +6,7 @@ against each other. Knows no other actor. SI units.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -124,6 +125,16 @@ class Motion:
     def penalties(self, time_s: ArrayLike) -> Floats:
         """How ill an encounter at own times fits the maneuver and the place."""
         return np.interp(self.stations(time_s), self.path.s_m, self.penalty)
+
+    @cached_property
+    def digest(self) -> bytes:
+        """What its poses follow from: two motions with the same one stand alike at all times."""
+        found = hashlib.blake2b(repr((self.size, self.standing)).encode(), digest_size=16)
+        path = self.path
+        for part in (path.points, path.s_m, path.heading_rad, self.time_s, self.station_m):
+            found.update(np.ascontiguousarray(part).tobytes())
+            found.update(b"|")
+        return found.digest()
 
     @cached_property
     def window_poses(self) -> Floats:

@@ -6,12 +6,12 @@ in its forward and edge "-R" in its backward direction. Knows no file format.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,6 +119,11 @@ class LaneGraph:
     circles: tuple[frozenset[str], ...] = ()
     """Nodes of each roundabout."""
     crossings: tuple[Crossing, ...] = ()
+
+    @cached_property
+    def derived(self) -> dict[Hashable, Any]:
+        """What was made of this network, by what it was made for: whoever makes it keeps it here."""
+        return {}
 
     @cached_property
     def center_of(self) -> Mapping[str, str]:

@@ -55,7 +55,6 @@ def test_a_report_that_one_arm_refuses_counts_for_none(right: list[int], refused
     assert shares[0] == shares[1]
 
 
-@pytest.mark.slow
 def test_the_embedded_model_is_asked_and_its_values_are_counted_by_source() -> None:
     reports = [make_report(seed, True, 0.6, {"text": 1.0}) for seed in range(61_000_000, 61_000_003)]
     pairs = [(report, as_report(report)) for report in reports]

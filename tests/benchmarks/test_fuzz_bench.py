@@ -14,7 +14,6 @@ def test_no_input_ends_otherwise_than_told(name, tmp_path):
     assert [f for seed in range(25) if (f := tried(KINDS[name], seed, tmp_path)).wrong] == []
 
 
-@pytest.mark.slow
 def test_no_report_ends_a_case_by_a_bug(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     assert [f for seed in range(12) if (f := tried(KINDS["case"], seed, tmp_path)).wrong] == []

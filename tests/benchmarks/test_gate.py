@@ -123,7 +123,6 @@ def test_another_decoder_or_other_weights_keep_their_groundings_elsewhere(tmp_pa
     assert files[0] == gate.default_file(load("mini.yaml"))
 
 
-@pytest.mark.slow
 def test_the_embedded_model_gives_groundings_that_are_kept_and_not_asked_again(tmp_path: Path) -> None:
     file = tmp_path / "gate.jsonl"
     reports = list(gate.made(1))

@@ -41,7 +41,6 @@ def test_a_case_that_kills_its_process_fails_alone(batch):
     assert "the worker process ended with exit code 3" in endings["b"].result["reason"]
 
 
-@pytest.mark.slow
 def test_a_process_killed_from_outside_costs_no_case(batch, tmp_path):
     endings = work(batch(a=f"DIE ONCE {tmp_path / 'killed'}"))
     assert (tmp_path / "killed").exists()
@@ -58,7 +57,6 @@ def test_running_again_skips_what_is_done_and_tries_failures_again(batch):
     assert not any(e.reused for e in fresh.values())
 
 
-@pytest.mark.slow
 def test_a_stopped_batch_leaves_no_failed_case(batch, tmp_path):
     made = batch(a="SLOW", b="SLOW", c="")
     plan, crew = made.plan(), Crew(made)

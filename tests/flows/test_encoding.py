@@ -15,6 +15,7 @@ def test_an_unknown_encoding_is_refused(reports, tmp_path, command):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_plan_can_be_written_as_events(reports, tmp_path):
     words = ["--config", "template.yaml", "--set", "tracker=none", "--encoding", "events", "--out", tmp_path / "out"]
     ended = sgcad("run", reports(a="") / "a", *words)

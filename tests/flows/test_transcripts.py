@@ -127,7 +127,6 @@ def test_the_table_of_a_runs_folder_tells_where_files_failed(run):
 PAPER = sorted(f for f in (settings.CONFIGS / "paper").glob("*.yaml") if load(f).road_writer.asks_model)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("file", PAPER, ids=lambda f: f.stem)
 def test_every_arm_of_the_paper_runs_with_a_script_in_the_models_place(run, file):
     raw = load(file).raw

@@ -165,11 +165,11 @@ def test_held_out_families_never_train() -> None:
         "Hard braking by",
         "No ticket was written",
     )
-    trained = [make_report(seed).narrative for seed in range(1500)]
-    tested = [make_report(seed, held_out=True).narrative for seed in range(1500)]
+    trained = [text_report(seed).narrative for seed in range(1500)]
+    tested = [text_report(seed, held_out=True).narrative for seed in range(500)]
     for mark in marks:
         assert not any(mark in text for text in trained)
-    assert sum(any(mark in text for mark in marks) for text in tested) > 300
+    assert sum(any(mark in text for mark in marks) for text in tested) > 100
 
 
 @pytest.mark.parametrize(

@@ -76,7 +76,6 @@ def test_a_run_killed_after_any_step_ends_with_the_weights_of_an_undisturbed_one
         assert_same(tmp_path / "whole", tmp_path / f"killed-{step}", 8)
 
 
-@pytest.mark.slow
 def test_a_run_killed_with_every_save_in_between_ends_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(feed, "POOL", 6)
     Trainer(parse(options(tmp_path / "whole", 6))).run()
@@ -117,7 +116,6 @@ def steps_of(folder: Path) -> int:
     return int(torch.load(folder / checkpoint.STATE, weights_only=True)["steps"])
 
 
-@pytest.mark.slow
 def test_a_step_draws_nothing_from_the_global_generators(tmp_path: Path) -> None:
     """No checkpoint keeps them."""
     trainer = Trainer(parse(options(tmp_path, 2)))

@@ -60,12 +60,13 @@ def test_roads_that_bend_are_not_called_straight(seed: int) -> None:
 
 
 def test_openings_speak_of_two_vehicles_where_there_are_two() -> None:
-    for _, _, report in (found := _said("two cars", 900) + _said("wo-vehicle", 900)):
-        first = next(end for end, _ in report.sentences)
-        opening = report.narrative[:first]
+    found = 0
+    for report in (text_report(seed, length=0.0) for seed in range(900)):
+        opening = report.narrative[: report.sentences[0][0]]
         if "two cars" in opening or "wo-vehicle" in opening:
+            found += 1
             assert report.crash.actors[1].id.startswith("V"), opening
-    assert len(found) > 10
+    assert found > 10
 
 
 def test_no_lane_is_named_for_a_crash_on_the_wrong_side_of_the_road() -> None:

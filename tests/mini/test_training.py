@@ -165,7 +165,6 @@ def test_the_learning_rate_decays_to_a_fiftieth() -> None:
     assert schedule(0.6, hold=0.6) == pytest.approx(1.0)
 
 
-@pytest.mark.slow
 def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) -> None:
     from transformers import AutoModelForImageTextToText, AutoTokenizer
 
@@ -183,7 +182,6 @@ def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) ->
     json.loads((tmp_path / "export" / "preprocessor_config.json").read_text())
 
 
-@pytest.mark.slow
 def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
     Trainer(parse(options(tmp_path / "first", 2))).run()
     second = Trainer(parse([*options(tmp_path / "second", 2), "--start", str(tmp_path / "first" / "export")]))

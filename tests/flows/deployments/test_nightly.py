@@ -61,7 +61,6 @@ def measured(reports, config_file, tmp_path):
     return batch
 
 
-@pytest.mark.slow
 def test_a_run_is_measured_accepted_and_held_against_what_was_accepted(measured):
     figures = figures_of(measured, None)
     assert figures["kit"]["generated"] == pytest.approx(1 / 3, abs=1e-6)

@@ -262,7 +262,6 @@ def test_unit_rows_have_length_one_and_zero_stays():
     assert rows.dtype == np.float32
 
 
-@pytest.mark.slow
 def test_memory_does_not_grow_with_the_index(tmp_path):
     import psutil
 

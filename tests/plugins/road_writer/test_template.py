@@ -81,7 +81,6 @@ stop sign left turned one-way divided median in each direction two lanes of stru
 """
 
 
-@pytest.mark.slow
 @given(st.lists(st.sampled_from(STORY.split()), max_size=40).map(" ".join))
 @settings(max_examples=25, deadline=None)
 def test_any_babble_of_a_crash_compiles_to_one_network(text: str) -> None:

@@ -68,7 +68,6 @@ def test_there_are_a_hundred_attempts():
     assert len(RULED) + len(RAW) >= 100
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", RULED)
 def test_an_attempt_is_stopped(bait, name):
     ran = run_script(bait(RULED[name]), TIGHT)
@@ -78,7 +77,6 @@ def test_an_attempt_is_stopped(bait, name):
     assert "the-secret" not in f"{ran}"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", RAW)
 def test_the_walls_hold_without_the_rules(bait, name):
     started = time.monotonic()
@@ -117,7 +115,6 @@ def test_an_enumeration_of_the_scripts_own_works():
     assert run_script(own + EXAMPLE).printed == "y 1\n"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FORGED)
 def test_nobody_answers_in_the_sandboxs_place(name):
     ran = run_script(FORGED[name], TIGHT, unchecked=True)

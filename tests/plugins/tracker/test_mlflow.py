@@ -19,8 +19,6 @@ from sgcad_core.experiment import Arm, Dataset
 from sgcad_core.records import Generation, Query
 from sgcad_core.settings import ROOT
 
-pytestmark = pytest.mark.slow
-
 RESULT = {
     "status": "generated",
     "attempts": {"road": 2, "scenario": 1},
@@ -232,6 +230,7 @@ def test_a_model_call_is_a_trace_of_its_case(out, tracker):
     assert (span.end_time_ns - span.start_time_ns) / 1e9 == pytest.approx(1.5, abs=0.01)
 
 
+@pytest.mark.slow
 def test_processes_that_begin_together_share_one_parent(out, tracker):
     made = tracker(artifacts=False)
     made._store(None).experiment_id  # noqa: B018 - makes the experiment

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.casting import course_of
 from sgcad_core.planner.course import find_course
 from sgcad_core.planner.encounter import meet
 from sgcad_core.planner.motion import ACCELERATION_MPS2, BRAKING_MPS2, Motion, Pace, drive
@@ -188,6 +190,14 @@ def test_a_backing_course_runs_against_its_lane():
     assert back.path.poses([-30.0])[0, 2] == pytest.approx(course.path.poses([30.0])[0, 2] + math.pi)
 
 
+def test_an_actor_of_another_reading_keeps_its_course_where_it_stays_the_same():
+    graph, same = network("four_leg"), actor("straight", "S", "N")
+    course = course_of(graph, same, 3.0)
+    assert course_of(graph, actor("straight", "S", "N"), 3.0) is course
+    others = [course_of(graph, actor("turn_left", "S", "W"), 3.0), course_of(graph, same, 2.0)]
+    assert course not in others
+
+
 # ------------------------------------------------------------------ meetings
 def straight_motion(start: tuple[float, float], heading: float, speed: float) -> Motion:
     way = np.array([math.cos(heading), math.sin(heading)])
@@ -207,3 +217,19 @@ def test_two_that_cross_meet_on_the_wanted_sides():
 
 def test_two_that_never_come_near_do_not_meet():
     assert meet(straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 30), 0.0, 12.0), None) is None
+
+
+@pytest.mark.parametrize(
+    "change", [{"size": (4.7, 2.4)}, {"standing": True}, {"time_s": 0.1}, {"station_m": 0.5}, {"path": 0.4}]
+)
+def test_a_motion_that_moves_otherwise_is_no_known_one(change):
+    east, north = straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 0), math.pi / 2, 12.0)
+    first = meet(east, north, None)
+    assert meet(straight_motion((0, 0), 0.0, 12.0), north, None).second_s == first.second_s
+    ((field, by),) = change.items()
+    old = getattr(east, field)
+    changed = old.moved(by) if field == "path" else old + by if isinstance(old, np.ndarray) else by
+    other = replace(east, **{field: changed})
+    assert other.digest != east.digest
+    found = meet(other, north, None)
+    assert (found and (found.first_s, found.second_s)) != (first.first_s, first.second_s)

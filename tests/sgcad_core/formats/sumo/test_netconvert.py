@@ -75,7 +75,6 @@ def test_a_compiler_that_dies_or_hangs_is_a_result(script, code, tmp_path, monke
     assert network.log
 
 
-@pytest.mark.slow
 @given(any_spec)
 @settings(max_examples=many(12, 40), deadline=None, suppress_health_check=list(HealthCheck))
 def test_any_spec_compiles_to_valid_files_or_yields_findings(spec):
@@ -92,7 +91,6 @@ def test_any_spec_compiles_to_valid_files_or_yields_findings(spec):
         assert parse_net(network.net_xml).edges
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_wild_networks_are_valid_opendrive(seed):
     spec = random_spec(1000 + seed)
