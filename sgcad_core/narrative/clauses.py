@@ -66,6 +66,8 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
             role = (
                 "approach"  # one account in order: nobody is at rest for good before the blow, or asked of his health
             )
+        if role == "other" and who.counted and _SUBJECT.search(text):
+            role = "approach"
         current = _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several))
         several = _of_several(text, several)
