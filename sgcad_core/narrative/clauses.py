@@ -210,6 +210,8 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
     if _DRIVER_OF.search(before):
         return _acts(behind)
     if _PREPOSITION.search(before):
+        if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
+            return True
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
     return _acts(behind)
