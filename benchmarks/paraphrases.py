@@ -3,15 +3,16 @@
     python -m benchmarks.paraphrases [FILE.yaml ...]
 
 Without files: the paraphrases that rules are made with (seen) and the held-out ones, of which only totals are looked
-at. A paraphrase is a text of a subject (V1) without numbers with what it tells: `me` and `them`, the maneuvers that are
-right for the subject and for whom it met; `other`, that actor's id; `sides`, the sides of both that may touch;
-`junction`.
+at; then those in the styles of other writers, of which half, by the hash of the text, is held out. A paraphrase is a
+text of a subject (V1) without numbers with what it tells: `me` and `them`, the maneuvers that are right for the subject
+and for whom it met; `other`, that actor's id; `sides`, the sides of both that may touch; `junction`.
 Looks at the reading alone: no road is drawn and nothing is planned.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ from sgcad_core.narrative.facts import ContactFacts
 from sgcad_core.narrative.reading import Reading, read
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "sgcad_core" / "narrative"
+STYLES = FOLDER / "paraphrases_styles.yaml"
 SEEN, HELD_OUT = FOLDER / "paraphrases.yaml", FOLDER / "paraphrases_held_out.yaml"
 SUBJECT = "V1"
 
@@ -30,6 +32,12 @@ SUBJECT = "V1"
 def paraphrases(file: Path) -> list[dict[str, Any]]:
     """The texts of a file with what they tell."""
     return list(yaml.safe_load(file.read_text(encoding="utf-8")))
+
+
+def of_styles(*, held_out: bool) -> list[dict[str, Any]]:
+    """One half of the texts in other writers' styles."""
+    texts = paraphrases(STYLES)
+    return [one for one in texts if int(hashlib.sha256(one["text"].encode()).hexdigest(), 16) % 2 == held_out]
 
 
 def judged(told: Mapping[str, Any]) -> dict[str, bool]:
@@ -76,8 +84,11 @@ def main() -> None:
     """Print a line a file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE.yaml")
-    files = parser.parse_args().files or [SEEN, HELD_OUT]
-    print("\n".join(line(file.stem, paraphrases(file)) for file in files))  # noqa: T201 - a command prints
+    files = parser.parse_args().files
+    lines = [line(file.stem, paraphrases(file)) for file in files or [SEEN, HELD_OUT]]
+    if not files:
+        lines += [line(f"styles, {'held out' if held else 'seen'}", of_styles(held_out=held)) for held in (False, True)]
+    print("\n".join(lines))  # noqa: T201 - a command prints
 
 
 if __name__ == "__main__":

@@ -66,6 +66,8 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
             role = (
                 "approach"  # one account in order: nobody is at rest for good before the blow, or asked of his health
             )
+        if role == "other" and who.counted and _SUBJECT.search(text):
+            role = "approach"
         current = _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several))
         several = _of_several(text, several)
@@ -208,6 +210,8 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
     if _DRIVER_OF.search(before):
         return _acts(behind)
     if _PREPOSITION.search(before):
+        if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
+            return True
         reported = _REPORTS.search(before)
         return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
     return _acts(behind)

@@ -66,10 +66,10 @@ def _first_control(said: Sequence[Statement]) -> tuple[Control, Cue] | None:
 
 
 def controlled(story: Sequence[Statement]) -> bool:
-    """Whether a signal or stop sign of a junction stands in the story."""
+    """Whether a signal, stop or yield sign of a junction stands in the story."""
     for t in story:
         text = _NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))
-        if (_SIGNAL.search(text) or _STOP.search(text)) and not _CONSTRUCTION.search(text):
+        if any(one.search(text) for one in (_SIGNAL, _STOP, _YIELD)) and not _CONSTRUCTION.search(text):
             return True
     return False
 

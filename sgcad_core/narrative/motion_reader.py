@@ -70,6 +70,8 @@ def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
 def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:
     """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
     text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
+    if motion.ordered:
+        text = rule("motion_reader.strangers").sub(lambda m: " " * len(m[0]), text)
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)

@@ -40,6 +40,7 @@ _ACTED = rule("roles.acted")
 
 def role_of(text: str) -> Role:
     """The role of one normalized sentence. A sentence of two roles gets the one that misleads least."""
+    text = rule("roles.attribution").sub("", text)
     if _OPENING.search(text):
         return "opening"
     noise = _noise(text)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.cyclists import number_cyclists
+from sgcad_core.narrative.first_person import in_third_person
 from sgcad_core.narrative.parked import number_parked
 from sgcad_core.narrative.references import number_actors
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, role_of
@@ -48,6 +49,7 @@ _CHARACTERS = str.maketrans({
     "\u2018": "'", "\u2019": "'", "\u201c": '"', "\u201d": '"', "\u2013": "-", "\u2014": " - ", "\u00a0": " ",
     "\ufffd": '"', "\u2032": "'", "\u2033": '"', "\t": " ", "\r": "\n", "\u00bd": " 1/2", "\u2022": " ", "\x0b": "\n",
     "\x0c": "\n", "\u2028": "\n", "\u2029": "\n", "\x85": "\n",
+    "\u00c2": " ", "\u00c3": " ",  # what is left where a file was read in another encoding twice
 })  # fmt: skip
 
 _TYPO = rule("text.typo")
@@ -135,7 +137,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
-    numbered = number_parked(number_cyclists(number_actors(named_in_full(text))))
+    numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
     blocks = [block for block in numbered.split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):

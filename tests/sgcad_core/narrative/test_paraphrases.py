@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from benchmarks.paraphrases import HELD_OUT, SEEN, judged, line, paraphrases
+from benchmarks.paraphrases import HELD_OUT, SEEN, judged, line, of_styles, paraphrases
 
-TOLD = paraphrases(SEEN)
+TOLD = [*paraphrases(SEEN), *of_styles(held_out=False)]
 
 
 @pytest.mark.parametrize("told", TOLD, ids=[str(n) for n in range(len(TOLD))])
@@ -28,3 +28,9 @@ def test_no_fewer_held_out_paraphrases_are_read_whole_than_before() -> None:
     told = paraphrases(HELD_OUT)
     assert len(told) == 40
     assert sum(all(judged(one).values()) for one in told) >= 20
+
+
+def test_no_fewer_texts_in_other_writers_styles_are_read_whole_than_before() -> None:
+    told = of_styles(held_out=True)
+    assert len(told) == 17
+    assert sum(all(judged(one).values()) for one in told) >= 9

@@ -211,3 +211,21 @@ def test_a_summary_says_nothing_of_when() -> None:
     )
     assert reading.crash.vehicles[0].maneuver == "stopped"
     assert reading.crash.vehicles[0].heading == "S"
+
+
+def test_a_yield_sign_stands_at_a_junction() -> None:
+    text = "The AV came to a stop at a yield sign in the right-turn lane, and a sedan behind it rear-ended the AV."
+    assert read(text).roads.junction.kind != "none"
+
+
+def test_what_those_do_to_whom_a_vehicle_yields_is_not_its_own_deed() -> None:
+    behind = " A taxi behind the AV did not stop and struck the rear of the AV."
+    for waits, maneuver in (
+        ("The AV was stopped at the gate, yielding to pedestrians crossing in front of it.", "stopped"),
+        ("The AV slowed to yield to a van in the bus lane attempting to merge into its lane.", "slowing"),
+        ("The AV began to slow as it came near a queue of traffic that was stopped for a light.", "slowing"),
+        ("The AV was traveling north and was slowing to a stop for a red light.", "slowing"),
+    ):
+        me = read(waits + behind).crash.vehicle("V1")
+        assert me is not None
+        assert me.maneuver in (maneuver, "straight" if maneuver == "slowing" else maneuver)
