@@ -23,8 +23,13 @@ def relative(draft: Draft, out: Settled, a: str, b: str, pairs: list[Blow]) -> i
     blow = next((x for x in pairs if {a, b} == {x.actor, x.other}), None)
     if blow:
         score[0] += 0.5 if is_sideswipe(blow) else 0.0  # five in six sideswipes are of two who drive the same way
-        _add_contact(score, out, a, b, blow)
+        if not (_on_foot(draft, a, b) and {blow.actor_area, blow.other_area} <= {"front", None}):
+            _add_contact(score, out, a, b, blow)  # a front meets people whichever way they walk
     return max(QUARTERS, key=lambda q: score[q])
+
+
+def _on_foot(draft: Draft, a: str, b: str) -> bool:
+    return any(v.kind == "pedestrian" for v in draft.who.vehicles if v.id in (a, b))
 
 
 def contact_prefers(out: Settled, a: str, b: str, pairs: list[Blow], turn: int) -> bool:
@@ -38,8 +43,8 @@ def contact_prefers(out: Settled, a: str, b: str, pairs: list[Blow], turn: int) 
 
 def _add_kin(score: dict[int, float], draft: Draft, a: str, b: str) -> None:
     for me, you in ((a, b), (b, a)):
-        for weight, kin, other, _ in draft.motions[me].kin:
-            if other == you:
+        for weight, kin, other, words in draft.motions[me].kin:
+            if other == you and not (words == "behind" and _on_foot(draft, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[kin]:
                     score[q] += 0.5 * weight
     for me, sign in ((a, 1), (b, -1)):
@@ -52,7 +57,7 @@ def _add_kin(score: dict[int, float], draft: Draft, a: str, b: str) -> None:
 def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, b: str) -> None:
     for me in (a, b):
         motion, maneuver = draft.motions[me], out.maneuvers[me]
-        if maneuver == "parked":
+        if maneuver == "parked" and not _on_foot(draft, a, b):
             score[0] += 2.5
             score[180] += 2.0
         if maneuver == "crossing_centerline":
@@ -64,6 +69,13 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
             score[270] += 1.0
         if motion.target and maneuver == "turn_left":
             score[180] += 0.5
+    kinds = {v.id: v.kind for v in draft.who.vehicles}
+    for me, you in ((a, b), (b, a)):
+        if out.maneuvers[me] == "turn_right" and kinds[you] == "bicycle" and kinds[me] != "bicycle":
+            score[0] += 1.0  # a right turn cuts off who rides beside it, seldom who comes the other way
+    for me, sign in ((a, 1), (b, -1)):
+        if kinds[me] == "pedestrian":  # who is told nothing else steps off the curb on the right
+            score[90 if sign == 1 else 270] += 0.4
     into = {"code:into_opposite": 90, "code:into_same": 270}
     for me, sign in ((a, 1), (b, -1)):
         for code, quarter in into.items():

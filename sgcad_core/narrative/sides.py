@@ -5,7 +5,15 @@ from __future__ import annotations
 from sgcad_core.narrative.compass import between
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import (
-    AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, is_sideswipe, side_hit,
+    AREAS,
+    TURN_DEG,
+    Draft,
+    Joined,
+    Settled,
+    apart,
+    end_of,
+    is_sideswipe,
+    side_hit,
 )  # fmt: skip
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area

@@ -72,3 +72,25 @@ def test_a_push_is_a_contact_of_who_is_pushed() -> None:
     facts = crash_facts("The Acme AV was stopped, and a car stood behind it. A bus ran into the car and shoved it into "
                         "the rear bumper of the Acme AV.")  # fmt: skip
     assert {facts.contacts[0].striker, facts.contacts[0].struck} == {"V1", "V2"}
+
+
+# ------------------------------------------------------------------ how somebody moved, people and riders
+@pytest.mark.parametrize(
+    ("text", "headings", "contact"),
+    [
+        ("A car turning right hit a cyclist in the bike lane on its right.", "NN", "V1 front B1 left"),
+        ("A car was stopped when a pedestrian walked into the right side of it.", "NW", "P1 front V1 right"),
+        ("The AV was on the interstate when a truck changed lanes into its left side.", "NN", "V2 right V1 left"),
+        ("A pedestrian stepped out from behind a parked van and was hit by the front of a northbound taxi.", "WN",
+         "V1 front P1 left"),
+        ("A pedestrian ran from behind a bus and was struck by a car.", "NE", "V1 front P1 left"),
+        ("A pedestrian crossing Oak Street was struck by a northbound car.", "WN", "V1 front P1 left"),
+        ("A pedestrian walking east was struck by an eastbound pickup.", "EE", "V1 front P1 back"),
+        ("A truck sideswiped a van in the right lane.", "NN", "V1 right V2 left"),
+    ],
+)  # fmt: skip
+def test_who_moves_into_somebody_touches_them_on_the_told_side(text: str, headings: str, contact: str) -> None:
+    facts = crash_facts(text)
+    (first,) = facts.contacts
+    assert "".join(v.heading or "-" for v in facts.vehicles) == headings
+    assert f"{first.striker} {first.striker_area} {first.struck} {first.struck_area}" == contact
