@@ -31,7 +31,7 @@ from sgcad_core.planner.drifting import line_of, profile
 from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
-from sgcad_core.planner.place import STOP_LINE_M
+from sgcad_core.planner.place import STOP_LINE_M, TURNING
 from sgcad_core.planner.role import (
     BRAKED_TO,
     Drift,
@@ -46,6 +46,7 @@ from sgcad_core.planner.role import (
 )
 from sgcad_core.planner.rolling import easiest, offset, offsets, rolled, swung, tightest
 from sgcad_core.planner.standing import any_angle, askew, beside_the_way, stand_offs, steps_aside
+from sgcad_core.planner.turning import turning_lines
 from sgcad_core.specs import Area
 
 _SWING_ASIDE_M = 5.0
@@ -133,6 +134,12 @@ def aimed(role: Role) -> list[Option]:
 def plainly(role: Role) -> list[Option]:
     """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
     return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
+
+
+def turned(role: Role) -> list[Option]:
+    """Who turns on any line of the turn and at any usual speed; others plainly."""
+    turns = role.course.turn is not None and role.actor.maneuver in TURNING
+    return _sorted(role, product(turning_lines(role), pacings(role), (Twist(0.0),))) if turns else plainly(role)
 
 
 def forced(role: Role) -> list[Option]:
