@@ -96,7 +96,8 @@ def _contact(c: ContactFacts) -> Contact:
 
 def _with_others(actors: list[Actor], facts: CrashFacts) -> tuple[list[Actor], list[ContactFacts]]:
     """A crash without a second vehicle: the first thing or person that was hit joins in."""
-    hits = [c for c in facts.contacts if c.striker == actors[0].id and any(o.id == c.struck for o in facts.others)]
+    ids = {a.id for a in actors}
+    hits = [c for c in facts.contacts if c.striker in ids and any(o.id == c.struck for o in facts.others)]
     if not hits:
         return actors, []
     other = next(o for o in facts.others if o.id == hits[0].struck)

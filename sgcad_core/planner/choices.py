@@ -38,6 +38,8 @@ ASKEW, _STEERS = "stands askew", "steers aside before contact"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
+_THROUGH_BEND = 0.35
+"""Who joins from another road comes around a bend: of his usual speed little more is left there."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
@@ -208,7 +210,9 @@ def _following(role: Role) -> list[Pacing]:
     if role.side != "back" and own < other + 3.0:
         return [Pacing(0.25, (other + 5.0) / own, note=_FASTER)]
     if role.side == "back" and own > other - 3.0:
-        return [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
+        slower = [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
+        joining = role.other_road not in (None, role.actor.road)
+        return [*slower, Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER)] if joining else slower
     return []
 
 
