@@ -144,7 +144,7 @@ def _side_legs(roads: Sequence[GatheredRoad]) -> list[Compass]:
 def _crossing_legs(before: str, told: Statement, vehicles: Sequence[VehicleFacts]) -> list[Compass]:
     """The legs of those who come across the way of the one whom the sentence names: the side street is not his own."""
     named = [v.id for v in vehicles if rule("common.named_vehicle").given(vehicle=v.id).search(before)]
-    whose = named or [told.subject]
+    whose = named or [told.subject or ""]
     own = {axis_of(v.heading) for v in vehicles if v.heading and v.id in whose}
     return [turned(v.heading, 180) for v in vehicles if v.heading and own and axis_of(v.heading) not in own]
 
