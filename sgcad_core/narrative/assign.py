@@ -80,8 +80,8 @@ class _Assignment:
     def _heading_cost(self, v: VehicleFacts, way: Way) -> float:
         if v.heading is None or not self.facts.oriented:
             return 0.0
-        along = self._flow_rad(way), way.heading_rad
-        off = min(*(apart(h, angle_of(v.heading)) for h in along), apart(way.start_rad, angle_of(v.heading)) + 0.2)
+        along, wanted = (self._flow_rad(way), way.heading_rad), angle_of(v.heading) - _square_rad(v, way)
+        off = min(*(apart(h, wanted) for h in along), apart(way.start_rad, wanted) + 0.2)
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
@@ -146,7 +146,9 @@ class _Assignment:
         """Relative heading, and whether the two ways bring the vehicles to one place."""
         cost = 0.0
         if a.heading and b.heading:
-            wanted = angle_of(b.heading) - angle_of(a.heading)
+            square = _square_rad(a, one) - _square_rad(b, other)
+            told = not square or (a.heading_stated and b.heading_stated)
+            wanted = angle_of(b.heading) - angle_of(a.heading) + square if told else 0.0
             cost += 3.0 * abs(wrapped(self._flow_rad(other) - self._flow_rad(one) - wanted)) / _QUARTER
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
@@ -168,3 +170,9 @@ class _Assignment:
             if partner:
                 cost += self._together(v, partner, option.placed.way, placed[name].way)
         return cost
+
+
+def _square_rad(v: VehicleFacts, way: Way) -> float:
+    """How a vehicle stands to a way: nose in, to the right of an aisle with stalls; along all other ways."""
+    in_stall = way.road.kind == DRIVEWAY and "parking" in way.road.beside
+    return -_QUARTER if in_stall and v.maneuver == "parked" and v.heading_stated else 0.0

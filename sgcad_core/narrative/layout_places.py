@@ -32,9 +32,15 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
 
 
 def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
-    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both."""
-    told = [v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "backing"]
-    axes = (axis, *dict.fromkeys(axis_of(heading) for heading in told if axis_of(heading) != axis))[:2]
+    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both.
+
+    Who is parked stands square to the aisle: his heading tells its direction where nobody drives along it.
+    """
+    told = [v for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "backing"]
+    driven = [axis_of(v.heading) for v in told if v.heading and v.maneuver != "parked"]
+    square = [axis_of(turned(v.heading, 90)) for v in told if v.heading and v.maneuver == "parked"]
+    first = [axis] if axis in driven or not (driven or square) else []
+    axes = tuple(dict.fromkeys([*first, *(driven or square)]))[:2]
     ends = [end for way in axes for end in (turned(way, 180), way)]
     return RoadLayout(
         legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind=DRIVEWAY, beside=("parking",)) for end in ends)

@@ -45,7 +45,7 @@ from sgcad_core.planner.role import (
     usual_speed,
 )
 from sgcad_core.planner.rolling import easiest, offset, offsets, rolled, swung, tightest
-from sgcad_core.planner.standing import any_angle, askew, beside_the_way, stand_offs, steps_aside
+from sgcad_core.planner.standing import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
 from sgcad_core.planner.turning import turning_lines
 from sgcad_core.specs import Area
 
@@ -123,7 +123,7 @@ def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
 
 def aimed(role: Role) -> list[Option]:
     """The ways that turn the wanted side to where the other one comes from; all ways where it faces there."""
-    angles = aiming(role)
+    angles = [] if in_stall(role) else aiming(role)
     if not angles:
         return options(role)
     if is_standing(role):

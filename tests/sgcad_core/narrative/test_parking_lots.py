@@ -90,6 +90,18 @@ def test_a_parked_car_stands_square_to_the_aisle_in_a_stall() -> None:
     assert {leg.beside for leg in net.layout.legs} == {("parking",)}
 
 
+@pytest.mark.parametrize(("facing", "way"), [("north", (0.0, 1.0)), ("east", (1.0, 0.0)), ("south", (0.0, -1.0))])
+def test_who_is_parked_in_a_stall_faces_as_told_and_the_aisle_lies_square_to_it(facing: str, way: tuple) -> None:
+    text = (f"The crash occurred in a parking lot. V1 was parked in a parking space, facing {facing}. V2 was driving "
+            "through the parking lot. The right side of V2 struck the back of V1.")  # fmt: skip
+    net, made = written(text)
+    parked = next(t for t in made.planned if t.actor == "V1")
+    assert (math.cos(parked.heading_rad[0]), math.sin(parked.heading_rad[0])) == pytest.approx(way, abs=1e-3)
+    aisles = {"N", "S"} if facing == "east" else {"E", "W"}
+    assert net.layout is not None
+    assert {leg.bearing for leg in net.layout.legs} == aisles
+
+
 def test_one_who_backs_out_stands_in_his_stall_first_and_strikes_with_his_back() -> None:
     _, made = written(BACKS)
     backing = next(t for t in made.planned if t.actor == "V2")

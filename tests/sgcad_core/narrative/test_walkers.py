@@ -23,8 +23,8 @@ def test_a_pedestrian_is_met_on_the_side_from_which_the_driver_comes(told: str, 
 
 
 def test_a_pedestrian_beside_two_numbered_vehicles_is_struck_and_they_do_not_touch() -> None:
-    text = ("V1 was eastbound and V2 was eastbound behind V1. A pedestrian stepped off the curb from the right in front "
-            "of V1. The front of V1 struck the pedestrian.")  # fmt: skip
+    text = ("V1 was eastbound and V2 was eastbound behind V1. A pedestrian stepped off the curb from the right before "
+            "V1. The front of V1 struck the pedestrian.")  # fmt: skip
     facts = crash_facts(text)
     assert [(c.striker, c.struck, c.struck_area) for c in facts.contacts] == [("V1", "P1", "left")]
     assert [v.id for v in facts.vehicles] == ["V1", "V2"]

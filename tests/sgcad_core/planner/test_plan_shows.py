@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
+from sgcad_core.planner.casting import course_of
+from sgcad_core.planner.showing import not_shown
 from sgcad_core.records import Trajectory
+from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
 
 
@@ -38,3 +42,16 @@ def test_a_merge_on_the_other_ones_own_road_is_a_change_of_lane() -> None:
                       contacts=("V2 front V1 back",))  # fmt: skip
     assert made.realised
     assert abs(sideways(track(made, "V2"), at_contact(made))) > 1.0
+
+
+def test_a_maneuver_that_is_not_seen_is_noted() -> None:
+    turner, passer = actor("V1", "turn_left", "S", "W"), actor("V2", "lane_change_left", "S")
+    _, made = planned("four_leg", actor("V1", "straight", "S"))
+    t = track(made, "V1")
+    ahead = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+    course = course_of(network("four_leg"), passer, 3.0)
+    assert not_shown(turner, course, ahead) == "V1 has hardly begun to turn when they touch"
+    assert not_shown(passer, course, ahead) == "V2 has hardly begun to change lanes when they touch"
+    aside = ahead + np.column_stack((np.linspace(0.0, -1.5, len(ahead)), np.zeros((len(ahead), 2))))
+    assert not_shown(passer, course, aside) is None
+    assert not_shown(actor("V1", "straight", "S"), course, ahead) is None
