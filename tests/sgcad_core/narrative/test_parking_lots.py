@@ -102,6 +102,16 @@ def test_who_is_parked_in_a_stall_faces_as_told_and_the_aisle_lies_square_to_it(
     assert {leg.bearing for leg in net.layout.legs} == aisles
 
 
+def test_who_backs_out_tells_the_aisle_in_which_another_is_parked() -> None:
+    text = ("The crash occurred in a parking lot. V1 was parked, facing northwest. V2, facing northeast, was "
+            "backing out of a parking stall. The rear of V2 struck the right side of V1.")  # fmt: skip
+    net, made = written(text)
+    assert net.layout is not None
+    assert {leg.bearing for leg in net.layout.legs} == {"NW", "SE"}
+    first = {t.actor: math.degrees(t.heading_rad[0]) % 360 for t in made.planned}
+    assert first == {"V1": pytest.approx(135, abs=1), "V2": pytest.approx(45, abs=25)}
+
+
 def test_one_who_backs_out_stands_in_his_stall_first_and_strikes_with_his_back() -> None:
     _, made = written(BACKS)
     backing = next(t for t in made.planned if t.actor == "V2")
