@@ -40,7 +40,8 @@ def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     driven = [axis_of(heading) for did, heading in told if did not in ("parked", "backing")]
     stalled = [heading for stands in ("backing", "parked") for did, heading in told if did == stands]
     square = [axis_of(turned(heading, 90)) for heading in stalled]
-    first = [axis] if axis in driven or not (driven or square) else []
+    across = axis in map(axis_of, stalled) and axis not in driven
+    first = [] if across else [axis]
     axes = tuple(dict.fromkeys([*first, *(driven or square[:1])]))[:2]
     ends = [end for way in axes for end in (turned(way, 180), way)]
     return RoadLayout(

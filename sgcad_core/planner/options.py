@@ -154,14 +154,14 @@ def spun(role: Role) -> list[Option]:
     if role.actor.kind in ("object", "pedestrian"):
         return options(role)
     lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
-    return _sorted(role, product(lines, (Pacing(0.0),), spins(role)))
+    return _sorted(role, product(lines, pacings(role)[:1], spins(role)))
 
 
 def slid(role: Role) -> list[Option]:
     """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
         return spun(role)
-    return _sorted(role, product(homing(role)[::2], (Pacing(0.0),), slides(role)))
+    return _sorted(role, product(homing(role)[::2], pacings(role)[:1], slides(role)))
 
 
 def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:

@@ -15,6 +15,7 @@ from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.layout_places import parking_lot
 from sgcad_core.narrative.reading import road_facts
 from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
 
@@ -100,6 +101,11 @@ def test_who_is_parked_in_a_stall_faces_as_told_and_the_aisle_lies_square_to_it(
     aisles = {"N", "S"} if facing == "east" else {"E", "W"}
     assert net.layout is not None
     assert {leg.bearing for leg in net.layout.legs} == aisles
+
+
+def test_a_told_aisle_stays_beside_one_along_which_nobody_is_told_to_drive() -> None:
+    facts = road_facts("The crash occurred in a parking lot. V1 was northbound. The front of V1 struck V2.")
+    assert {leg.bearing for leg in parking_lot(facts, "E").legs} == set("NESW")
 
 
 def test_who_backs_out_tells_the_aisle_in_which_another_is_parked() -> None:
