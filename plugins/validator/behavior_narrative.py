@@ -16,6 +16,7 @@ from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, he
 from plugins.validator._near_crash import near_crash_findings
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
+from sgcad_core.narrative.assign import square_rad
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
@@ -97,7 +98,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
         fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
         if fact is None or way is None or fact.heading is None or not fact.heading_stated:
             continue
-        wanted = angle_of(fact.heading)
+        wanted = angle_of(fact.heading) - square_rad(fact, way)
         if min(apart(way.start_rad, wanted), apart(way.end_rad, wanted), apart(way.heading_rad, wanted)) > _FAR_RAD:
             yield _finding(
                 f"{actor.id} first travels {compass_of_angle(way.heading_rad)}, but the report says {fact.heading}",

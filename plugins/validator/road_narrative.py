@@ -16,7 +16,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.kinds import DRIVEWAY, junction_kind, unsupported_kind
+from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
@@ -126,7 +126,8 @@ class RoadNarrative(Validator):
     def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         divided = any(road.lanes.divided for road in facts.streets)
         for v in facts.crash.vehicles:
-            if not v.heading or not v.heading_stated or v.maneuver == "parked":
+            in_stall = v.maneuver == "backing" and facts.junction.kind == PARKING_LOT
+            if not v.heading or not v.heading_stated or v.maneuver == "parked" or in_stall:
                 continue
             if any(self._carries(road, v.heading, divided) for road in drawn):
                 continue

@@ -19,6 +19,7 @@ from sgcad_core.specs import Maneuver, RoadSpec
 
 TURN_RAD: dict[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
 _QUARTER = math.pi / 2
+_IN_STALLS: tuple[Maneuver, ...] = ("parked", "backing")
 
 
 class Placed(NamedTuple):
@@ -80,8 +81,8 @@ class _Assignment:
     def _heading_cost(self, v: VehicleFacts, way: Way) -> float:
         if v.heading is None or not self.facts.oriented:
             return 0.0
-        along = self._flow_rad(way), way.heading_rad
-        off = min(*(apart(h, angle_of(v.heading)) for h in along), apart(way.start_rad, angle_of(v.heading)) + 0.2)
+        along, wanted = (self._flow_rad(way), way.heading_rad), angle_of(v.heading) - square_rad(v, way)
+        off = min(*(apart(h, wanted) for h in along), apart(way.start_rad, wanted) + 0.2)
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
@@ -146,7 +147,9 @@ class _Assignment:
         """Relative heading, and whether the two ways bring the vehicles to one place."""
         cost = 0.0
         if a.heading and b.heading:
-            wanted = angle_of(b.heading) - angle_of(a.heading)
+            square = square_rad(a, one) - square_rad(b, other)
+            told = not square or (a.heading_stated and b.heading_stated)
+            wanted = angle_of(b.heading) - angle_of(a.heading) + square if told else 0.0
             cost += 3.0 * abs(wrapped(self._flow_rad(other) - self._flow_rad(one) - wanted)) / _QUARTER
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
@@ -168,3 +171,12 @@ class _Assignment:
             if partner:
                 cost += self._together(v, partner, option.placed.way, placed[name].way)
         return cost
+
+
+def square_rad(v: VehicleFacts, way: Way) -> float:
+    """How a vehicle that is told to face across an aisle stands to it: nose in, in a stall to its right; else 0."""
+    in_lot = way.road.kind == DRIVEWAY and "parking" in way.road.beside
+    if not in_lot or not v.heading or not v.heading_stated or v.maneuver not in _IN_STALLS:
+        return 0.0
+    across = abs(apart(way.heading_rad, angle_of(v.heading)) - _QUARTER) < _QUARTER / 2
+    return -_QUARTER if across else 0.0

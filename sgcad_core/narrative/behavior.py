@@ -7,13 +7,14 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
-from sgcad_core.kinds import RAMP
-from sgcad_core.narrative.assign import Placed, assign
+from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.narrative.assign import Placed, assign, square_rad
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
 from sgcad_core.narrative.limits import FROM_STOP_MPH
 from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.roadside import with_roadside
+from sgcad_core.narrative.ways import Way
 from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, Maneuver, NearCrash, RoadSpec
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
@@ -71,9 +72,18 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
     return Actor(
         id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
         lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None,
-        maneuver="merge" if place.way.road.kind == RAMP and v.maneuver in _SHIFTS else v.maneuver,
+        maneuver=_maneuver(v, place.way),
         speed_mph=_speed_mph(v), length_m=_length(v),
     )  # fmt: skip
+
+
+def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
+    """As told; from a ramp one merges; who is parked along an aisle with stalls stands in it."""
+    if way.road.kind == RAMP and v.maneuver in _SHIFTS:
+        return "merge"
+    in_lot = way.road.kind == DRIVEWAY and "parking" in way.road.beside
+    along = in_lot and v.heading_stated and not square_rad(v, way)
+    return "stopped" if along and v.maneuver == "parked" else v.maneuver
 
 
 def _speed_mph(v: VehicleFacts) -> int | None:
@@ -96,7 +106,8 @@ def _contact(c: ContactFacts) -> Contact:
 
 def _with_others(actors: list[Actor], facts: CrashFacts) -> tuple[list[Actor], list[ContactFacts]]:
     """A crash without a second vehicle: the first thing or person that was hit joins in."""
-    hits = [c for c in facts.contacts if c.striker == actors[0].id and any(o.id == c.struck for o in facts.others)]
+    ids = {a.id for a in actors}
+    hits = [c for c in facts.contacts if c.striker in ids and any(o.id == c.struck for o in facts.others)]
     if not hits:
         return actors, []
     other = next(o for o in facts.others if o.id == hits[0].struck)

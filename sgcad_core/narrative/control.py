@@ -80,6 +80,7 @@ _WAY = rule("control.way")
 _FOR = rule("control.for")
 _SUBJECT = rule("control.subject")
 _SIDE_ROAD = rule("control.side_road")
+_ON_SIDE_ROAD = rule("control.on_side_road")
 
 
 def signed_legs(
@@ -116,20 +117,36 @@ def _signed(
 def _legs_of_sign(
     before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> list[Compass]:
-    """ "stop sign for northbound traffic", else the vehicle or direction named last before the sign."""
+    """ "stop sign for northbound traffic", "on the side street", else who or what is named last before the sign."""
     whom = _FOR.match(behind)
     if whom:
         return _legs_of_words(whom["whom"])
+    if _ON_SIDE_ROAD.match(behind):
+        across = [] if _SIDE_ROAD.search(before) else _crossing_legs(before, told, vehicles)
+        return across or _side_legs(roads)
     clause = rule("control.contrast").split(before)[-1]
     owner = [m for v in vehicles for m in rule("common.named_vehicle").given(vehicle=v.id).finditer(clause)]
     subjects = list(_SUBJECT.finditer(clause))
     if subjects and told.role != "opening" and (not owner or _only_direction(clause, subjects[-1])):
         return _legs_of_words(subjects[-1]["whom"])
     if _SIDE_ROAD.search(clause):
-        cross = [r.axis for r in roads if r.cross and r.axis]
-        return [leg for axis in cross[:1] for leg in (axis, turned(axis, 180))]
+        return _side_legs(roads)
     named = owner[-1].group() if owner else told.subject
     return [turned(v.heading, 180) for v in vehicles if v.id == named and v.heading]
+
+
+def _side_legs(roads: Sequence[GatheredRoad]) -> list[Compass]:
+    """Both legs of the road that is told to cross."""
+    cross = [r.axis for r in roads if r.cross and r.axis]
+    return [leg for axis in cross[:1] for leg in (axis, turned(axis, 180))]
+
+
+def _crossing_legs(before: str, told: Statement, vehicles: Sequence[VehicleFacts]) -> list[Compass]:
+    """The legs of those who come across the way of the one whom the sentence names: the side street is not his own."""
+    named = [v.id for v in vehicles if rule("common.named_vehicle").given(vehicle=v.id).search(before)]
+    whose = named or [told.subject or ""]
+    own = {axis_of(v.heading) for v in vehicles if v.heading and v.id in whose}
+    return [turned(v.heading, 180) for v in vehicles if v.heading and own and axis_of(v.heading) not in own]
 
 
 def _only_direction(clause: str, subject: re.Match[str]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, get_args
 
@@ -10,6 +11,7 @@ from sgcad_core.narrative.course import CoursesRead, ImpactRead
 from sgcad_core.narrative.motion import Cue, Motion
 from sgcad_core.narrative.near_crash import NearMiss
 from sgcad_core.narrative.vehicles import Roster
+from sgcad_core.narrative.walkers import Walk
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area, Compass, Maneuver
 
@@ -37,6 +39,8 @@ class Draft:
     impacts: tuple[ImpactRead, ...] = ()
     near: NearMiss | None = None
     """Of a report that tells no contact: `blows` are then those that did not come about."""
+    walks: Mapping[str, Walk] = field(default_factory=dict)
+    """How those who have no number go, by their word in `blows`."""
 
 
 AREAS: tuple[Area, ...] = get_args(Area)

@@ -17,6 +17,7 @@ from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.others import OtherFacts, others
 from sgcad_core.narrative.vehicles import Identity
+from sgcad_core.narrative.walkers import Walk, side_facing
 from sgcad_core.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
 from sgcad_core.told_course import Courses, ImpactTold
 
@@ -130,15 +131,17 @@ def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
     return cue is not None and bool(stops) and cue.number <= max(stops)
 
 
-def _without_vehicle(draft: Draft, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
-    """What a single vehicle hit: objects with its front unless told, people from their left side."""
+def _without_vehicle(draft: Draft, settled: Settled, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
+    """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
+    met as they go, their left one where that is not told."""
     ids = {o.word: o for o in beside}
     found: dict[str, ContactFacts] = {}
     for blow in draft.blows:
         other = ids.get(blow.other)
         if other and other.id not in found:
             area = end_of(blow.actor_area) or "front"
-            side: Area = "front" if other.kind == "object" else "left"
+            faces = side_facing(draft.walks.get(blow.other, Walk()), settled.headings.get(blow.actor)) or "left"
+            side: Area = "front" if other.kind == "object" else faces
             found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
     return tuple(found.values())
 
@@ -165,7 +168,7 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
     """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
     beside = others(draft.blows, draft.who.ids, sum(v.beside for v in draft.who.vehicles))
-    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, beside)
+    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, settled, beside)
     if draft.who.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(

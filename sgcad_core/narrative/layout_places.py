@@ -32,9 +32,17 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
 
 
 def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
-    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both."""
-    told = [v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.maneuver != "backing"]
-    axes = (axis, *dict.fromkeys(axis_of(heading) for heading in told if axis_of(heading) != axis))[:2]
+    """An aisle with stalls on both sides; two that cross where vehicles are told to come along both.
+
+    Who backs out of a stall or is parked stands square to the aisle: where nobody drives along it his heading tells it.
+    """
+    told = [(v.maneuver, v.heading) for v in facts.crash.vehicles if v.heading and v.heading_stated]
+    driven = [axis_of(heading) for did, heading in told if did not in ("parked", "backing")]
+    stalled = [heading for stands in ("backing", "parked") for did, heading in told if did == stands]
+    square = [axis_of(turned(heading, 90)) for heading in stalled]
+    across = axis in map(axis_of, stalled) and axis not in driven
+    first = [] if across else [axis]
+    axes = tuple(dict.fromkeys([*first, *(driven or square[:1])]))[:2]
     ends = [end for way in axes for end in (turned(way, 180), way)]
     return RoadLayout(
         legs=tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind=DRIVEWAY, beside=("parking",)) for end in ends)

@@ -36,6 +36,11 @@ def others(blows: Iterable[Blow], vehicles: tuple[str, ...], parked: int = 0) ->
     return tuple(found)
 
 
+def is_person(word: str) -> bool:
+    """Whether somebody without a number is a road user, not a thing."""
+    return _kind(word)[1] != "object"
+
+
 def _kind(word: str) -> tuple[str, ActorKind]:
     for road_user in of_role("road_user"):
         if road_user.search(word):

@@ -44,6 +44,7 @@ from sgcad_core.narrative.study import tells_study
 from sgcad_core.narrative.text import Sentence, normalised, split_sentences
 from sgcad_core.narrative.traced import Traced
 from sgcad_core.narrative.vehicles import Roster, roster
+from sgcad_core.narrative.walkers import walk_of
 
 _LOST = rule("meeting.lost")
 
@@ -161,7 +162,8 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     deeds = cut_by_deeds(named.statements, who)
     course = CoursesRead() if near else courses_told(named.statements, deeds, who)
     impacts = () if near else with_props(later_impacts(named.statements, deeds, who, struck), course)
-    draft = Draft(who, moved, hits, course, impacts, near)
+    walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in who.ids}
+    draft = Draft(who, moved, hits, course, impacts, near, walks)
     return Events(draft, conditions(found), signal_states(cut))
 
 

@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from sgcad_core.narrative.compass import between
 from sgcad_core.narrative.contact import Blow
-from sgcad_core.narrative.draft import (
-    AREAS,
-    TURN_DEG,
-    Draft,
-    Joined,
-    Settled,
-    apart,
-    end_of,
-    is_sideswipe,
-    side_hit,
-)  # fmt: skip
+from sgcad_core.narrative.draft import AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, is_sideswipe, side_hit
+from sgcad_core.narrative.others import is_person
 from sgcad_core.narrative.zones import Zone
 from sgcad_core.specs import Area
 
@@ -25,6 +16,8 @@ _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]:
     if not pairs and draft.who.counted and draft.blows:
         return []  # the report tells what was touched, and it is no vehicle
+    if not pairs and any(blow.other not in draft.who.ids and is_person(blow.other) for blow in draft.blows):
+        return []  # somebody without a number was hit; the vehicles are not told to have touched
     if not pairs and len(draft.who.ids) >= 2:
         a, b = draft.who.ids[:2]
         return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
@@ -99,7 +92,14 @@ def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area 
             and out.maneuvers[me] not in ("stopped", "parked")
         )
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
+    if set(areas.values()) == {"back"} and not any(out.maneuvers[v] == "backing" for v in pair):
+        areas = {v: _flank_of(zones[v]) or areas[v] for v in pair}
     return areas[blow.actor], areas[blow.other]
+
+
+def _flank_of(zone: Zone | None) -> Area | None:
+    """The flank of a corner: two rear corners touch with it where nobody backs, since nobody drives tail first."""
+    return zone.split("/")[1] if zone and zone.count("/") == 1 else None  # type: ignore[return-value]
 
 
 def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Area | None) -> tuple[Area, Area]:

@@ -45,6 +45,7 @@ def facing_other(role: Role, other: Role) -> Role:
         other_mps=speed_there(other),
         other_width_m=other.size[1],
         other_side=other.side,
+        other_road=other.actor.road,
         other_spins=bool(other.spins),
     )
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sgcad_core.planner.course import Passage
 from sgcad_core.planner.place import TURNING
 from sgcad_core.planner.role import (
     Drift,
@@ -23,11 +22,10 @@ from sgcad_core.planner.role import (
     usual_speed,
 )
 from sgcad_core.planner.rolling import tightest
+from sgcad_core.planner.turning import corner_lines
 
 SWERVE_MPS2 = 6.0
 """Lateral acceleration of which the length of a swerve is told; the speed follows from friction all the same."""
-_CORNER_RUN_M = 10.0
-"""Before and behind a junction in which one who cuts its corner is beside the lane."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
 _TOLD_SPEED = 0.25
 """More for another speed than told where a told spin could be had by it."""
@@ -40,6 +38,8 @@ ASKEW, _STEERS = "stands askew", "steers aside before contact"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
+_THROUGH_BEND = 0.35
+"""Who joins from another road comes around a bend: of his usual speed little more is left there."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
@@ -49,7 +49,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     Not `fine`: without those that differ by less than a metre.
     """
     if role.actor.maneuver in _LANE_CHANGES:
-        joins = role.actor.maneuver == "merge" and any(p.is_junction for p in role.course.passages)
+        joins = role.actor.maneuver == "merge" and _joins(role)
         changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
         return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
@@ -69,7 +69,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
             Drift(_NOT_EVADING),
             *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
         ]
-    return [Drift(0.0), *near, *_corner_lines(role), *_other_lanes(role), *_swerves(role)]
+    return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
 
 
 def _evading(role: Role) -> list[Drift]:
@@ -102,6 +102,12 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
     return found
 
 
+def _joins(role: Role) -> bool:
+    """Whether its way itself leads beside the other one: out of another road, at a junction."""
+    elsewhere = role.other_road not in (None, role.actor.road)
+    return elsewhere and any(p.is_junction for p in role.course.passages)
+
+
 def _beside_the_road(role: Role, left_m: float) -> float:
     """The cost of driving so far beside the own lane all the way: none on the road, much off it."""
     half = role.size[1] / 2 - 0.3
@@ -119,7 +125,9 @@ def _change_way(role: Role) -> float:
         return 1.0 if role.actor.maneuver == "lane_change_left" else -1.0
     if is_beside(role.side) or is_beside(role.other_side):
         return 1.0 if role.side == "left" or role.other_side == "right" else -1.0
-    return math.copysign(1.0, role.place.aside_m) if abs(role.place.aside_m) > 0.5 else 1.0
+    if abs(role.place.aside_m) > 0.5:
+        return math.copysign(1.0, role.place.aside_m)
+    return -1.0 if role.course.opposite_m > 1.5 * role.course.lane_width_m else 1.0
 
 
 def _maneuver_shift(role: Role) -> float | None:
@@ -141,25 +149,6 @@ def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") 
 
 def _in_lane(role: Role) -> list[Drift]:
     return [_drift(role, left, cost, 1.7) for left, cost in ((0.5, 0.1), (-0.5, 0.1), (1.0, 0.25), (-1.0, 0.25))]
-
-
-def _corner_lines(role: Role) -> list[Drift]:
-    """Cutting a corner or swinging wide."""
-    turn = role.course.turn
-    if turn is None:
-        return []
-    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + _CORNER_RUN_M
-    cut = [Drift(0.15, left, half, middle, True) for left in (1.2, -1.2, -2.2)]
-    return [*cut, *_from_the_right(role, turn)] if role.actor.maneuver in ("turn_left", "u_turn") else cut
-
-
-def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
-    """A left turn from the next lane to the right (or the shoulder), and from the right edge of the road."""
-    lane, edge = role.course.lane_width_m, role.course.right_edge_m - role.size[1] / 2
-    length, cost = turn.exit_m - turn.entry_m + 6.0, 0.15 if along_with(role) else 0.3
-    asides = [lane, edge] if edge > 1.4 * lane else [lane]
-    note = "turns from further to the right"
-    return [Drift(cost, aside, length, turn.exit_m, before_m=-aside, note=note) for aside in asides]
 
 
 def _other_lanes(role: Role) -> list[Drift]:
@@ -221,7 +210,9 @@ def _following(role: Role) -> list[Pacing]:
     if role.side != "back" and own < other + 3.0:
         return [Pacing(0.25, (other + 5.0) / own, note=_FASTER)]
     if role.side == "back" and own > other - 3.0:
-        return [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
+        slower = [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
+        joining = role.other_road not in (None, role.actor.road)
+        return [*slower, Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER)] if joining else slower
     return []
 
 

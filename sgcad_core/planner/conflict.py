@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 
 from sgcad_core.planner.casting import facing_other
 from sgcad_core.planner.course import Course
-from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun
+from sgcad_core.planner.options import Option, aimed, forced, options, plainly, slid, spun, turned
 from sgcad_core.planner.pairing import Encounter, Ways, cannot, search
-from sgcad_core.planner.place import Place, meeting_places, preferred_station
+from sgcad_core.planner.place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.role import Role
 from sgcad_core.planner.walkers import crosswalk_station, walking_courses
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
@@ -25,6 +25,8 @@ _LAST_TRIES = 90
 """Where boxes slide against their way, since nothing that can be driven brings the sides together."""
 _ONE_TURNS = 24
 """Combinations tried in which one of both comes as usual and the other one turns its side to it."""
+_TURNING = 40
+"""Combinations tried in which a turn is driven on another line."""
 _LANELESS = ("pedestrian", "object")
 
 
@@ -62,13 +64,15 @@ class Conflicts:
         return found
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, then with the wanted sides turned to each other, then one of both, then by force."""
+        """Ordinary driving, turns on other lines, then the wanted sides turned to each other, one of both, by force."""
         yield (self._options(a, b, options), self._options(b, a, options)), _TRIES[0]
-        turned = self._options(a, b, aimed), self._options(b, a, aimed)
-        yield turned, _TRIES[1]
+        if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
+            yield (self._options(a, b, turned), self._options(b, a, turned)), _TURNING
+        facing = self._options(a, b, aimed), self._options(b, a, aimed)
+        yield facing, _TRIES[1]
         plain = self._options(a, b, plainly), self._options(b, a, plainly)
-        yield (plain[0], turned[1]), _ONE_TURNS
-        yield (turned[0], plain[1]), _ONE_TURNS
+        yield (plain[0], facing[1]), _ONE_TURNS
+        yield (facing[0], plain[1]), _ONE_TURNS
         yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
         if self.by_force:
             yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]

@@ -214,7 +214,7 @@ def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[I
 def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
     """Unclear sides and places that fit ill; small ones decide between shifts only."""
     ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
-    unclear: Floats = 10.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
+    unclear: Floats = 30.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
     return ill + unclear
 
 

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.drifting import profile
 from sgcad_core.planner.path import Path
 from sgcad_core.planner.place import TURNING
 from sgcad_core.planner.role import Drift, Role, line_m
@@ -17,22 +18,40 @@ from sgcad_core.planner.role import Drift, Role, line_m
 _ZONE_M = 12.0
 _DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
              "departing_road_left", "departing_road_right"}  # fmt: skip
+_ACROSS_LANES = {"lane_change_left", "lane_change_right", "merge", "overtaking"}
+_NOT_SHOWN = 2.0
+"""What a turn costs that has hardly begun, and a straight way that has turned."""
+_UNMOVED, _MOVED_SHARE = 1.2, 0.7
+"""Cost of a change of lane that has not begun; none from so much of a body's width to the side on, where the bodies
+still overlap by a third."""
+_BEFORE_TURN_M = 12.0
+"""So long before a turn begins the box still points along the road: it starts to turn before the junction."""
 
 
 def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
     place = role.place.station_m
     penalty = outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
-    turned = path.heading_rad - np.interp(begins_m - 5.0, path.s_m, path.heading_rad)
+    turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
     maneuver = role.actor.maneuver
     if maneuver in TURNING:
         way = -1.0 if maneuver == "turn_right" else 1.0
-        penalty = penalty + 2.0 * (way * turned < math.radians(16))
+        penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
-        penalty = penalty + 2.0 * (np.abs(turned) > math.radians(28))
+        penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
     if maneuver in _DRIFTING and drift.left_m:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
+    if maneuver in _ACROSS_LANES and drift.left_m:
+        penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     return penalty
+
+
+def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
+    """(n,) how much of a change of lane that is seen as one is still to come: 1 all of it, 0 none."""
+    wanted = min(_MOVED_SHARE * (role.size[1] + role.other_width_m) / 2, abs(drift.left_m))
+    moved = np.abs(profile(path.s_m, drift) - drift.before_m)
+    left: Floats = np.clip(1.0 - moved / wanted, 0.0, 1.0)
+    return left
 
 
 def outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:

@@ -31,7 +31,7 @@ from sgcad_core.planner.drifting import line_of, profile
 from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
-from sgcad_core.planner.place import STOP_LINE_M
+from sgcad_core.planner.place import STOP_LINE_M, TURNING
 from sgcad_core.planner.role import (
     BRAKED_TO,
     Drift,
@@ -45,7 +45,8 @@ from sgcad_core.planner.role import (
     usual_speed,
 )
 from sgcad_core.planner.rolling import easiest, offset, offsets, rolled, swung, tightest
-from sgcad_core.planner.standing import any_angle, askew, beside_the_way, stand_offs, steps_aside
+from sgcad_core.planner.standing import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
+from sgcad_core.planner.turning import turning_lines
 from sgcad_core.specs import Area
 
 _SWING_ASIDE_M = 5.0
@@ -122,7 +123,7 @@ def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
 
 def aimed(role: Role) -> list[Option]:
     """The ways that turn the wanted side to where the other one comes from; all ways where it faces there."""
-    angles = aiming(role)
+    angles = [] if in_stall(role) else aiming(role)
     if not angles:
         return options(role)
     if is_standing(role):
@@ -133,6 +134,12 @@ def aimed(role: Role) -> list[Option]:
 def plainly(role: Role) -> list[Option]:
     """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
     return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
+
+
+def turned(role: Role) -> list[Option]:
+    """Who turns on any line of the turn and at any usual speed; others plainly."""
+    turns = role.course.turn is not None and role.actor.maneuver in TURNING
+    return _sorted(role, product(turning_lines(role), pacings(role), (Twist(0.0),))) if turns else plainly(role)
 
 
 def forced(role: Role) -> list[Option]:
@@ -147,14 +154,14 @@ def spun(role: Role) -> list[Option]:
     if role.actor.kind in ("object", "pedestrian"):
         return options(role)
     lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
-    return _sorted(role, product(lines, (Pacing(0.0),), spins(role)))
+    return _sorted(role, product(lines, pacings(role)[:1], spins(role)))
 
 
 def slid(role: Role) -> list[Option]:
     """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
         return spun(role)
-    return _sorted(role, product(homing(role)[::2], (Pacing(0.0),), slides(role)))
+    return _sorted(role, product(homing(role)[::2], pacings(role)[:1], slides(role)))
 
 
 def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:

@@ -8,7 +8,7 @@ a told loss of control are the last resort: noted, and doubted by the validator 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,13 +19,15 @@ from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.casting import course_of, is_declared, other_of, seen_s
 from sgcad_core.planner.conflict import Conflicts
 from sgcad_core.planner.course import Course
-from sgcad_core.planner.motion import LEAD_S, STEP_S, gentle_mps2
+from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.options import Option
 from sgcad_core.planner.pairing import Encounter
 from sgcad_core.planner.parting import parted
 from sgcad_core.planner.place import Place, place_near, preferred_station
 from sgcad_core.planner.resting import Impact
 from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import AFTER_S, Scene
+from sgcad_core.planner.showing import not_shown
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -156,7 +158,17 @@ class _Cast:
         for option, _, own in pair:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
+        if self.contacts:
+            self.notes += self._not_shown(scene, pair)
         return scene
+
+    def _not_shown(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> Iterator[str]:
+        """Whose told maneuver is not seen before they touch."""
+        for option, motion, _ in pair:
+            role = option.role
+            until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
+            if not motion.standing and (words := not_shown(role.actor, role.course, until)):
+                yield words
 
     def _runs_on(self) -> bool:
         """Whether anybody goes on far behind the first contact: off the road, or into something else."""

@@ -41,6 +41,8 @@ class Role:
     """How fast the other one comes."""
     other_width_m: float = 1.8
     other_side: Area | None = None
+    other_road: str | None = None
+    """The road on which the other one starts."""
     surface: Surface | None = None
     other_spins: bool = False
     """Whether the blow is to turn the other one in a told way."""

@@ -24,9 +24,14 @@ def stand_offs(role: Role) -> list[Drift]:
     return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
 
 
+def in_stall(role: Role) -> bool:
+    """Whether it is parked square to its way."""
+    return role.course.stalls and role.actor.maneuver == "parked"
+
+
 def askew(role: Role) -> list[Twist]:
     """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
-    if role.course.stalls and role.actor.maneuver == "parked":
+    if in_stall(role):
         return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
     return [Twist(0.0), *small, *aiming(role)]

@@ -742,6 +742,16 @@ def test_letting_others_pass_is_not_overtaking() -> None:
     assert found.vehicles[0].maneuver != "overtaking"
 
 
+@pytest.mark.parametrize(("second", "sides"), [
+    ("V2 was eastbound and passed behind it.", {"V1": "left", "V2": "right"}),
+    ("V2 was backing west.", {"V1": "back", "V2": "back"}),
+])  # fmt: skip
+def test_two_rear_corners_touch_with_their_flanks_unless_somebody_backs(second: str, sides: dict[str, str]) -> None:
+    text = f"V1 was stopped facing north. {second} The right rear corner of V2 contacted the left rear corner of V1."
+    found = crash_facts(text).contacts[0]
+    assert {found.striker: found.striker_area, found.struck: found.struck_area} == sides
+
+
 def test_a_corner_whose_flank_is_not_told_may_be_any_of_its_sides() -> None:
     text = "V1 was northbound. V2 was northbound ahead of it. The right side of V1 struck the rear corner of V2."
     first = crash_facts(text).contacts[0]

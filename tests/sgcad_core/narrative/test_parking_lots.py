@@ -15,6 +15,7 @@ from sgcad_core.formats.opendrive.check import xodr_findings
 from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.layout_places import parking_lot
 from sgcad_core.narrative.reading import road_facts
 from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
 
@@ -88,6 +89,33 @@ def test_a_parked_car_stands_square_to_the_aisle_in_a_stall() -> None:
     assert made.declared is not None
     assert net.layout is not None
     assert {leg.beside for leg in net.layout.legs} == {("parking",)}
+
+
+@pytest.mark.parametrize(("facing", "way"), [("north", (0.0, 1.0)), ("east", (1.0, 0.0)), ("south", (0.0, -1.0))])
+def test_who_is_parked_in_a_stall_faces_as_told_and_the_aisle_lies_square_to_it(facing: str, way: tuple) -> None:
+    text = (f"The crash occurred in a parking lot. V1 was parked in a parking space, facing {facing}. V2 was driving "
+            "through the parking lot. The right side of V2 struck the back of V1.")  # fmt: skip
+    net, made = written(text)
+    parked = next(t for t in made.planned if t.actor == "V1")
+    assert (math.cos(parked.heading_rad[0]), math.sin(parked.heading_rad[0])) == pytest.approx(way, abs=1e-3)
+    aisles = {"N", "S"} if facing == "east" else {"E", "W"}
+    assert net.layout is not None
+    assert {leg.bearing for leg in net.layout.legs} == aisles
+
+
+def test_a_told_aisle_stays_beside_one_along_which_nobody_is_told_to_drive() -> None:
+    facts = road_facts("The crash occurred in a parking lot. V1 was northbound. The front of V1 struck V2.")
+    assert {leg.bearing for leg in parking_lot(facts, "E").legs} == set("NESW")
+
+
+def test_who_backs_out_tells_the_aisle_in_which_another_is_parked() -> None:
+    text = ("The crash occurred in a parking lot. V1 was parked, facing northwest. V2, facing northeast, was "
+            "backing out of a parking stall. The rear of V2 struck the right side of V1.")  # fmt: skip
+    net, made = written(text)
+    assert net.layout is not None
+    assert {leg.bearing for leg in net.layout.legs} == {"NW", "SE"}
+    first = {t.actor: math.degrees(t.heading_rad[0]) % 360 for t in made.planned}
+    assert first == {"V1": pytest.approx(135, abs=1), "V2": pytest.approx(45, abs=25)}
 
 
 def test_one_who_backs_out_stands_in_his_stall_first_and_strikes_with_his_back() -> None:

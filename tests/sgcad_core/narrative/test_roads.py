@@ -192,6 +192,17 @@ def test_the_sign_stands_on_the_road_that_has_it(sign: str) -> None:
     assert controls == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
 
 
+@pytest.mark.parametrize("told", [
+    "V1 was traveling north on a two-lane road with stop signs on the side street only.",
+    "V1 was traveling north toward a crossroads that has stop signs for cross traffic only.",
+    "V1, northbound, came to the crossing, which has stop signs posted on the minor road.",
+])  # fmt: skip
+def test_signs_on_the_side_street_stand_there_whoever_the_sentence_names(told: str) -> None:
+    text = f"{told} V2 was westbound and entered the intersection. The front of V1 struck the left side of V2."
+    controls = {leg.bearing: leg.control for leg in layout(text).legs}
+    assert controls == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
+
+
 def test_at_a_t_the_sign_stands_on_the_stem() -> None:
     text = "V1 was northbound. V2 was eastbound at the T-intersection, stopped at the stop sign and turned left."
     assert {leg.bearing: leg.control for leg in layout(text).legs} == {"S": "none", "N": "none", "W": "stop"}

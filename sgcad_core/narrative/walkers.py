@@ -1,0 +1,53 @@
+"""From which side people come who have no number: as told by hand or by compass. Knows sentences, no motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from sgcad_core.language import rule
+from sgcad_core.narrative.clauses import Statement
+from sgcad_core.narrative.compass import between, compass_of, turned
+from sgcad_core.specs import Area, Compass
+
+_OPPOSITE: dict[str, Area] = {"left": "right", "right": "left"}
+
+
+class Walk(NamedTuple):
+    """How one goes: from the driver's left or right, or in a direction of the compass; None: not told."""
+
+    hand: str | None = None
+    way: Compass | None = None
+
+
+def walk_of(word: str, told: Iterable[Statement]) -> Walk:
+    """The first that the sentences which name somebody tell of his way."""
+    for t in told:
+        if t.role not in ("codes", "factors") and word in t.text:
+            walk = _told(t.text[t.text.index(word) :])
+            if walk != Walk():
+                return walk
+    return Walk()
+
+
+def _told(text: str) -> Walk:
+    if across := rule("walkers.across").search(text):
+        return Walk(way=compass_of(across["way"]))
+    if hand := rule("walkers.from_hand").search(text):
+        return Walk(hand=hand["hand"].lower())
+    if goes := rule("walkers.walks").search(text) or rule("walkers.goes").search(text):
+        return Walk(way=compass_of(goes["way"]))
+    side = rule("walkers.from_side").search(text)
+    came = compass_of(side["way"]) if side else None
+    return Walk(way=turned(came, 180) if came else None)
+
+
+def side_facing(walk: Walk, driver: Compass | None) -> Area | None:
+    """The side of one who walks that faces a driver on a heading; None where neither hand nor heading tells it."""
+    if walk.hand:
+        return _OPPOSITE[walk.hand]
+    if walk.way is None or driver is None:
+        return None
+    turn = between(driver, walk.way)
+    along: dict[int, Area] = {0: "back", 180: "front"}
+    return along.get(turn, "right" if turn < 180 else "left")

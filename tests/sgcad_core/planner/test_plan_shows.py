@@ -1,0 +1,57 @@
+"""A told change of lane or turn is seen before the contact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sgcad_core.planner.casting import course_of
+from sgcad_core.planner.showing import not_shown
+from sgcad_core.records import Trajectory
+from tests.sgcad_core.planner.crash_scenes import network
+from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
+
+
+def sideways(t: Trajectory, k: int) -> float:
+    """Metres to the left of where it first headed, at a sample."""
+    c, s = math.cos(t.heading_rad[0]), math.sin(t.heading_rad[0])
+    return float((t.y_m[k] - t.y_m[0]) * c - (t.x_m[k] - t.x_m[0]) * s)
+
+
+@pytest.mark.parametrize(("maneuver", "way"), [("lane_change_left", 1), ("lane_change_right", -1)])
+@pytest.mark.parametrize("other", ["stopped", "slowing"])
+def test_who_pulls_out_behind_another_has_left_its_line_when_it_strikes(maneuver, way, other) -> None:
+    _, made = planned("straight_wide", actor("V2", maneuver, "E", lane=1 if way > 0 else 2),
+                      actor("V1", other, "E", lane=1 if way > 0 else 2), contacts=("V2 front V1 back",))  # fmt: skip
+    assert made.realised
+    assert way * sideways(track(made, "V2"), at_contact(made)) > 1.0
+
+
+def test_a_right_turn_into_the_rear_of_one_ahead_has_begun() -> None:
+    _, made = planned("four_leg", actor("V2", "turn_right", "N", "W"), actor("V1", "straight", "N", "S"),
+                      contacts=("V2 front V1 back",))  # fmt: skip
+    assert made.realised
+    t, k = track(made, "V2"), at_contact(made)
+    assert math.degrees(t.heading_rad[k] - t.heading_rad[0]) < -12
+
+
+def test_a_merge_on_the_other_ones_own_road_is_a_change_of_lane() -> None:
+    _, made = planned("four_leg_wide", actor("V2", "merge", "E", "W"), actor("V1", "straight", "E", "W", lane=1),
+                      contacts=("V2 front V1 back",))  # fmt: skip
+    assert made.realised
+    assert abs(sideways(track(made, "V2"), at_contact(made))) > 1.0
+
+
+def test_a_maneuver_that_is_not_seen_is_noted() -> None:
+    turner, passer = actor("V1", "turn_left", "S", "W"), actor("V2", "lane_change_left", "S")
+    _, made = planned("four_leg", actor("V1", "straight", "S"))
+    t = track(made, "V1")
+    ahead = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+    course = course_of(network("four_leg"), passer, 3.0)
+    assert not_shown(turner, course, ahead) == "V1 has hardly begun to turn when they touch"
+    assert not_shown(passer, course, ahead) == "V2 has hardly begun to change lanes when they touch"
+    aside = ahead + np.column_stack((np.linspace(0.0, -1.5, len(ahead)), np.zeros((len(ahead), 2))))
+    assert not_shown(passer, course, aside) is None
+    assert not_shown(actor("V1", "straight", "S"), course, ahead) is None
