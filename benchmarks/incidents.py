@@ -46,16 +46,21 @@ class Incident(NamedTuple):
         return self.id.partition("-")[0]
 
 
+def by_hash(text: str) -> int:
+    """A number that follows from an id or a text and from nothing else: what parts are chosen by."""
+    return int(hashlib.sha256(text.encode()).hexdigest(), 16)
+
+
 def is_blind(id: str) -> bool:
     """Whether a report of the pool is one that nobody reads."""
-    return int(hashlib.sha256(id.encode()).hexdigest(), 16) % BLIND_OF == 0
+    return by_hash(id) % BLIND_OF == 0
 
 
 def of_pool(file: Path, sample: int | None = None) -> list[Incident]:
     """The pool's reports; of the seen ones at most `sample`."""
     lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line.strip()]
     found = [Incident(p["id"], p["text"], p, "blind" if is_blind(p["id"]) else "seen") for p in lines]
-    seen = sorted((i for i in found if i.group == "seen"), key=lambda i: hashlib.sha256(i.id.encode()).hexdigest())
+    seen = sorted((i for i in found if i.group == "seen"), key=lambda i: by_hash(i.id))
     return [*seen[:sample], *(i for i in found if i.group == "blind")]
 
 

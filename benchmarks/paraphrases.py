@@ -12,7 +12,6 @@ Looks at the reading alone: no road is drawn and nothing is planned.
 from __future__ import annotations
 
 import argparse
-import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 
 import yaml
 
+from benchmarks.incidents import by_hash
 from sgcad_core.narrative.facts import ContactFacts
 from sgcad_core.narrative.reading import Reading, read
 
@@ -37,7 +37,7 @@ def paraphrases(file: Path) -> list[dict[str, Any]]:
 def of_styles(*, held_out: bool) -> list[dict[str, Any]]:
     """One half of the texts in other writers' styles."""
     texts = paraphrases(STYLES)
-    return [one for one in texts if int(hashlib.sha256(one["text"].encode()).hexdigest(), 16) % 2 == held_out]
+    return [one for one in texts if by_hash(one["text"]) % 2 == held_out]
 
 
 def judged(told: Mapping[str, Any]) -> dict[str, bool]:

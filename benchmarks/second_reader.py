@@ -14,7 +14,6 @@ played out here: `benchmarks.incidents --config configs/fused.yaml` does that.
 from __future__ import annotations
 
 import argparse
-import hashlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -25,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix, hstack
 
-from benchmarks.incidents import Incident
+from benchmarks.incidents import Incident, by_hash
 from benchmarks.opinions import calibration_error
 from benchmarks.told_rows import allowed, of_part
 from sgcad_core.narrative.gist import shown_alike
@@ -77,7 +76,7 @@ class Row(NamedTuple):
     @property
     def fold(self) -> int:
         """A number that follows from the id."""
-        return int(hashlib.sha256(f"f{self.id}".encode()).hexdigest(), 16)
+        return by_hash(f"f{self.id}")
 
 
 def row(incident: Incident) -> Row | None:

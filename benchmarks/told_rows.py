@@ -12,13 +12,12 @@ The rows hold the reports' texts: they are made anew wherever one trains, and ne
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from benchmarks.incidents import BLIND_OF, Incident, of_pool
+from benchmarks.incidents import BLIND_OF, Incident, by_hash, of_pool
 from sgcad_core.narrative.gist import rules_say
 from sgcad_core.narrative.reading import read
 
@@ -87,7 +86,7 @@ def row(incident: Incident) -> dict[str, Any]:
 def of_part(pool: Path, part: str) -> Iterator[Incident]:
     """Reports of "train" or "validation"; never blind ones."""
     for incident in of_pool(pool):
-        left = int(hashlib.sha256(incident.id.encode()).hexdigest(), 16) % BLIND_OF
+        left = by_hash(incident.id) % BLIND_OF
         if incident.group == "seen" and (left == VALIDATION) == (part == "validation"):
             yield incident
 

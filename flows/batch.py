@@ -158,7 +158,6 @@ class Crew:
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
     """Jobs in worker processes that nobody has asked for yet; an ending is handed out once and not kept."""
-    _began: set[str] = field(default_factory=set)
     _workers: list[Worker] = field(default_factory=list)
     _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
     _threads: ThreadPoolExecutor | None = None
@@ -181,7 +180,6 @@ class Crew:
         for worker in self._workers:
             self._idle.put(worker)
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
-        self._began = {job.name for job in waiting}
         for job in waiting:
             self._begun[job.name] = self._threads.submit(self._in_worker, job)
 
@@ -204,8 +202,8 @@ class Crew:
             return chain.run_case(*about, sharing=job.sharing, tell=tell)
 
     def began(self, job: Job) -> bool:
-        """Whether the job runs in a worker process (its steps are then told when it ends)."""
-        return job.name in self._began
+        """Whether the job runs in a worker process and its ending waits (its steps are then told with that)."""
+        return job.name in self._begun
 
     def _in_worker(self, job: Job) -> Ending:
         self._check()

@@ -46,11 +46,11 @@ LEAN = BULK | {
 
 
 class ServerLost(MissingTool):
-    """A server of our own ended while it was needed; `how`, in a few words."""
+    """A server of our own ended while it was needed; `how` says in a few words in what way."""
 
     def __init__(self, how: str) -> None:
-        super().__init__(f"{how}; finished cases are kept, run the same command again to go on")
-        self.how = how
+        self.how = f"Prefect's server {how}"
+        super().__init__(f"{self.how}; finished cases are kept, run the same command again to go on")
 
 
 class Server:
@@ -76,21 +76,19 @@ class Server:
             if answers(self.address):
                 return
             time.sleep(0.05)
-        code = self.process.poll()
-        if code is not None and code < 0:
-            raise ServerLost(self.lost())
-        ended = f"silent for {START_S:g} s" if code is None else f"ended with code {code}"
+        if (self.process.poll() or 0) < 0:
+            raise ServerLost(self.ended())
+        ended = self.ended() or f"silent for {START_S:g} s"
         raise MissingTool(
             f"Prefect's server does not start ({ended}); look at its messages above, at PREFECT_HOME (can it be "
             "written?), or name a running server: export PREFECT_API_URL=http://.../api"
         )
 
-    def lost(self) -> str:
+    def ended(self) -> str:
         """How the process ended though nobody stopped it; empty while it runs."""
         if (code := self.process.poll()) is None:
             return ""
-        how = f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"
-        return f"Prefect's server {how}"
+        return f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"
 
     def stop(self) -> None:
         """End the process."""
@@ -135,8 +133,8 @@ def prefect_server() -> Iterator[Server | None]:
     except SgcadError:
         raise
     except Exception as fault:
-        if told := server.lost():
-            raise ServerLost(told) from fault
+        if how := server.ended():
+            raise ServerLost(how) from fault
         raise
     finally:
         settings.use_prefect_url("")

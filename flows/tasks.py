@@ -67,11 +67,12 @@ def case_task(board: Board) -> Any:
     def case(job: str) -> State[Any]:
         try:
             graph = board.graphs[job] = _graph(board.every)
+            elsewhere = board.crew.began(board.jobs[job])
             ending = board.crew.finish(board.jobs[job], run_at_once, graph.tell)
         except SgcadError as fault:
             board.fatal = fault
             return Failed(message=str(fault))
-        if board.crew.began(board.jobs[job]):
+        if elsewhere:
             for step in ending.steps:
                 graph.tell(step)
         board.endings[job] = ending

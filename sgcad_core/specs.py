@@ -241,6 +241,11 @@ SIZE_M: dict[str, tuple[float, float]] = {
 """Length and width of an actor whose size the report does not give, metres (typical U.S. fleet of 1990-2007)."""
 
 
+def is_aisle(road: Road | Leg) -> bool:
+    """Whether it is an aisle of a parking lot: a driveway with room to park beside it."""
+    return road.kind == DRIVEWAY and "parking" in road.beside
+
+
 def size_m(actor: Actor) -> tuple[float, float]:
     """Length and width of an actor's box in metres: as stated, else typical of its kind."""
     length, width = SIZE_M[actor.kind]

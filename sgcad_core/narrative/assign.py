@@ -15,7 +15,7 @@ from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of, wrapped
-from sgcad_core.specs import Maneuver, RoadSpec
+from sgcad_core.specs import Maneuver, RoadSpec, is_aisle
 
 TURN_RAD: dict[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
 _QUARTER = math.pi / 2
@@ -175,8 +175,7 @@ class _Assignment:
 
 def square_rad(v: VehicleFacts, way: Way) -> float:
     """How a vehicle that is told to face across an aisle stands to it: nose in, in a stall to its right; else 0."""
-    in_lot = way.road.kind == DRIVEWAY and "parking" in way.road.beside
-    if not in_lot or not v.heading or not v.heading_stated or v.maneuver not in _IN_STALLS:
+    if not is_aisle(way.road) or not v.heading or not v.heading_stated or v.maneuver not in _IN_STALLS:
         return 0.0
     across = abs(apart(way.heading_rad, angle_of(v.heading)) - _QUARTER) < _QUARTER / 2
     return -_QUARTER if across else 0.0

@@ -7,7 +7,7 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign, square_rad
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.lane_choice import lane_of
@@ -15,7 +15,18 @@ from sgcad_core.narrative.limits import FROM_STOP_MPH
 from sgcad_core.narrative.near_crash import NearFacts
 from sgcad_core.narrative.roadside import with_roadside
 from sgcad_core.narrative.ways import Way
-from sgcad_core.specs import SIZE_M, Actor, ActorKind, BehaviorSpec, Contact, Evasion, Maneuver, NearCrash, RoadSpec
+from sgcad_core.specs import (
+    SIZE_M,
+    Actor,
+    ActorKind,
+    BehaviorSpec,
+    Contact,
+    Evasion,
+    Maneuver,
+    NearCrash,
+    RoadSpec,
+    is_aisle,
+)  # fmt: skip
 
 _TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
 """Length of what such a vehicle tows, hitch included, metres."""
@@ -81,8 +92,7 @@ def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
     """As told; from a ramp one merges; who is parked along an aisle with stalls stands in it."""
     if way.road.kind == RAMP and v.maneuver in _SHIFTS:
         return "merge"
-    in_lot = way.road.kind == DRIVEWAY and "parking" in way.road.beside
-    along = in_lot and v.heading_stated and not square_rad(v, way)
+    along = is_aisle(way.road) and v.heading_stated and not square_rad(v, way)
     return "stopped" if along and v.maneuver == "parked" else v.maneuver
 
 

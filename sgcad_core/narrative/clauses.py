@@ -62,11 +62,9 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
         text = who.resolve(s.text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        if role in ("rest", "health") and who.counted and all(t.role != "impact" for t in told):
-            role = (
-                "approach"  # one account in order: nobody is at rest for good before the blow, or asked of his health
-            )
-        if role == "other" and who.counted and _SUBJECT.search(text):
+        # one account in order: nobody is at rest for good before the blow, or asked of his health
+        early = role in ("rest", "health") and all(t.role != "impact" for t in told)
+        if who.counted and (early or (role == "other" and _SUBJECT.search(text))):
             role = "approach"
         current = _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import get_args
+from typing import Literal, get_args
 
 from sgcad_core.language import rule, values
 from sgcad_core.specs import Compass
@@ -13,6 +13,7 @@ WORDS: dict[str, Compass] = values("compass")
 NAMES: dict[Compass, str] = {point: word for word, point in WORDS.items()}
 AXIS_NAMES: dict[Compass, str] = {axis: name for name, axis in values("axis").items()}
 """Axis -> how a message calls it, its first end first."""
+OPPOSITE_HAND: dict[str, Literal["left", "right"]] = {"left": "right", "right": "left"}
 
 
 def compass_of(word: str) -> Compass | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.references import Actor, Cast, Numbering, Phrase, numbered
+from sgcad_core.narrative.cast import Actor, Cast, Phrase
+from sgcad_core.narrative.references import Numbering, numbered
 from sgcad_core.narrative.traced import Traced
 
 

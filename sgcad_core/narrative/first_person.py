@@ -6,12 +6,13 @@ They are brought to the words that other reports use: the teller, who is never d
 from __future__ import annotations
 
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.references import numbers_somebody
 from sgcad_core.narrative.traced import Traced
 
 
 def tells_first_person(text: str) -> bool:
     """Whether the teller of a normalized text that numbers nobody is in the crash."""
-    return bool(rule("first_person.teller").search(text)) and not rule("common.vehicle").search(text)
+    return bool(rule("first_person.teller").search(text)) and not numbers_somebody(text)
 
 
 def in_third_person(text: Traced) -> Traced:

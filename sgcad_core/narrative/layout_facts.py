@@ -11,7 +11,7 @@ from typing import Literal
 
 from sgcad_core.kinds import DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
 from sgcad_core.narrative.carriageway import Carriageway, Way, carriageway
-from sgcad_core.narrative.compass import between, turned
+from sgcad_core.narrative.compass import OPPOSITE_HAND, between, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
@@ -24,7 +24,6 @@ from sgcad_core.specs import Compass, Leg, Median, RoadKind, RoadLayout, Turn
 _RIGHT: tuple[Turn, ...] = ("right",)
 _THROUGH: tuple[Turn, ...] = ("through",)
 _LEFT: tuple[Turn, ...] = ("left",)
-OPPOSITE: dict[str, Literal["left", "right"]] = {"left": "right", "right": "left"}
 
 
 @dataclass(frozen=True)
@@ -276,7 +275,7 @@ def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:
     if inward in told:
         return told[inward]
     back = told.get(turned(inward, 180))
-    return OPPOSITE[back] if back else "none"
+    return OPPOSITE_HAND[back] if back else "none"
 
 
 def _lane_used(v: VehicleFacts) -> int:

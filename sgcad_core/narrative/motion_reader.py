@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.cast import PARTS
 from sgcad_core.narrative.clauses import Segment, Statement
 from sgcad_core.narrative.critical_events import read_code
 from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
 from sgcad_core.narrative.motion import Motion
-from sgcad_core.narrative.references import PARTS
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
 from sgcad_core.narrative.vehicles import Identity, Roster

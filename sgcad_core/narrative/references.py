@@ -12,11 +12,9 @@ import re
 from dataclasses import dataclass
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.cast import PARTS, TRUCK_PARTS, Actor, Cast, Phrase
+from sgcad_core.narrative.cast import TRUCK_PARTS, Actor, Cast, Phrase
 from sgcad_core.narrative.makes import BODY_WORDS
 from sgcad_core.narrative.traced import Traced, joined
-
-__all__ = ["PARTS", "Actor", "Cast", "Numbering", "Phrase", "number_actors", "numbered", "numbers_somebody"]
 
 _PHRASE = rule("references.phrase")
 _OWNERS = ("his", "her", "their")

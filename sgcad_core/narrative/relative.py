@@ -69,6 +69,17 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
             score[270] += 1.0
         if motion.target and maneuver == "turn_left":
             score[180] += 0.5
+    _add_kinds(score, draft, out, a, b)
+    into = {"code:into_opposite": 90, "code:into_same": 270}
+    for me, sign in ((a, 1), (b, -1)):
+        for code, quarter in into.items():
+            if draft.motions[me].did(code):
+                turning_right = out.maneuvers[me] == "turn_right"
+                score[(sign * (90 if turning_right else quarter)) % 360] += 1.5
+
+
+def _add_kinds(score: dict[int, float], draft: Draft, out: Settled, a: str, b: str) -> None:
+    """How riders and people on foot come where nothing tells it."""
     kinds = {v.id: v.kind for v in draft.who.vehicles}
     for me, you in ((a, b), (b, a)):
         if out.maneuvers[me] == "turn_right" and kinds[you] == "bicycle" and kinds[me] != "bicycle":
@@ -76,12 +87,6 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
     for me, sign in ((a, 1), (b, -1)):
         if kinds[me] == "pedestrian":  # who is told nothing else steps off the curb on the right
             score[90 if sign == 1 else 270] += 0.4
-    into = {"code:into_opposite": 90, "code:into_same": 270}
-    for me, sign in ((a, 1), (b, -1)):
-        for code, quarter in into.items():
-            if draft.motions[me].did(code):
-                turning_right = out.maneuvers[me] == "turn_right"
-                score[(sign * (90 if turning_right else quarter)) % 360] += 1.5
 
 
 def _add_contact(score: dict[int, float], out: Settled, a: str, b: str, blow: Blow) -> None:

@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.kinds import DRIVEWAY, JOINING, RAMP
+from sgcad_core.kinds import JOINING
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.lane_sources import also, both
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of
 from sgcad_core.specs import Compass
+
+_OWN_KINDS = (*JOINING, "freeway")
+"""Kinds of road that a mention tells by its word alone."""
 
 
 @dataclass
@@ -38,7 +41,7 @@ class GatheredRoad:
         self.lanes = merged(self.lanes, mention.lanes)
         self.vehicles += [v for v in mention.vehicles if v not in self.vehicles and mention.how == "on"]
         self.sentences.append(mention.sentence)
-        if mention.kind in ("freeway", RAMP, DRIVEWAY):
+        if mention.kind in _OWN_KINDS:
             self.kind = mention.kind
 
 
@@ -98,7 +101,7 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
 
 
 def _informative(m: RoadMention) -> bool:
-    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in (*JOINING, "freeway"))
+    return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in _OWN_KINDS)
 
 
 def _special(roads: list[GatheredRoad], mention: RoadMention, headings: Mapping[str, Compass]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sgcad_core.narrative.compass import between
+from sgcad_core.narrative.compass import OPPOSITE_HAND, between
 from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, is_sideswipe, side_hit
 from sgcad_core.narrative.others import is_person
@@ -56,12 +56,11 @@ def _less_of_a_striker(out: Settled, a: str, b: str) -> bool:
 
 def _brushed(out: Settled, blow: Blow, area_a: Area | None, area_b: Area | None) -> tuple[Area | None, Area | None]:
     """Who goes past another touches a told corner or flank of it with the flank that faces it."""
-    facing: dict[str, Area] = {"left": "right", "right": "left"}
     oncoming = apart(between(out.headings.get(blow.actor, "N"), out.headings.get(blow.other, "N")), 180) <= 45
     for mine, me, zone in ((area_a, blow.actor, blow.other_area), (area_b, blow.other, blow.actor_area)):
-        flank = next((side for side in (zone or "").split("/") if side in facing), None)
+        flank = next((side for side in (zone or "").split("/") if side in OPPOSITE_HAND), None)
         if mine is None and flank and out.maneuvers[me] == "overtaking":
-            touching: Area = flank if oncoming else facing[flank]  # type: ignore[assignment]
+            touching: Area = flank if oncoming else OPPOSITE_HAND[flank]  # type: ignore[assignment]
             return (touching, area_b) if me == blow.actor else (area_a, touching)
     return area_a, area_b
 

@@ -7,10 +7,8 @@ from typing import NamedTuple
 
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.compass import between, compass_of, turned
+from sgcad_core.narrative.compass import OPPOSITE_HAND, between, compass_of, turned
 from sgcad_core.specs import Area, Compass
-
-_OPPOSITE: dict[str, Area] = {"left": "right", "right": "left"}
 
 
 class Walk(NamedTuple):
@@ -45,7 +43,7 @@ def _told(text: str) -> Walk:
 def side_facing(walk: Walk, driver: Compass | None) -> Area | None:
     """The side of one who walks that faces a driver on a heading; None where neither hand nor heading tells it."""
     if walk.hand:
-        return _OPPOSITE[walk.hand]
+        return OPPOSITE_HAND[walk.hand]
     if walk.way is None or driver is None:
         return None
     turn = between(driver, walk.way)

@@ -104,8 +104,12 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
 
 def _joins(role: Role) -> bool:
     """Whether its way itself leads beside the other one: out of another road, at a junction."""
-    elsewhere = role.other_road not in (None, role.actor.road)
-    return elsewhere and any(p.is_junction for p in role.course.passages)
+    return _from_another_road(role) and any(p.is_junction for p in role.course.passages)
+
+
+def _from_another_road(role: Role) -> bool:
+    """Whether it starts on another road than the one that it meets."""
+    return role.other_road not in (None, role.actor.road)
 
 
 def _beside_the_road(role: Role, left_m: float) -> float:
@@ -211,8 +215,9 @@ def _following(role: Role) -> list[Pacing]:
         return [Pacing(0.25, (other + 5.0) / own, note=_FASTER)]
     if role.side == "back" and own > other - 3.0:
         slower = [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
-        joining = role.other_road not in (None, role.actor.road)
-        return [*slower, Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER)] if joining else slower
+        if _from_another_road(role):
+            slower.append(Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER))
+        return slower
     return []
 
 

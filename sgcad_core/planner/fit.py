@@ -12,13 +12,11 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.drifting import profile
 from sgcad_core.planner.path import Path
-from sgcad_core.planner.place import TURNING
+from sgcad_core.planner.place import ACROSS_LANES, TURNING
 from sgcad_core.planner.role import Drift, Role, line_m
 
 _ZONE_M = 12.0
-_DRIFTING = {"crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "merge",
-             "departing_road_left", "departing_road_right"}  # fmt: skip
-_ACROSS_LANES = {"lane_change_left", "lane_change_right", "merge", "overtaking"}
+_DRIFTING = ACROSS_LANES | {"crossing_centerline", "departing_road_left", "departing_road_right"}
 _NOT_SHOWN = 2.0
 """What a turn costs that has hardly begun, and a straight way that has turned."""
 _UNMOVED, _MOVED_SHARE = 1.2, 0.7
@@ -41,7 +39,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
     if maneuver in _DRIFTING and drift.left_m:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
-    if maneuver in _ACROSS_LANES and drift.left_m:
+    if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     return penalty
 

@@ -11,12 +11,11 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.course import Course
-from sgcad_core.planner.place import TURNING
+from sgcad_core.planner.place import ACROSS_LANES, TURNING
 from sgcad_core.specs import Actor
 
 TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
 """A smaller change of heading is no turn to be seen, a smaller shift no change of lane."""
-_CHANGES = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 
 
 def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
@@ -25,7 +24,7 @@ def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
     if actor.maneuver in TURNING:
         way = -1.0 if actor.maneuver == "turn_right" else 1.0
         return None if way * turned >= TURNED_RAD else f"{actor.id} has hardly begun to turn when they touch"
-    if actor.maneuver not in _CHANGES or abs(turned) >= TURNED_RAD:
+    if actor.maneuver not in ACROSS_LANES or abs(turned) >= TURNED_RAD:
         return None
     moved = abs(_aside(course, poses[-1]) - _aside(course, poses[0]))
     return None if moved >= MOVED_M else f"{actor.id} has hardly begun to change lanes when they touch"

@@ -8,7 +8,7 @@ from sgcad_core.facts import Value
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T
 from sgcad_core.narrative.compass import compass_of_angle, turned
 from sgcad_core.narrative.ways import Way, degree, ways_of
-from sgcad_core.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers
+from sgcad_core.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers, is_aisle
 
 ROAD_FIELDS = (
     "lanes_forward", "lanes_backward", "turns_forward", "turns_backward", "center_turn_lane", "median", "kind",
@@ -145,7 +145,7 @@ def junction_kind_of(spec: RoadSpec) -> JunctionKind:
     if any(road.circle for road in spec.roads):
         return ROUNDABOUT
     if len(legs) < 3 or all("parking" in leg.beside for leg in legs):
-        return PARKING_LOT if all("parking" in leg.beside and leg.kind == DRIVEWAY for leg in legs) else "none"
+        return PARKING_LOT if all(map(is_aisle, legs)) else "none"
     if any(leg.kind == RAMP for leg in legs):
         return RAMP
     if len(legs) > 3:

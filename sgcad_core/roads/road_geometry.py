@@ -16,7 +16,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resa
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.circle import SPLITTER_M
 from sgcad_core.roads.ramps import joined
-from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec
+from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
 
 Direction = Literal["forward", "backward"]
 
@@ -112,11 +112,6 @@ def lane_width_m(road: Road) -> float:
     if is_aisle(road):
         return AISLE_LANE_M
     return DRIVEWAY_LANE_M if road.kind == DRIVEWAY else LANE_M
-
-
-def is_aisle(road: Road | Leg) -> bool:
-    """Whether it is an aisle of a parking lot: a driveway with room to park beside it."""
-    return road.kind == DRIVEWAY and "parking" in road.beside
 
 
 def beside_m(road: Road | Leg, what: Beside) -> float:

@@ -297,8 +297,6 @@ def started(folder, config, out):
 
 
 def descendants(process):
-    import psutil
-
     return psutil.Process(process.pid).children(recursive=True)
 
 

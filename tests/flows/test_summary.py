@@ -37,12 +37,12 @@ def result(number):
 
 
 def tally():
-    return summary.Tally(SimpleNamespace(configs=(SimpleNamespace(name="kit"),), cases=("a",) * CASES, out=Path("o")))
+    cases = tuple(SimpleNamespace(id=str(number)) for number in range(CASES))
+    return summary.Tally(SimpleNamespace(configs=(SimpleNamespace(name="kit"),), cases=cases, out=Path("o")))
 
 
 def told(capsys):
     made = tally()
-    made.batch.cases = tuple(SimpleNamespace(id=str(number)) for number in range(CASES))
     for number in range(CASES):
         made.add(job(str(number)), Ending(result(number), reused=number == 1))
     summary.show(made)

@@ -23,6 +23,10 @@ def legs(text: str) -> dict[str, tuple[int, int]]:
     return {leg.bearing: (leg.lanes_in, leg.lanes_out) for leg in layout(text).legs}
 
 
+def controls(text: str) -> dict[str, str]:
+    return {leg.bearing: leg.control for leg in layout(text).legs}
+
+
 # ------------------------------------------------------------------ roads
 def test_a_bracket_gives_each_direction_its_lanes() -> None:
     text = V + "was traveling north in the right northbound lane of a five-lane, two-way road " \
@@ -188,8 +192,7 @@ def test_only_what_controls_traffic_is_a_control(text: str, control: str) -> Non
 ])  # fmt: skip
 def test_the_sign_stands_on_the_road_that_has_it(sign: str) -> None:
     text = f"V1 was traveling north and V2 was traveling west toward the intersection. {sign}"
-    controls = {leg.bearing: leg.control for leg in layout(text).legs}
-    assert controls == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
+    assert controls(text) == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
 
 
 @pytest.mark.parametrize("told", [
@@ -199,13 +202,12 @@ def test_the_sign_stands_on_the_road_that_has_it(sign: str) -> None:
 ])  # fmt: skip
 def test_signs_on_the_side_street_stand_there_whoever_the_sentence_names(told: str) -> None:
     text = f"{told} V2 was westbound and entered the intersection. The front of V1 struck the left side of V2."
-    controls = {leg.bearing: leg.control for leg in layout(text).legs}
-    assert controls == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
+    assert controls(text) == {"S": "none", "N": "none", "E": "stop", "W": "stop"}
 
 
 def test_at_a_t_the_sign_stands_on_the_stem() -> None:
     text = "V1 was northbound. V2 was eastbound at the T-intersection, stopped at the stop sign and turned left."
-    assert {leg.bearing: leg.control for leg in layout(text).legs} == {"S": "none", "N": "none", "W": "stop"}
+    assert controls(text) == {"S": "none", "N": "none", "W": "stop"}
 
 
 def test_a_ramp_joins_from_the_right_behind() -> None:
