@@ -107,7 +107,13 @@ class Driven:
 
     @cached_property
     def aside(self) -> Floats:
-        """(n,) metres to the left of the lane on which it starts, up to the contact."""
+        """(n,) metres to the left of the lane on which it starts, and of what goes on from it, up to the contact."""
+        line = ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2]
+        return beside(prolonged(line, 200.0), self.before[:, :2])[0]
+
+    @cached_property
+    def off_line(self) -> Floats:
+        """(n,) metres to the left of the straight line on which its first lane would go on."""
         line = self.home[1].shape if self.home else self.before[:2, :2]
         return beside(prolonged(line, 200.0), self.before[:, :2])[0]
 
@@ -125,6 +131,19 @@ class Driven:
     def rest(self, told: RestTold) -> dict[str, bool]:
         """Which parts of the told rest the last pose gets right."""
         return rest_errors(told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface).right()
+
+
+def ahead_of(graph: LaneGraph, edge: Edge, lane: Lane) -> Floats:
+    """(n, 2) center line of a lane and of those that lead straight on from it, node after node."""
+    line, seen = [lane.shape], {edge.id}
+    while on := next((c for c in graph.leaving(edge.id, lane.index) if c.direction == "through"), None):
+        if on.to_edge in seen:
+            break
+        edge = graph.edges[on.to_edge]
+        lane = next(other for other in edge.lanes if other.index == on.to_lane)
+        seen.add(edge.id)
+        line += [on.via_shape, lane.shape]
+    return np.vstack(line)
 
 
 def beside(line: Floats, points: Floats) -> tuple[Floats, Floats]:

@@ -24,6 +24,8 @@ FACING_RAD = math.radians(45.0)
 SIDE_RAD = math.radians(68.0)
 """A side is right where the point lies within so much of it, seen from the nearest lane or the junction's center; of
 what stands in the road no side is right."""
+SPINS_RAD = math.radians(8.0)
+"""Turned by so much behind its first contact a vehicle is seen to spin."""
 SHOULDER_M = (-1.2, 4.0)
 """How far beyond the edge of the nearest lane the center of a box lies that stands on a shoulder."""
 OFF_M = 0.0

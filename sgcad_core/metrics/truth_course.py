@@ -15,6 +15,7 @@ import numpy as np
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.crash_seen import STEP_S, Crash, Driven
+from sgcad_core.metrics.rest import SPINS_RAD
 from sgcad_core.metrics.truth_motion import STILL_M, shown
 from sgcad_core.told_course import RestTold
 from sgcad_core.units import MPS_PER_MPH
@@ -29,7 +30,6 @@ BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
 """Braking shows as so much deceleration over half a second, and as so much lost speed."""
 STEERS_M, STEERS_RAD = 0.25, math.radians(3.0)
 """Steering aside shows as so much way sideways, or as such a heading against the lane."""
-SPINS_RAD = math.radians(8.0)
 _SPIN_S = 2.5
 
 
@@ -96,7 +96,9 @@ def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
         return aside > ASIDE_M
     if kind in ("lane_change_right", "departing_road_right"):
         return aside < -ASIDE_M
-    return abs(aside) > ASIDE_M if kind == "merge" else None
+    if kind == "merge":  # its lane may itself lead into the other road
+        return max(abs(aside), abs(float(one.off_line[-1] - one.off_line[0]))) > ASIDE_M
+    return None
 
 
 def _slows(one: Driven) -> bool:

@@ -50,6 +50,13 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     return found
 
 
+def expect(scene: Scene, contacts: Sequence[Contact]) -> None:
+    """Tell a scene which pairs touch behind the first contact, and which of them once more."""
+    first = {pair_of(contact) for contact in contacts[:1]}
+    further = frozenset(pair_of(contact) for contact in contacts[1:])
+    scene.again, scene.told = further & first, further - first
+
+
 def run_out(
     scene: Scene,
     behavior: BehaviorSpec,
@@ -64,8 +71,6 @@ def run_out(
     """
     strikes = strikes_of(behavior, contacts)
     told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
-    first = [pair_of(contact) for contact in contacts[:1]]
-    scene.again = frozenset(pair for contact in contacts[1:] if (pair := pair_of(contact)) in first)
     if not told and not strikes and not scene.again:
         return Ended((), 0.0)
     for strike in strikes:

@@ -80,22 +80,49 @@ def meet(
 
     `spins`: how each is to turn behind it: 1 counter-clockwise, -1 clockwise, 0 as it comes. `glances`: off center.
     """
-    judged = _judged(first, second)
-    if judged is None:
+    found = _fitting(first, second, wanted)
+    if found is None:
         return None
-    touches, sides, margins, depth = judged
-    good = (depth > 0.2 * DEPTH_M) & (depth < 1.2 * DEPTH_M) & (margins > _LEAST_MARGIN)
-    if wanted is not None:
-        good &= (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
-    if not good.any():
-        return None
+    (touches, sides, margins, _), good = found
     cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
     if any(spins) or glances:
         cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
-    best = int(np.argmin(np.where(good, cost, np.inf)))
-    named = (_side(sides[0][best]), _side(sides[1][best]))
-    first_s, second_s = (float(_own_s(k[best])) for k in (touches.first, touches.second))
-    return Meeting(float(cost[best]), first, second, first_s, second_s, named, float(margins[best]))
+    return _meeting(first, second, found[0], int(np.argmin(np.where(good, cost, np.inf))), cost)
+
+
+def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count: int) -> list[Meeting]:
+    """Contacts on the wanted sides from one end of them to the other: `count` at most, over all shifts that have one."""
+    found = _fitting(first, second, wanted)
+    if found is None:
+        return []
+    judged, good = found
+    cost = _cost(first, second, judged.touches.first, judged.touches.second, judged.margins)
+    able = np.flatnonzero(good)
+    shares = (np.arange(count) + 0.5) / count
+    chosen = dict.fromkeys(int(able[int(share * len(able))]) for share in shares)
+    return [_meeting(first, second, judged, number, cost) for number in chosen]
+
+
+def _fitting(
+    first: Motion, second: Motion, wanted: tuple[Area, Area] | None
+) -> tuple[_Judged, NDArray[np.bool_]] | None:
+    """All touches, and which of them are clear and on the wanted sides; None where none is."""
+    judged = _judged(first, second)
+    if judged is None:
+        return None
+    _, sides, margins, depth = judged
+    good = (depth > 0.2 * DEPTH_M) & (depth < 1.2 * DEPTH_M) & (margins > _LEAST_MARGIN)
+    if wanted is not None:
+        good &= (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
+    return (judged, good) if good.any() else None
+
+
+def _meeting(first: Motion, second: Motion, judged: _Judged, number: int, cost: Floats) -> Meeting:
+    """One of the touches as a record."""
+    touches, sides, margins, _ = judged
+    named = (_side(sides[0][number]), _side(sides[1][number]))
+    first_s, second_s = (float(_own_s(k[number])) for k in (touches.first, touches.second))
+    return Meeting(float(cost[number]), first, second, first_s, second_s, named, float(margins[number]))
 
 
 def _side(code: int) -> Area:

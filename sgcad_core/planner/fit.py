@@ -24,6 +24,8 @@ _UNMOVED, _MOVED_SHARE = 1.2, 0.7
 still overlap by a third."""
 _BEFORE_TURN_M = 12.0
 """So long before a turn begins the box still points along the road: it starts to turn before the junction."""
+_UNSTEERED, _STEERED_M = 0.3, 0.4
+"""Cost of a told evasion of which less is seen before they touch."""
 
 
 def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
@@ -41,6 +43,8 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
     if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
+    if drift.evades:
+        penalty = penalty + _UNSTEERED * (np.abs(profile(path.s_m, drift) - drift.before_m) < _STEERED_M)
     return penalty
 
 

@@ -42,6 +42,12 @@ class RunOut(NamedTuple):
     """Curvature of the steered way, left positive."""
     turning: float = 1.0
     """Resistance to turning, as a share of that of four locked wheels."""
+    rolls_s: float = 0.0
+    """So long from `from_s` on its engine makes up for what its wheels lose, then it brakes."""
+
+    def along_at(self, now_s: float) -> float:
+        """Deceleration along the box at a time, m/s2."""
+        return 0.0 if now_s < self.from_s + self.rolls_s else self.along_mps2
 
 
 class Released(NamedTuple):
@@ -51,8 +57,11 @@ class Released(NamedTuple):
     at_s: float
 
 
-def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None) -> None:
-    """Ground friction over a step; more of it where the body would not stand in the time that is left."""
+def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0) -> None:
+    """Ground friction over a step; more of it where the body would not stand in the time that is left.
+
+    `now_s`: world time, which only a `run` asks for.
+    """
     vx, vy, spin = one.vx, one.vy, one.spin
     if vx == vy == spin == 0.0:
         return
@@ -61,7 +70,7 @@ def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None =
     if speed > 0.0:
         c, s = math.cos(one.heading), math.sin(one.heading)
         along, across = (vx * c + vy * s) / speed, (vy * c - vx * s) / speed
-        way = run.along_mps2 if run else drag.along
+        way = run.along_at(now_s) if run else drag.along
         side = across if run is None else max(-1.0, min(1.0, across / _STIFF_RAD))
         brake = math.hypot(way * along, drag.across * across)
         more = max(1.0, speed / (left_s * max(brake, 1e-6)))
@@ -108,13 +117,13 @@ def run_out(
     counts = [len(ways) for ways in runs]
     state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
     turns = [_turning_mps2(one.body, drag) for one, drag in zip(released, drags, strict=True)]
-    way, bend, share = np.array([run[1:] for ways in runs for run in ways]).T
-    wheels = way, bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
+    way, bend, share, rolls = np.array([run[1:] for ways in runs for run in ways]).T
+    wheels = bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
     at_s = released[0].at_s
     found = np.empty((max(round((end_s - at_s) / step), 1), len(way), 3))
     for k in range(len(found)):
         left_s = max(end_s - at_s - k * step, 0.1)
-        state = _run_on(state, wheels, left_s, step)
+        state = _run_on(state, np.where(k * step < rolls, 0.0, way), wheels, left_s, step)
         found[k] = state[:3].T
     return np.split(found, np.cumsum(counts)[:-1], axis=1)
 
@@ -123,9 +132,9 @@ def _moving(one: Body) -> tuple[float, ...]:
     return one.x, one.y, one.heading, one.vx, one.vy, one.spin
 
 
-def _run_on(state: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
-    """(6, n) place, heading, velocity and spin a step later; `wheels`: braking, bend, turning and grip of each way."""
-    way, bend, turning, grip = wheels
+def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
+    """(6, n) place, heading, velocity and spin a step later; `way`: braking, `wheels`: bend, turning and grip of each."""
+    bend, turning, grip = wheels
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
     c, s, speed = np.cos(moved[2]), np.sin(moved[2]), np.hypot(vx, vy)

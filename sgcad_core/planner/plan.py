@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.aftermath import run_out, strikes_of
+from sgcad_core.planner.aftermath import expect, run_out, strikes_of
 from sgcad_core.planner.attempts import Unfolded, least_missed
 from sgcad_core.planner.bystanders import stand_clear, strike_later
-from sgcad_core.planner.casting import course_of, is_declared, other_of, seen_s
+from sgcad_core.planner.casting import course_of, is_declared, other_of, pair_of, seen_s
 from sgcad_core.planner.conflict import Conflicts
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
@@ -26,8 +26,9 @@ from sgcad_core.planner.parting import parted
 from sgcad_core.planner.place import Place, place_near, preferred_station
 from sgcad_core.planner.resting import Impact
 from sgcad_core.planner.role import Role
+from sgcad_core.planner.runouts import MISSED
 from sgcad_core.planner.scene import AFTER_S, Scene
-from sgcad_core.planner.showing import not_shown
+from sgcad_core.planner.showing import not_evading, not_shown
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.records import ObservedContact, Record, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -38,6 +39,8 @@ _FURTHER_S = 3.0
 """More time behind the first contact where somebody goes on far."""
 _LATER_S = 1.2
 """A later contact is looked for around where its partner is this long after the first."""
+_MANEUVER_MISSED = 3.0
+"""Cost of a told maneuver that is not seen: more than any two parts of the course behind the contact."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 
@@ -95,6 +98,8 @@ class _Cast:
     told: Courses
     notes: list[str]
     oddity: float = 0.0
+    missed: float = 0.0
+    """Cost of told maneuvers and evasions that are not seen before the first contact."""
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
@@ -126,12 +131,21 @@ class _Cast:
         cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
         lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
         scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
+        expect(scene, cast.contacts)
         for contact in cast.contacts[1:]:
             cast.later(scene, contact)
         cast.rest(scene)
         scene.settle()
         ended = run_out(scene, self.behavior, cast.contacts, self.told, graph, impacts)
-        return Unfolded(scene, (*cast.notes, *ended.notes), cast.oddity, ended.missed)
+        missed = ended.missed + cast.missed + MISSED * sum(1 for _ in cast.unmet(scene))
+        return Unfolded(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
+
+    def unmet(self, scene: Scene) -> Iterator[Contact]:
+        """Further contacts of vehicles that do not come about; those of things and second ones are told elsewhere."""
+        met = {frozenset((touch.first, touch.second)) for touch in scene.touches}
+        for contact in self.contacts[1:]:
+            if contact.struck not in self.things and pair_of(contact) not in met:
+                yield contact
 
     # -------------------------------------------------------------- the first contact
     def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
@@ -159,16 +173,22 @@ class _Cast:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
         if self.contacts:
-            self.notes += self._not_shown(scene, pair)
+            self._look(scene, pair)
         return scene
 
-    def _not_shown(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> Iterator[str]:
-        """Whose told maneuver is not seen before they touch."""
+    def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
+        """Note what of the told maneuvers and evasions is not seen before they touch."""
         for option, motion, _ in pair:
             role = option.role
             until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
-            if not motion.standing and (words := not_shown(role.actor, role.course, until)):
-                yield words
+            if motion.standing:
+                continue
+            if words := not_shown(role.actor, role.course, until):
+                self.notes.append(words)
+                self.missed += _MANEUVER_MISSED
+            unseen = list(not_evading(role.actor.id, role.course, role.told, until))
+            self.notes += unseen
+            self.missed += len(unseen)
 
     def _runs_on(self) -> bool:
         """Whether anybody goes on far behind the first contact: off the road, or into something else."""

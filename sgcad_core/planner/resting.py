@@ -17,7 +17,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.metrics.rest import FACING_RAD, SIDE_RAD, RestErrors, rest_errors
+from sgcad_core.metrics.rest import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
 from sgcad_core.planner.ground import Released, run_out
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.runouts import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
@@ -169,7 +169,7 @@ class Rests:
         wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
         off = np.minimum(np.abs(way * turned - wanted) / (2 * wanted), 1.5)
         told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
-        return told
+        return told + _TOLD * (way * turned < SPINS_RAD)
 
     def _came_rad(self, name: str) -> float:
         """An actor's heading at the first contact, as its motion had it."""

@@ -91,6 +91,8 @@ class Drift(NamedTuple):
     ahead_m: float = 0.0
     """Displaced along the heading at the meeting place as well (a course bent towards the other one's)."""
     note: str = ""
+    evades: bool = False
+    """It is the evasion that the report tells."""
 
 
 class Pacing(NamedTuple):

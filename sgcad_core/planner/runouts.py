@@ -25,6 +25,8 @@ _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -
 """Down to a turning circle of 13 m."""
 _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
+_ROLLS_S = (0.0, 1.5, 4.0)
+"""For so long a driver who is able to drives on before it brakes: to the shoulder, out of the junction."""
 _EACH_BEND = 3
 """Of the ways of each of two that meet again so many are looked at, for each steering."""
 _PARTED_M = 0.06
@@ -152,12 +154,15 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
 
 def all_runs(from_s: float, grip_mps2: float) -> list[RunOut]:
     """All ways of running out."""
-    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING)
-    return [RunOut(from_s, share * grip_mps2, bend, turning) for share, bend, turning in ways]
+    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING, _ROLLS_S)
+    return [RunOut(from_s, share * grip_mps2, bend, turning, rolls) for share, bend, turning, rolls in ways]
 
 
 def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
     """A little for every departure from braking straight: of two that do as well the plainer one is taken."""
     return UNUSUAL * np.array(
-        [abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 for r in runs]
+        [
+            abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 + r.rolls_s / 2
+            for r in runs
+        ]
     )

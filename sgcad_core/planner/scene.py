@@ -94,6 +94,8 @@ class Scene:
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs that touch a second time as told."""
+    told: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch behind the first contact as told."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
@@ -137,14 +139,14 @@ class Scene:
     def _cause(self) -> Hashable:
         """All that the way to rest depends on."""
         movers = tuple((t.actor, id(t.driven), t.size, t.mass, t.motion.fixed) for t in self.tracks.values())
-        chosen = self.friction, self.restitution, self.again, tuple(self.runs.items())
+        chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
     def wreck(self) -> Wreck:
         """The simulation of what follows from the first touch."""
         movers = tuple(self._mover(track) for track in self.tracks.values())
         hitches = [self._hitch(*coupled) for coupled in self.hitches]
-        return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again)
+        return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
 
     def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
         first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))

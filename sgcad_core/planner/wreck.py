@@ -48,12 +48,15 @@ _PARTING_MPS = 0.3
 """How fast bodies that sank into each other are moved apart."""
 _HELD_S = 0.11
 """A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
+_TOLD_S, _TOLD_HELD_S = 0.2, 0.25
+"""For so long two hold, and stay as they are, whose touch is told: of a body that is set rolling from a standstill a file
+has the next vertex only where it is 0.11 m away."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
 """Of impulses over all touching pairs in one step: who is caught between two a hundred times as heavy gives way to both
 only after many; after six a man between two trucks lay 0.17 m in one of them."""
-_LEAST_LEFT_S = 0.1
+_LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
 _FASTER_MPS = 4.0
 """Two that both get so much faster within a sample stay within the room that `may_meet` leaves (0.5 m)."""
 
@@ -69,6 +72,8 @@ class Wreck:
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs that touch a second time as told: the new touch is seen as the first was."""
+    told: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch later on as told, however gently."""
     past: list[tuple[float, tuple[str, str]]] = field(default_factory=list)
     """Touches of these pairs that are over."""
     touches: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -105,7 +110,7 @@ class Wreck:
     def _rests(self) -> bool:
         """Whether nothing moves and no touch is so new that time alone would change what it does."""
         latest = max(self.touches.values(), default=0.0)
-        return self.now - latest > _HELD_S + STEP_S and all(m.body.stands for m in self.movers)
+        return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
 
     def _pairs(self) -> list[Pair]:
         """All pairs but those that overlap from the start: parts of one thing, or scenery."""
@@ -178,7 +183,7 @@ class Wreck:
             one.y += one.vy * step
             one.heading += one.spin * step
             if m.free:
-                slow(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None)
+                slow(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
 
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Apart] | None:
@@ -245,23 +250,31 @@ class Wreck:
         if self.now - self.touches[key_of(a, b)] > 1e-9:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
-        left = max((sample + 1) * STEP_S - self.now, 1e-3)
+        left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
         return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
     def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
         """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
-        if self.touches[key_of(a, b)] <= sample * STEP_S:
+        left = self._held_s(a, b, sample)
+        if left <= 0.0:
             return
         at = mean(points)
-        left = max((sample + 1) * STEP_S - self.now, 1e-3)
-        allowed = 0.5 * max(-seen.gap_m, 0.0) / left
+        allowed = 0.5 * max(-seen.gap_m, 0.0) / max(left, _SHORTEST_LEFT_S)
         parting = -approach(a.body, b.body, at, seen.normal)
         if parting > allowed:
             hold(a.body, b.body, at, seen.normal, parting - allowed)
 
+    def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
+        """How much longer two hold that touched; 0 or less where they may part."""
+        since = self.touches[key_of(a, b)]
+        if frozenset((a.name, b.name)) in self.told:
+            return since + _TOLD_S - self.now
+        return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
+
     def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
         """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
-        held = self.now - self.touches[key_of(a, b)] < _HELD_S and seen.gap_m > -_DEEPEST_M
+        for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self.told else _HELD_S
+        held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
             return False
         by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
