@@ -43,8 +43,10 @@
     let turn = actor.heading[n] - actor.heading[k];
     turn = Math.atan2(Math.sin(turn), Math.cos(turn));
     return { x: actor.x[k] + u * (actor.x[n] - actor.x[k]), y: actor.y[k] + u * (actor.y[n] - actor.y[k]),
-      heading: actor.heading[k] + u * turn, speed: actor.speed[k] + u * (actor.speed[n] - actor.speed[k]) };
+      heading: actor.heading[k] + u * turn, speed: actor.speed[k] + u * (actor.speed[n] - actor.speed[k]),
+      roll: actor.roll ? actor.roll[k] + u * (actor.roll[n] - actor.roll[k]) : 0 };
   }
+  const lies = (roll) => ["on its wheels", "on its right side", "on its roof", "on its left side"][((Math.round(roll / (Math.PI / 2)) % 4) + 4) % 4];
 
   // ---------------------------------------------------------------- drawing
   function trace(flat) {
@@ -148,6 +150,15 @@
     }
     ink.setLineDash([]); ink.globalAlpha = 1;
   }
+  function drawBelly(l, w, roll) {                       // rolled over: what faces up is a flank, or the underside with its wheels
+    const side = Math.abs(Math.cos(roll)) < 0.5, up = Math.sin(roll) > 0 ? -1 : 1;   // on its right side the wheels point to the left
+    ink.fillStyle = "rgba(20,24,28,.72)";
+    if (!side) { ink.beginPath(); ink.roundRect(-l * 0.42, -w * 0.32, l * 0.84, w * 0.64, 0.15); ink.fill(); }
+    for (const at of [-0.3, 0.3]) for (const edge of side ? [-up] : [-1, 1]) {
+      ink.fillStyle = "#11161b"; ink.beginPath(); ink.roundRect(l * at - 0.34, edge * w * 0.4 - 0.16, 0.68, 0.32, 0.1); ink.fill();
+      ink.strokeStyle = "#aab3ba"; ink.lineWidth = 0.06; ink.stroke();
+    }
+  }
   function drawActor(actor) {
     const p = pose(actor, now), l = actor.length_m, w = actor.width_m, thin = 1.2 / box.scale;
     ink.save(); ink.translate(p.x, p.y); ink.rotate(p.heading);
@@ -157,7 +168,8 @@
     ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = thin * 1.5;
     if (layer.assumed && assumedOf(actor.id).length) ink.setLineDash([5 / box.scale, 4 / box.scale]);   // told: a whole outline
     ink.shadowColor = "rgba(0,0,0,.45)"; ink.shadowBlur = 7; ink.fill(); ink.shadowBlur = 0; ink.stroke(); ink.setLineDash([]);
-    if (!["pedestrian", "object", "trailer"].includes(actor.type) && w > 1) {
+    if (Math.cos(p.roll) < 0.5) drawBelly(l, w, p.roll);
+    else if (!["pedestrian", "object", "trailer"].includes(actor.type) && w > 1) {
       const glass = l / 2 - Math.min(l * 0.3, 1.9);
       ink.fillStyle = "rgba(15,25,35,.62)"; ink.beginPath();                       // windshield: which way is front
       ink.moveTo(glass, -w * 0.4); ink.lineTo(glass + 0.6, -w * 0.34); ink.lineTo(glass + 0.6, w * 0.34); ink.lineTo(glass, w * 0.4); ink.fill();
@@ -243,8 +255,8 @@
     $("play").textContent = playing ? "❚❚" : "►";
     $("follow").setAttribute("aria-pressed", follow);
     [...$("legend").children].forEach((row, i) => {
-      const v = pose(data.actors[i], now).speed;
-      row.lastChild.textContent = `${data.actors[i].type} · ${speedText(v)}${guessed(data.actors[i].id) ? " (assumed)" : ""}`;
+      const p = pose(data.actors[i], now), lying = Math.cos(p.roll) < 0.5 ? ` · ${lies(p.roll)}` : "";
+      row.lastChild.textContent = `${data.actors[i].type} · ${speedText(p.speed)}${guessed(data.actors[i].id) ? " (assumed)" : ""}${lying}`;
     });
     plotCursor();
     const metres = [200, 100, 50, 20, 10, 5, 2].find((m) => m * box.scale < 130) || 1;

@@ -207,31 +207,36 @@ def write_scenario(folder: Path, scenario: Scenario) -> None:
 
 
 def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
-    """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together."""
-    rows = [
-        (float(t), k, f"{t:.2f},{track.actor},{x:.6f},{y:.6f},{heading:.7f},{speed:.4f}\n")
-        for k, track in enumerate(trajectories)
-        for t, x, y, heading, speed in zip(
-            track.t_s, track.x_m, track.y_m, track.heading_rad, track.speed_mps, strict=True
-        )
-    ]
+    """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together.
+
+    Where somebody rolls over there is a column roll_rad behind them.
+    """
+    rolls = any(track.roll_rad is not None for track in trajectories)
+    rows = []
+    for k, track in enumerate(trajectories):
+        columns = (track.t_s, track.x_m, track.y_m, track.heading_rad, track.speed_mps, track.rolls)
+        for t, x, y, heading, speed, roll in zip(*columns, strict=True):
+            more = f",{roll:.5f}" if rolls else ""
+            rows.append((float(t), k, f"{t:.2f},{track.actor},{x:.6f},{y:.6f},{heading:.7f},{speed:.4f}{more}\n"))
     with file.open("w", encoding="utf-8", newline="") as out:
-        out.write("t_s,actor,x_m,y_m,heading_rad,speed_mps\n")
+        out.write(f"t_s,actor,x_m,y_m,heading_rad,speed_mps{',roll_rad' if rolls else ''}\n")
         out.writelines(row for _, _, row in sorted(rows))
 
 
 def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
     """What `write_trajectories` wrote, actors in the order of the file. Raises BadInput for anything else."""
-    names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
+    needed = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
     rows: dict[str, list[list[float]]] = {}
     with file.open(encoding="utf-8", newline="") as lines:
         try:
-            for row in csv.DictReader(lines):
+            table = csv.DictReader(lines)
+            names = [*needed, *(name for name in table.fieldnames or () if name == "roll_rad")]
+            for row in table:
                 rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
         except (KeyError, TypeError, ValueError, csv.Error) as fault:
             raise BadInput(
                 f"{file}: no trajectories of ours ({str(fault)[:100]}): every row needs actor and, as finite numbers, "
-                f"{', '.join(names)}; run the case again"
+                f"{', '.join(needed)}; run the case again"
             ) from fault
     return tuple(
         Trajectory(actor=actor, **dict(zip(names, np.array(values).T, strict=True))) for actor, values in rows.items()

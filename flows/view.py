@@ -174,6 +174,7 @@ def _path(track: Trajectory) -> dict[str, Any]:
         "y": _rounded(track.y_m, 2),
         "heading": _rounded(track.heading_rad, 3),
         "speed": _rounded(track.speed_mps, 2),
+        **({} if track.roll_rad is None else {"roll": _rounded(track.roll_rad, 2)}),
     }
 
 

@@ -121,7 +121,7 @@ class ActorInfo(Record):
 
 
 class Trajectory(Record):
-    """One actor's motion on the common clock; five equally long arrays, t_s[k] = 0.05 k."""
+    """One actor's motion on the common clock; equally long arrays, t_s[k] = 0.05 k."""
 
     actor: str
     t_s: Floats
@@ -129,6 +129,13 @@ class Trajectory(Record):
     y_m: Floats
     heading_rad: Floats
     speed_mps: Floats
+    roll_rad: Floats | None = None
+    """About its long axis, positive to the right; None: on its wheels all the way."""
+
+    @property
+    def rolls(self) -> Floats:
+        """Roll at every instant, radians."""
+        return np.zeros(len(self.t_s)) if self.roll_rad is None else self.roll_rad
 
 
 class ObservedContact(Record):

@@ -18,11 +18,13 @@ from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP
 from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.crash_seen import Driven
+from sgcad_core.metrics.rest import attitude_of
 from sgcad_core.metrics.truth_course import vehicle_marks
 from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
 
 _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
+_LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _SPIN_DEG = 60.0
 """A told angle of spin is right within so much: reports give quarters."""
 
@@ -128,11 +130,13 @@ def _side(made: Made, who: str, value: Value) -> Seen | None:
 
 
 def _attitude(made: Made, who: str, value: Value) -> Seen | None:
-    return Seen(value == "wheels", "wheels", "its box stays flat: no rollover is drawn")
+    seen = attitude_of(float(made.tracks[who].rolls[-1]))
+    return Seen(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
 
 
 def _rolls(made: Made, who: str, value: Value) -> Seen:
-    return Seen(False, "wheels", "its box stays flat: no rollover is drawn")
+    most = float(np.abs(made.tracks[who].rolls).max())
+    return Seen(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
 
 
 def _joins(road_name: Callable[[Made, str], str | None]) -> Judge:

@@ -14,7 +14,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.roads.surface import RoadSurface
 from sgcad_core.specs import Compass
-from sgcad_core.told_course import Hand, RestTold
+from sgcad_core.told_course import Attitude, Hand, RestTold
 
 COMPASS_DEG: dict[str, float] = {
     "N": 0.0, "NE": 45.0, "E": 90.0, "SE": 135.0, "S": 180.0, "SW": 225.0, "W": 270.0, "NW": 315.0,
@@ -62,6 +62,12 @@ def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSur
         np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
     )  # fmt: skip
     return RestErrors(facing, where, side)
+
+
+def attitude_of(roll_rad: float) -> Attitude:
+    """On what a vehicle lies after a roll, positive to the right: the nearest quarter turn."""
+    lies: tuple[Attitude, ...] = ("wheels", "right", "roof", "left")
+    return lies[round(roll_rad / (math.pi / 2)) % 4]
 
 
 def compass_rad(degrees: float) -> float:

@@ -5,7 +5,7 @@ Works on a scene in which everybody else is placed. Knows behaviors, scenes and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from sgcad_core.planner.casting import pair_of
@@ -78,14 +78,5 @@ def run_out(
     rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
     rests.fit()
     unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
-    notes = (*unreached, *rests.missed(), *_rollovers(told))
-    return Ended(notes, rests.cost() + MISSED * len(unreached))
+    return Ended((*unreached, *rests.missed()), rests.cost() + MISSED * len(unreached))
 
-
-def _rollovers(told: Courses) -> Iterator[str]:
-    """Endings that a plan view cannot show."""
-    for name, course in told.items():
-        attitude = course.rest.attitude
-        if course.rolls or attitude not in (None, "wheels"):
-            end = {"roof": " onto its roof", "left": " onto its left side", "right": " onto its right side"}
-            yield f"{name} rolls over{end.get(attitude or '', '')}, as told: its box stays flat"

@@ -83,7 +83,7 @@ def plan(
     observed = done.scene.first_contact()
     realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
     return Plan(
-        trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors)), contact=observed,
+        trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors), courses), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(done.notes)), oddity=round(done.oddity, 3) if realised else 0.0,
     )  # fmt: skip
 

@@ -20,6 +20,7 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
 from sgcad_core.planner.ground import Released, run_out
 from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.rollover import rolls_over
 from sgcad_core.planner.runouts import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
 from sgcad_core.planner.scene import Scene
 from sgcad_core.roads.surface import RoadSurface
@@ -131,7 +132,8 @@ class Rests:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
         drags = [scene.drag(scene.tracks[name]) for name in free]
-        runs = [all_runs(at_s, drag.across) for drag in drags]
+        upright = [not rolls_over(self.wanted[name]) for name in free]
+        runs = [all_runs(at_s, drag.across, on_wheels=on) for drag, on in zip(drags, upright, strict=True)]
         released = [Released(wreck.named[name].body, at_s) for name in free]
         each = run_out(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):

@@ -25,8 +25,9 @@ _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -
 """Down to a turning circle of 13 m."""
 _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
-_ROLLS_S = (0.0, 1.5, 4.0)
-"""For so long a driver who is able to drives on before it brakes: to the shoulder, out of the junction."""
+_DRIVES_ON_S, _DRIVES_ON_PER_M = (1.5, 4.0), 0.06
+"""For so long a driver who is able to drives on before it brakes, on wheels that roll freely and in no tighter a bend:
+to the shoulder, out of the junction."""
 _EACH_BEND = 3
 """Of the ways of each of two that meet again so many are looked at, for each steering."""
 _PARTED_M = 0.06
@@ -152,10 +153,12 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
     return [i for same in by_bend.values() for i in same[:most]]
 
 
-def all_runs(from_s: float, grip_mps2: float) -> list[RunOut]:
-    """All ways of running out."""
-    ways = product(_BRAKES_SHARE, _BENDS_PER_M, _TURNING, _ROLLS_S)
-    return [RunOut(from_s, share * grip_mps2, bend, turning, rolls) for share, bend, turning, rolls in ways]
+def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list[RunOut]:
+    """All ways of running out; who is not `on_wheels` slides, and steers nothing."""
+    bends = _BENDS_PER_M if on_wheels else _BENDS_PER_M[:1]
+    ways = [RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)]
+    gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
+    return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if on_wheels]
 
 
 def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:

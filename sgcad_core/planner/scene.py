@@ -19,9 +19,11 @@ from sgcad_core.planner.impact import FRICTION, RESTITUTION, body, mass_kg
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.planner.movers import Mover, Touch
 from sgcad_core.planner.path import Path
+from sgcad_core.planner.rollover import rolled, rolls_over
 from sgcad_core.planner.wreck import Wreck
 from sgcad_core.records import ObservedContact, Trajectory
 from sgcad_core.specs import ActorKind, Area, Surface
+from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
@@ -196,12 +198,12 @@ class Scene:
         outside = np.where((times < from_s) | (times > to_s), 50.0, 0.0) + _UNSEEN_COST * unseen
         return Motion(path, times, times, track.size, outside, 0.0)
 
-    def trajectories(self, order: tuple[str, ...]) -> tuple[Trajectory, ...]:
-        """All tracks as records, in the given order."""
-        return tuple(_trajectory(self.tracks[name]) for name in order)
+    def trajectories(self, order: tuple[str, ...], told: Courses = NOTHING_TOLD) -> tuple[Trajectory, ...]:
+        """All tracks as records, in the given order; `told`: who rolls over."""
+        return tuple(_trajectory(self.tracks[name], told.get(name)) for name in order)
 
 
-def _trajectory(track: Track) -> Trajectory:
+def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
     """Speeds are those of the positions, taken apart before and behind an impact."""
     poses = track.poses
     step = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
@@ -212,6 +214,7 @@ def _trajectory(track: Track) -> Trajectory:
     return Trajectory(
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
+        roll_rad=rolled(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
     )  # fmt: skip
 
 

@@ -40,6 +40,8 @@ class Body:
     """Where a trailer is hitched on (from the origin, ahead positive), and where this one hitches on as a trailer."""
     pose: Pose | None = None
     speed_mps: float = 0.0
+    roll_rad: float = 0.0
+    """About its long axis, positive to the right: told by timed vertices, and kept behind them."""
     travelled_m: float = 0.0
     present: bool = True
     timed: Timed | None = None
@@ -81,6 +83,7 @@ class Body:
         before, velocity = self.pose, self.velocity
         if self.timed:
             self.pose, self.speed_mps, self.place = self._led(self.timed.pose(step)), self.timed.speed(step), None
+            self.roll_rad = self.timed.roll(step)
         else:
             self.pose = self._cruise(step * dt_s, dt_s, course_for)
         moved = self.pose.x_m - before.x_m, self.pose.y_m - before.y_m

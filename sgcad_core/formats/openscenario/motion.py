@@ -88,7 +88,10 @@ class Transition:
 class Timed:
     """Timed vertices, evaluated once for the whole clock; exact at vertices, headings along the shortest arc."""
 
-    def __init__(self, times_s: Floats, points: Floats, headings_rad: Floats, clock: tuple[int, float]) -> None:
+    def __init__(
+        self, times_s: Floats, points: Floats, headings_rad: Floats, clock: tuple[int, float],
+        rolls_rad: Floats | None = None,
+    ) -> None:  # fmt: skip
         """`clock`: first step and step length. Points (n, 2), times not falling."""
         self.first_step, dt_s = clock
         self.end_s = float(times_s[-1])
@@ -99,6 +102,7 @@ class Timed:
         self._speeds = _speeds(times_s, points, t).tolist()
         self._vertices, self._clock_s = (times_s, points, heading), t
         self._of_centers: tuple[BoxShape, list[float]] | None = None
+        self._rolls = None if rolls_rad is None else np.interp(t, times_s, np.unwrap(rolls_rad)).tolist()
 
     def eased(self, first_mps: float, dt_s: float) -> Timed:
         """The same places at the same times, but the speed changes evenly between them, from `first_mps` on.
@@ -117,6 +121,10 @@ class Timed:
     def pose(self, step: int) -> Pose:
         """Pose at a step of the clock; before and behind the vertices, that of the nearest one."""
         return Pose(*self._rows[min(step - self.first_step, len(self._rows) - 1)])
+
+    def roll(self, step: int) -> float:
+        """Roll there, radians."""
+        return 0.0 if self._rolls is None else float(self._rolls[min(step - self.first_step, len(self._rolls) - 1)])
 
     def speed(self, step: int) -> float:
         """Speed there, m/s, never negative."""

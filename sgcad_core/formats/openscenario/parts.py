@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -10,6 +11,10 @@ from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import Floats, Trajectory
+
+
+CrossSection = tuple[float, float]
+"""Width and height of a body, metres."""
 
 
 class Happening(NamedTuple):
@@ -31,9 +36,22 @@ def world_position(x_m: float, y_m: float, heading_rad: float | Floats) -> xosc.
     return xosc.WorldPosition(number(x_m), number(y_m), 0.0, number(heading_rad, 8))
 
 
-def positions(move: Trajectory, rows: Sequence[int]) -> list[xosc.WorldPosition]:
-    """Poses of some rows of a motion."""
-    return [world_position(move.x_m[k], move.y_m[k], wrap_angle(move.heading_rad[k])) for k in rows]
+def positions(move: Trajectory, rows: Sequence[int], size: CrossSection = (0.0, 0.0)) -> list[xosc.WorldPosition]:
+    """Poses of some rows of a motion; of one that rolls over also roll and height, so that its lowest edge is on the
+    ground. `size`: width and height, metres."""
+    places = [world_position(move.x_m[k], move.y_m[k], wrap_angle(move.heading_rad[k])) for k in rows]
+    if move.roll_rad is not None:
+        for place, k in zip(places, rows, strict=True):
+            roll = float(move.roll_rad[k])
+            place.z, place.p, place.r = number(_lift_m(roll, size)), 0.0, number(roll, 8)
+    return places
+
+
+def _lift_m(roll_rad: float, size: CrossSection) -> float:
+    """How far the origin, on the ground between the wheels, rises so that no edge of the body lies below the ground."""
+    width, height = size
+    edges = [(y, z) for y in (-width / 2, width / 2) for z in (0.0, height)]
+    return -min(y * math.sin(roll_rad) + z * math.cos(roll_rad) for y, z in edges)
 
 
 def at_once(name: str) -> xosc.ValueTrigger:

@@ -91,7 +91,7 @@ def _variables(root: Node) -> dict[str, str]:
 def _run(
     story: Storyboard, scene: Scene, blame: Node, signals: SignalPlan, until_s: float | None
 ) -> tuple[Rows, dict[str, list[int]]]:
-    """Rows of x, y, heading and speed of every body at every step, and the steps at which it is there."""
+    """Rows of x, y, heading, speed and roll of every body at every step, and the steps at which it is there."""
     rows: Rows = {name: [] for name in scene.bodies}
     seen: dict[str, list[int]] = {name: [] for name in scene.bodies}
     for step in _steps(scene, blame, until_s):
@@ -104,7 +104,7 @@ def _run(
             poses = _poses(scene)
         if end_s is None or scene.t_s <= end_s + EPSILON:
             for name, body in scene.bodies.items():
-                rows[name].append((*poses.get(name, _NOWHERE), body.center_speed(step)))
+                rows[name].append((*poses.get(name, _NOWHERE), body.center_speed(step), body.roll_rad))
                 if name in poses:
                     seen[name].append(step)
         if end_s is not None:
@@ -157,4 +157,7 @@ def _trajectory(name: str, dt_s: float, rows: Floats) -> Trajectory:
     t_s = np.arange(len(rows)) * dt_s
     for values in (rows, heading, t_s):
         values.setflags(write=False)
-    return Trajectory(actor=name, t_s=t_s, x_m=rows[:, 0], y_m=rows[:, 1], heading_rad=heading, speed_mps=rows[:, 3])
+    return Trajectory(
+        actor=name, t_s=t_s, x_m=rows[:, 0], y_m=rows[:, 1], heading_rad=heading, speed_mps=rows[:, 3],
+        roll_rad=rows[:, 4] if rows[:, 4].any() else None,
+    )  # fmt: skip

@@ -7,14 +7,17 @@ counts; one without `type` is absolute, as the standard has it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from sgcad_core.formats.openscenario.families import Family
 from sgcad_core.formats.openscenario.motion import Pose
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Roads, Scene
 from sgcad_core.formats.openscenario.way import LanePlace
+from sgcad_core.geometry.plane import Floats
 
 
 class Spot(NamedTuple):
@@ -57,8 +60,15 @@ def has_heading(node: Node) -> bool:
     return child.has("h") or child.find("Orientation") is not None
 
 
+def rolls_of(nodes: Sequence[Node]) -> Floats | None:
+    """(n,) roll that <Position>s in the world state, radians; None where nobody rolls."""
+    places = [node.only() for node in nodes]
+    rolls = np.array([place.number("r", 0.0) if place.has("r") else 0.0 for place in places])
+    return rolls if rolls.any() else None
+
+
 # ------------------------------------------------------------------ absolute
-@POSITIONS.plays("WorldPosition", "InertialPosition", remark="z, pitch and roll are left out: played motion is plane")
+@POSITIONS.plays("WorldPosition", "InertialPosition", remark="motion is plane; the roll of timed vertices is kept")
 def _world(node: Node) -> Where:
     spot = Spot(Pose(node.number("x"), node.number("y"), node.number("h", 0.0)))
     return lambda scene: spot

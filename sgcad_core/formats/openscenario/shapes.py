@@ -13,7 +13,7 @@ import numpy as np
 
 from sgcad_core.formats.openscenario.families import Family
 from sgcad_core.formats.openscenario.motion import Pose
-from sgcad_core.formats.openscenario.positions import has_heading, position
+from sgcad_core.formats.openscenario.positions import has_heading, position, rolls_of
 from sgcad_core.formats.openscenario.read import Node
 from sgcad_core.formats.openscenario.scene import Scene
 from sgcad_core.geometry.plane import Floats, arc_lengths
@@ -24,11 +24,12 @@ MAX_ORDER = 10
 
 
 class Line(NamedTuple):
-    """A trajectory's vertices now: points (n, 2), headings where stated, times where stated."""
+    """A trajectory's vertices now: points (n, 2), headings where stated, times where stated, roll where it is told."""
 
     points: Floats
     headings: Floats | None
     times_s: Floats | None
+    rolls: Floats | None = None
 
 
 Drawn = Callable[[Scene, str], Line]
@@ -46,10 +47,11 @@ def _polyline(shape: Node) -> Drawn:
     times = [v.number("time") for v in vertices if v.has("time")]
     timed = np.array(times) if len(times) == len(places) else None
     stated = all(map(has_heading, holders))
+    rolls = rolls_of(holders)
 
     def drawn(scene: Scene, actor: str) -> Line:
         rows = np.array([where(scene).pose for where in places])
-        return Line(rows[:, :2], rows[:, 2] if stated else None, timed)
+        return Line(rows[:, :2], rows[:, 2] if stated else None, timed, rolls)
 
     return drawn
 

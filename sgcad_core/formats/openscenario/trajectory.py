@@ -59,7 +59,8 @@ def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
         times, points, headings = line.times_s * scale + offset + begin, line.points, line.headings
         if headings is None:
             times, points, headings = _cornered(times, points)
-        return Timed(times, points, headings, (scene.step, scene.dt_s))
+        rolls = line.rolls if len(times) == len(line.points) else None
+        return Timed(times, points, headings, (scene.step, scene.dt_s), rolls)
 
     return make
 

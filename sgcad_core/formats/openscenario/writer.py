@@ -20,9 +20,9 @@ from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.signals import Controller
-from sgcad_core.formats.openscenario.entities import center_ahead_m, entity, environment
+from sgcad_core.formats.openscenario.entities import HEIGHT_M, center_ahead_m, entity, environment
 from sgcad_core.formats.openscenario.events import EventActor, Handover, event_actors
-from sgcad_core.formats.openscenario.parts import Happening, at_once, at_time, group, number, positions
+from sgcad_core.formats.openscenario.parts import CrossSection, Happening, at_once, at_time, group, number, positions
 from sgcad_core.formats.openscenario.vertices import settled, vertex_rows
 from sgcad_core.records import ActorInfo, Trajectory
 from sgcad_core.specs import BehaviorSpec
@@ -60,7 +60,9 @@ def write_xosc(
     """
     moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
-    told = [_Timed(settled(m), ahead) for m, ahead in zip(moves, reaches, strict=True)] if handover is None else None
+    sizes = [(actor.width_m, HEIGHT_M[actor.type]) for actor in actors]
+    timed = [_Timed(settled(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
+    told = timed if handover is None else None
     parts = told or event_actors(moves, reaches, handover or Handover())
     with _WRITING:
         VersionBase().setVersion(minor=minor)
@@ -133,6 +135,7 @@ class _Timed:
 
     move: Trajectory
     ahead_m: float
+    size: CrossSection
 
     @property
     def first_mps(self) -> float:
@@ -147,7 +150,7 @@ class _Timed:
     def group(self) -> xosc.ManeuverGroup:
         name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
         path = xosc.Trajectory(f"{name}_path", False)
-        path.add_shape(xosc.Polyline([number(self.move.t_s[k]) for k in rows], positions(self.move, rows)))
+        path.add_shape(xosc.Polyline([number(self.move.t_s[k]) for k in rows], positions(self.move, rows, self.size)))
         absolute = xosc.ReferenceContext.absolute
         follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, 1.0, 0.0)
         event = Happening(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
