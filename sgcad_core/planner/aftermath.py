@@ -79,4 +79,3 @@ def run_out(
     rests.fit()
     unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
     return Ended((*unreached, *rests.missed()), rests.cost() + MISSED * len(unreached))
-

@@ -79,7 +79,9 @@ def _evading(role: Role) -> list[Drift]:
     hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
     ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
     return [
-        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(evades=True)
+        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(
+            evades=True
+        )
         for left, cost, ease in ways
         for hand in hands
     ]

@@ -156,7 +156,9 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
 def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list[RunOut]:
     """All ways of running out; who is not `on_wheels` slides, and steers nothing."""
     bends = _BENDS_PER_M if on_wheels else _BENDS_PER_M[:1]
-    ways = [RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)]
+    ways = [
+        RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)
+    ]
     gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
     return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if on_wheels]
 

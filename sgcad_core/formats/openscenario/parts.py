@@ -12,7 +12,6 @@ from scenariogeneration.xosc.enumerations import VersionBase
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.records import Floats, Trajectory
 
-
 CrossSection = tuple[float, float]
 """Width and height of a body, metres."""
 

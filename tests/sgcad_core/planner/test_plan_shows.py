@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from sgcad_core.planner.casting import course_of
-from sgcad_core.planner.showing import not_shown
+from sgcad_core.planner.showing import not_evading, not_shown
 from sgcad_core.records import Trajectory
+from sgcad_core.told_course import CourseTold
 from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
 
@@ -42,6 +43,24 @@ def test_a_merge_on_the_other_ones_own_road_is_a_change_of_lane() -> None:
                       contacts=("V2 front V1 back",))  # fmt: skip
     assert made.realised
     assert abs(sideways(track(made, "V2"), at_contact(made))) > 1.0
+
+
+@pytest.mark.parametrize(("hand", "way"), [("left", 1.0), ("right", -1.0), ("either", 1.0)])
+def test_an_evasion_that_is_not_seen_is_noted(hand, way) -> None:
+    _, made = planned("four_leg", actor("V1", "straight", "S"))
+    t = track(made, "V1")
+    north = t.y_m[0] + 12.0 * 0.05 * np.arange(80)
+    ahead = np.column_stack((np.full(80, t.x_m[0]), north, np.full(80, math.pi / 2)))
+    course = course_of(network("four_leg"), actor("V1", "straight", "S"), 3.0)
+    steers, brakes = CourseTold(steers=hand), CourseTold(brakes=True)
+    assert [*not_evading("V1", course, steers, ahead)] == ["V1 has hardly begun to steer aside when they touch"]
+    assert [*not_evading("V1", course, brakes, ahead)] == ["V1 has hardly begun to brake when they touch"]
+    aside = ahead.copy()
+    aside[-20:, 0] -= way * np.linspace(0.0, 0.6, 20)  # northbound: left is west
+    assert not [*not_evading("V1", course, steers, aside)]
+    slows = ahead.copy()
+    slows[-20:, 1] -= 0.5 * 4.0 * (np.arange(20) * 0.05) ** 2
+    assert not [*not_evading("V1", course, brakes, slows)]
 
 
 def test_a_maneuver_that_is_not_seen_is_noted() -> None:

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from sgcad_core.metrics.rest import rest_errors
+from sgcad_core.metrics.rest import attitude_of, rest_errors
 from sgcad_core.planner import plan
 from sgcad_core.planner.ground import Drag, Released, RunOut, run_out, slow
 from sgcad_core.planner.impact import body
+from sgcad_core.planner.runouts import all_runs
 from sgcad_core.roads.surface import road_surface
 from sgcad_core.specs import Actor, BehaviorSpec, Contact
 from sgcad_core.told_course import CourseTold, RestTold
@@ -70,9 +71,10 @@ def test_what_cannot_be_reached_is_said_with_by_how_much() -> None:
     assert any(note.startswith("V1 comes to rest") for note in made.notes)
 
 
-def test_a_rollover_is_told_since_a_plan_view_cannot_show_it() -> None:
-    made, _ = planned({"V2": CourseTold(rolls=True, rest=RestTold(attitude="roof"))})
-    assert "V2 rolls over onto its roof, as told: its box stays flat" in made.notes
+def test_a_told_rollover_is_part_of_the_motion() -> None:
+    _, tracks = planned({"V2": CourseTold(rolls=True, rest=RestTold(attitude="roof"))})
+    assert attitude_of(float(tracks["V2"].rolls[-1])) == "roof"
+    assert tracks["V1"].roll_rad is None
 
 
 def test_two_plans_of_a_told_rest_are_the_same() -> None:
@@ -114,9 +116,9 @@ def test_told_steering_shows_before_the_contact(hand, way) -> None:
 
 # ------------------------------------------------------------------ running out
 @pytest.mark.parametrize("bend", [0.0, 0.05, -0.1])
-@pytest.mark.parametrize("turning", [1.0, 0.4])
-def test_many_ways_at_once_end_where_each_alone_ends(bend, turning) -> None:
-    drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 2.0, bend, turning), 0.01, 4.0
+@pytest.mark.parametrize(("turning", "rolls_s"), [(1.0, 0.0), (0.4, 0.0), (1.0, 1.5)])
+def test_many_ways_at_once_end_where_each_alone_ends(bend, turning, rolls_s) -> None:
+    drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 2.0, bend, turning, rolls_s), 0.01, 4.0
     one = body((1.0, 2.0, 0.3), CAR, 1450.0)
     one.vx, one.vy, one.spin = 11.0, 2.0, 0.8
     other, slides = body((9.0, 2.0, 1.3), (9.0, 2.5), 9000.0), Drag(2.0, 5.0)
@@ -127,8 +129,22 @@ def test_many_ways_at_once_end_where_each_alone_ends(bend, turning) -> None:
     together = both[1][-1][0]
     for k in range(round(end / step)):
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
-        slow(one, drag, step, max(end - k * step, 0.1), run)
+        slow(one, drag, step, max(end - k * step, 0.1), run, k * step)
     assert together == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
+
+
+def test_who_rolls_on_comes_further_before_it_brakes() -> None:
+    one, drag = body((0.0, 0.0, 0.0), CAR, 1450.0), Drag(4.5, 7.0)
+    one.vx = 6.0
+    ways = [RunOut(0.0, 3.0), RunOut(0.0, 3.0, rolls_s=1.5)]
+    ends = run_out([Released(one, 0.0)], [drag], [ways], 8.0, 0.05)[0][-1]
+    assert ends[1][0] - ends[0][0] == pytest.approx(9.0, abs=0.4)  # 6 m/s for 1.5 s
+
+
+def test_who_slides_on_its_roof_steers_nothing() -> None:
+    ways = all_runs(0.0, 7.0, on_wheels=False)
+    assert {(way.bend_per_m, way.rolls_s) for way in ways} == {(0.0, 0.0)}
+    assert any(way.rolls_s for way in all_runs(0.0, 7.0))
 
 
 @pytest.mark.parametrize("bend", [0.1, -0.1])

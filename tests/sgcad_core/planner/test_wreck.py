@@ -286,3 +286,20 @@ def test_what_stands_is_not_simulated_any_longer_and_nothing_changes_by_that(spe
     assert found[0][1] == found[1][1]
     for name, poses in found[0][0].items():
         assert np.array_equal(poses, found[1][0][name])
+
+
+# ------------------------------------------------------------------ gentle touches that are told
+def test_a_gentle_touch_that_is_told_holds_long_enough_to_be_seen_in_a_file() -> None:
+    def gaps(told: frozenset) -> np.ndarray:
+        x = 20.0 - 9.0 + np.cumsum(np.full(COUNT, 2.6 * 0.05))
+        rolls = np.column_stack((x, np.zeros((COUNT, 2))))
+        stands = np.tile([20.0, 0.0, 0.0], (COUNT, 1))
+        movers = [Mover(n, body((0.0, 0.0, 0.0), CAR, 1450.0), s, DRAG) for n, s in (("V1", rolls), ("V2", stands))]
+        poses, touches = Wreck(movers, COUNT, told=told).settle()
+        assert len(touches) == 1
+        return box_gaps(poses["V1"], CAR, poses["V2"], CAR)
+
+    told = gaps(frozenset({frozenset({"V1", "V2"})}))
+    assert (told < 0).sum() >= 4  # 0.2 s
+    assert (gaps(frozenset()) < 0).sum() < (told < 0).sum()
+    assert told.min() > -0.05
