@@ -91,7 +91,7 @@ def meet(
 
 
 def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count: int) -> list[Meeting]:
-    """Contacts on the wanted sides from one end of them to the other: `count` at most, over all shifts that have one."""
+    """Contacts all along the wanted sides: `count` at most, over all shifts of the clocks that have one."""
     found = _fitting(first, second, wanted)
     if found is None:
         return []

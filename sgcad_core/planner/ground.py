@@ -133,7 +133,7 @@ def _moving(one: Body) -> tuple[float, ...]:
 
 
 def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
-    """(6, n) place, heading, velocity and spin a step later; `way`: braking, `wheels`: bend, turning and grip of each."""
+    """(6, n) place, heading, velocity, spin a step later; `way`: braking, `wheels`: bend, turning and grip of each."""
     bend, turning, grip = wheels
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
