@@ -49,8 +49,8 @@ _PARTING_MPS = 0.3
 _HELD_S = 0.11
 """A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
 _TOLD_S, _TOLD_HELD_S = 0.2, 0.25
-"""For so long two hold, and stay as they are, whose touch is told: where a body is set rolling from a standstill, a file
-has its next vertex only 0.11 m further."""
+"""For so long two hold, and stay as they are, whose touch is told: where a body is set rolling from a standstill, the
+next vertex of a file is only 0.11 m further."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
