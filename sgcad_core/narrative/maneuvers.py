@@ -135,7 +135,7 @@ def _within_road(acts: list[Deed]) -> list[Deed]:
 
 def _went_on(turn: Deed, since: list[Deed]) -> bool:
     """Whether a turn was over: it is told so, or a later sentence has the vehicle on its way again."""
-    if any(d.kind == "turn_done" and d.when > turn.when for d in since):
+    if any(d.kind == "turn_done" and d.when >= turn.when for d in since):
         return True
     later = [d for d in since if d.number > turn.number]
     return any(
@@ -232,8 +232,9 @@ def _over_the_line(motion: Motion, deed: Deed) -> Decision:
 
 
 def _moving(motion: Motion, least: int) -> Decision:
+    acts = _within_road(motion.deeds)
     for kind in _PLAIN:
-        if deed := motion.deed(kind, 3):
+        if any(d.kind == kind for d in acts) and (deed := motion.deed(kind, 3)):
             return Decision(kind, deed=deed)
     for over in ("code:over_left", "code:over_right"):
         if (deed := motion.deed(over)) and not motion.did("code:straight"):

@@ -51,7 +51,7 @@ def _add_kin(score: dict[int, float], draft: Draft, a: str, b: str) -> None:
         side = draft.motions[me].from_side
         if side:
             quarter = 270 if (side == "left") == (sign == 1) else 90
-            score[quarter] += 1.0
+            score[quarter] += 1.5
 
 
 def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, b: str) -> None:
