@@ -7,7 +7,7 @@ read with its subject, voice and object. Interviews come last: they exchange num
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from sgcad_core.language import rule
@@ -49,7 +49,7 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[Blow] = []
     retold: list[Blow] = []
-    told = tuple(told)
+    told = tuple(told if who.counted else _with_people(told))
     for t in told:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
@@ -63,6 +63,20 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     early = [b for b in retold if b.number < first and b.other in who.ids]
     late = [b for b in retold if b not in early]
     return (*early, *crash, *late) or _only_named(told, who)
+
+
+def _with_people(told: Iterable[Statement]) -> Iterator[Statement]:
+    """Sentences with "V1 struck him" as "V1 struck the pedestrian" where a person without a number was named before."""
+    last: str | None = None
+    for t in told:
+        him = rule("contact_words.him").search(t.text)
+        named = [
+            m["object"] for m in rule("contact_words.road_user").finditer(t.text[: him.start()] if him else t.text)
+        ]
+        last = named[-1].lower() if named else last
+        if him and last:
+            t = t._replace(text=f"{t.text[: him.start()]}{him['verb']} the {last}{t.text[him.end() :]}")
+        yield t
 
 
 def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:

@@ -163,7 +163,8 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     course = CoursesRead() if near else courses_told(named.statements, deeds, who)
     impacts = () if near else with_props(later_impacts(named.statements, deeds, who, struck), course)
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in who.ids}
-    draft = Draft(who, moved, hits, course, impacts, near, walks)
+    missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, who))
+    draft = Draft(who, moved, hits, course, impacts, near, walks, missed)
     return Events(draft, conditions(found), signal_states(cut))
 
 

@@ -20,6 +20,8 @@ def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]
         return []  # somebody without a number was hit; the vehicles are not told to have touched
     if not pairs and len(draft.who.ids) >= 2:
         a, b = draft.who.ids[:2]
+        if draft.blows and frozenset((a, b)) in draft.missed:
+            return []  # one of both struck something else
         return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
     return [_join(draft, out, blow) for blow in pairs]
 
