@@ -70,9 +70,8 @@ def _with_people(told: Iterable[Statement]) -> Iterator[Statement]:
     last: str | None = None
     for t in told:
         him = rule("contact_words.him").search(t.text)
-        named = [
-            m["object"] for m in rule("contact_words.road_user").finditer(t.text[: him.start()] if him else t.text)
-        ]
+        before = t.text[: him.start()] if him else t.text
+        named = [m["object"] for m in rule("contact_words.road_user").finditer(before)]
         last = named[-1].lower() if named else last
         if him and last:
             t = t._replace(text=f"{t.text[: him.start()]}{him['verb']} the {last}{t.text[him.end() :]}")

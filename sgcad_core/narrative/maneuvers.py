@@ -68,6 +68,9 @@ _MOVING = (
 )
 
 
+_DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
+
+
 def _last_state(motion: Motion) -> Decision | None:
     """What a vehicle did last in an account in order: it stands, backs, or what is told since it stood."""
     acts = sorted((d for d in motion.deeds if d.weight >= 3), key=lambda d: d.when)
@@ -243,7 +246,10 @@ def _moving(motion: Motion, least: int) -> Decision:
         return Decision("lane_change_left", False, deed)
     if deed := motion.deed("negotiating_curve", 3):
         return Decision("negotiating_curve", deed=deed)
-    if deed := motion.deed("slowing", least):
+    for side in _DEPARTURES:
+        if deed := motion.deed(f"code:{side}"):
+            return Decision(side, deed=deed)
+    if deed := motion.deed("slowing", least) or motion.deed("code:slowing"):
         return Decision("slowing", deed=deed)
     deed = motion.deed("straight") or motion.deed("code:straight")
     return Decision("straight", deed is not None, deed)
