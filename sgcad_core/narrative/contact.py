@@ -114,7 +114,7 @@ def _blow(
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
     befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
-    if (says.NEAR_MISS.search(before) and not befell) or _is_noun(before, m.group(), behind):
+    if not befell and (says.NEAR_MISS.search(before) or _is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
