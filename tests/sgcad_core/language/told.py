@@ -1,7 +1,7 @@
 """What a text tells as a flat record of fields, and the same read by a language that lacks a rule.
 
 Fields are those of `Reading.facts`; besides them whatever a reading holds that is no fact of a vehicle, a contact or a
-road (`near`, `gap`, `roads.crosswalk`, ...), and the text without its persons. A field that nobody tells is None.
+road (`near`, `gap`, `roads.crosswalk`, ...), its sentences as read, and the text without its persons. A field that nobody tells is None.
 """
 
 from __future__ import annotations
@@ -50,6 +50,7 @@ def _besides(reading: Reading) -> dict[str, object]:
     found: dict[str, object] = {
         "vehicles": len(crash.vehicles), "others": len(crash.others), "contacts": len(crash.contacts),
         "impacts": len(crash.impacts), "roads": len(roads.roads), "sentences": len(reading.sentences),
+        "as_read": " ".join(s.text for s in reading.sentences),
         "gap": crash.gap.reason if crash.gap else None, "lost_control": reading.lost_control,
         "near": bool(near), "near.clearance_m": near.clearance_m if near else None,
         "roads.merge_lane": roads.merge_lane, "roads.crosswalk": roads.crosswalk, "roads.urban": roads.urban,
