@@ -26,7 +26,7 @@ def test_without_its_rule_a_text_gives_something_else(id: str) -> None:
 def _lost(text: str, fields: dict[str, object]) -> bool:
     try:
         return bool(differs(text, fields))
-    except KeyError:  # a word of the vocabulary that the rule cuts out whole
+    except (KeyError, AttributeError, IndexError):  # the reader counts on the rule
         return True
 
 
