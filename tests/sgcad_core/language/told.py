@@ -6,6 +6,7 @@ road (`near`, `gap`, `roads.crosswalk`, ...), its sentences as read, and the tex
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -24,6 +25,10 @@ from sgcad_core.narrative.reading import Reading, read
 FOLDER = Path(__file__).with_name("told")
 """File of rules -> rule -> text -> field -> value; null: the text tells nothing of that field."""
 _METHODS = ("search", "match", "fullmatch", "finditer", "findall", "sub", "subn", "split")
+
+
+_FLAGS = re.compile(r"^(\(\?[a-z]+\))?")
+"""Flags for a whole pattern, which have to stand first."""
 
 
 @lru_cache(maxsize=1)
@@ -72,7 +77,7 @@ def silenced(id: str) -> Iterator[None]:
     """The language with a rule that reads nothing, its groups kept."""
     handle = rule(id)
     kept = dict(handle.__dict__)
-    never = tuple(f"(?!)(?:{one})" for one in handle.record.alternatives)
+    never = tuple(_FLAGS.sub(r"\1(?!)(?:", one, 1) + ")" for one in handle.record.alternatives)
     record = replace(handle.record, alternatives=never)
     pattern = language().pattern(record)
     _given.cache_clear()
