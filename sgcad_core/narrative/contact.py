@@ -7,7 +7,7 @@ read with its subject, voice and object. Interviews come last: they exchange num
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from sgcad_core.language import rule
@@ -17,6 +17,7 @@ from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, st
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
+from sgcad_core.narrative.walkers import with_people
 from sgcad_core.narrative.zones import Zone, area_by, area_if_told, area_of, plain
 
 
@@ -49,7 +50,7 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[Blow] = []
     retold: list[Blow] = []
-    told = tuple(told if who.counted else _with_people(told))
+    told = tuple(told if who.counted else with_people(told))
     for t in told:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
@@ -63,19 +64,6 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     early = [b for b in retold if b.number < first and b.other in who.ids]
     late = [b for b in retold if b not in early]
     return (*early, *crash, *late) or _only_named(told, who)
-
-
-def _with_people(told: Iterable[Statement]) -> Iterator[Statement]:
-    """Sentences with "V1 struck him" as "V1 struck the pedestrian" where a person without a number was named before."""
-    last: str | None = None
-    for t in told:
-        him = rule("contact_words.him").search(t.text)
-        before = t.text[: him.start()] if him else t.text
-        named = [m["object"] for m in rule("contact_words.road_user").finditer(before)]
-        last = named[-1].lower() if named else last
-        if him and last:
-            t = t._replace(text=f"{t.text[: him.start()]}{him['verb']} the {last}{t.text[him.end() :]}")
-        yield t
 
 
 def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:

@@ -103,8 +103,7 @@ class Roster:
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
-        """A number that stands twice; "behind V2, V2 began" of our own numbers and "when V1 passed V2, V2 began" are two
-        mentions."""
+        """A number that stands twice; two mentions in "behind V2, V2 began" of our own numbers and behind "when"."""
         apart = self.counted or rule("vehicles.two_clauses").search(match.string[: match.start()])
         return match.group() if apart and "," in match.group() else match.group(1)
 

@@ -1,7 +1,8 @@
 """What a text tells as a flat record of fields, and the same read by a language that lacks a rule.
 
 Fields are those of `Reading.facts`; besides them whatever a reading holds that is no fact of a vehicle, a contact or a
-road (`near`, `gap`, `roads.crosswalk`, ...), its sentences as read, and the text without its persons. A field that nobody tells is None.
+road (`near`, `gap`, `roads.crosswalk`, ...), its sentences as read, and the text without its persons. A field that
+nobody tells is None.
 """
 
 from __future__ import annotations
