@@ -253,8 +253,6 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
     by = says.BY.search(scope)
     where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
     area = area or (area_of(where["area"]) if where else None)
-    if not by and rule("contact.by_somebody").search(scope) and who.other(actor) is None:
-        return None
     other = by["v"] if by else who.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
