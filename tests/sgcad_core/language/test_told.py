@@ -9,8 +9,8 @@ from tests.sgcad_core.language.readings import facts_of_sentences
 from tests.sgcad_core.language.told import differs, drawn, silenced, told
 
 ELSEWHERE = ("account", "degrade", "report", "wordings")
-"""Files whose rules no reading uses: what a scenario made of a report, robustness levels, roads of no reading at all, and
-the learned reader's words. They have tests of their own."""
+"""Files whose rules no reading uses: what a scenario made of a report, robustness levels, texts without roads, the
+learned reader's words. They have tests of their own."""
 WITHOUT = 53
 """Rules that no text of facts needs yet; let it only shrink."""
 
