@@ -17,6 +17,7 @@ from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, st
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
+from sgcad_core.narrative.walkers import with_people
 from sgcad_core.narrative.zones import Zone, area_by, area_if_told, area_of, plain
 
 
@@ -49,7 +50,7 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[Blow] = []
     retold: list[Blow] = []
-    told = tuple(told)
+    told = tuple(told if who.counted else with_people(told))
     for t in told:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
@@ -101,7 +102,7 @@ def _blow(
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
     befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
-    if (says.NEAR_MISS.search(before) and not befell) or _is_noun(before, m.group(), behind):
+    if not befell and (says.NEAR_MISS.search(before) or _is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
@@ -252,8 +253,6 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
     by = says.BY.search(scope)
     where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
     area = area or (area_of(where["area"]) if where else None)
-    if not by and rule("contact.by_somebody").search(scope) and who.other(actor) is None:
-        return None
     other = by["v"] if by else who.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None

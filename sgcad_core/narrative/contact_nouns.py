@@ -39,7 +39,8 @@ def touches(text: str) -> Iterator[Touch]:
     told = (says.BETWEEN, says.BOTH_PARTS, _NAMED, _CAUSED)
     for m in (m for pattern in told for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "between")
+            front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
+            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or front, _maybe(m["a2"]) or front, "between")
     for m in says.PUSHED.finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield Touch(a, b, "front", _maybe(area) or "back", "pushed")

@@ -7,14 +7,14 @@ the first telling before later ones. Knows no contact but the sentence of the fi
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.language import Rule, of_role, rule
 from sgcad_core.narrative.clauses import Segment, Statement, segments
 from sgcad_core.narrative.compass import COMPASS, WORDS, turned
-from sgcad_core.narrative.motion import Cue
+from sgcad_core.narrative.motion import Cue, Deed
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Compass
@@ -75,10 +75,14 @@ def _cut(told: Statement, who: Roster) -> list[Segment]:
     return [Segment((told.subject,), told.text[goes_on.end() : end].lower(), told.role, told.number), *found]
 
 
-def courses_told(told: Sequence[Statement], cut: Sequence[Segment], who: Roster) -> CoursesRead:
-    """What the text tells of every vehicle's course. `cut`: `cut_by_deeds`."""
+def courses_told(
+    told: Sequence[Statement], cut: Sequence[Segment], who: Roster, coded: Mapping[str, Deed] | None = None
+) -> CoursesRead:
+    """What the text tells of every vehicle's course. `cut`: `cut_by_deeds`; `coded`: who lost control by the codes."""
     impact = min((t.number for t in told if t.role == "impact"), default=10_000)
     heard = {v: _Heard() for v in who.ids}
+    for vehicle, deed in (coded or {}).items():
+        heard[vehicle].hear("lost_control", True, deed.cue)
     for segment in sorted(cut, key=lambda s: s.role in _RETOLD):
         if segment.role in UNREAD:
             continue

@@ -96,20 +96,21 @@ def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Si
 
 def _of_sentence(sentence: Statement, owner: str) -> Iterator[Sign]:
     text = sentence.text.lower()
-    if (read := _read(text, sentence.subject == owner)) is not None:
+    coded = sentence.role == "codes" or (sentence.role != "factors" and bool(rule("crash_roles.coded").search(text)))
+    if (read := _read(text, sentence.subject == owner, coded)) is not None:
         weight, name = read
         yield Sign(owner, weight, name, Cue(sentence.number, text[:60], name))
 
 
-def _read(text: str, is_subject: bool) -> tuple[float, str] | None:
-    """What a sentence says of its owner: a weight and the rule."""
+def _read(text: str, is_subject: bool, coded: bool) -> tuple[float, str] | None:
+    """What a sentence says of its owner: a weight and the rule; `coded`: whether it quotes codes."""
     if rule("crash_roles.reason").search(text):
         none = rule("crash_roles.reason_none").search(text)
         return (-_REASON, "crash_roles.reason_none") if none else (_REASON, "crash_roles.reason")
     if is_subject and rule("crash_roles.came_over").search(text):
         return _BROKE, "crash_roles.came_over"
-    if rule("critical_events.event").search(text):
-        return _read_event(text)
+    if coded and rule("critical_events.event").search(text):
+        return None if rule("crash_roles.no_event").search(text) else _read_event(text)
     if rule("crash_roles.cited").search(text) and not rule("crash_roles.not_cited").search(text):
         return _CITED, "crash_roles.cited"
     if is_subject and rule("crash_roles.broke_a_rule").search(text):

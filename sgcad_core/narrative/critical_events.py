@@ -35,6 +35,6 @@ def _other_code(found: dict[str, Motion], owner: str, text: str, number: int, wh
         if "kin" in what:
             for me, you in ((owner, other), (other, owner)) if other else ((owner, other),):
                 if me:
-                    found[me].kin.append((1, what["kin"], you, "code"))
+                    found[me].kin.append((3, what["kin"], you, "code"))
         elif who_did := (owner if what["whom"] == "self" else other):
             found[who_did].deeds.append(Deed(f"code:{what['deed']}", 2, number, code.group(), event.id))

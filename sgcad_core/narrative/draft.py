@@ -41,6 +41,8 @@ class Draft:
     """Of a report that tells no contact: `blows` are then those that did not come about."""
     walks: Mapping[str, Walk] = field(default_factory=dict)
     """How those who have no number go, by their word in `blows`."""
+    missed: frozenset[frozenset[str]] = frozenset()
+    """Pairs that the text tells to have nearly touched."""
 
 
 AREAS: tuple[Area, ...] = get_args(Area)

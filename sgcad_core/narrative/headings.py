@@ -23,7 +23,7 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         words = m.groupdict()
         gap = words.get("gap") or words.get("gap2") or ""
         if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
-            _note_heading(motion, words.get("dir") or words.get("dir2") or "", weight, by.id)
+            _note_heading(motion, words.get("dir") or words.get("dir2") or words.get("dir3") or "", weight, by.id)
     for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)

@@ -151,7 +151,7 @@ def _complete_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
         out.headings[ids[0]] = "N"
     for _ in ids:
         for v in ids:
-            partner = _partner(v, out.headings, pairs, ids)
+            partner = _partner(v, out.headings, pairs, draft)
             if v not in out.headings and partner:
                 turn = relative(draft, out, partner, v, pairs)
                 out.headings[v] = turned(out.headings[partner], turn)
@@ -162,7 +162,7 @@ def _mend_headings(draft: Draft, out: Settled, pairs: list[Blow]) -> None:
     for v in sorted(out.stated):
         side = QUARTER_DEG.get(out.maneuvers[v])
         exits = draft.motions[v].exits
-        partner = _partner(v, out.headings, pairs, draft.who.ids)
+        partner = _partner(v, out.headings, pairs, draft)
         if side is None or not exits or partner not in out.stated or partner is None:
             continue
         if all(between(turned(out.headings[v], side), e) == 180 for e in exits):
@@ -181,11 +181,13 @@ def _from_exits(draft: Draft, out: Settled) -> None:
             return
 
 
-def _partner(vehicle: str, known: Mapping[str, Compass], pairs: list[Blow], ids: tuple[str, ...]) -> str | None:
-    """The vehicle that tells most of this one's heading: the first that it touched, else any."""
+def _partner(vehicle: str, known: Mapping[str, Compass], pairs: list[Blow], draft: Draft) -> str | None:
+    """The vehicle that tells most of this one's heading: the first that it touched, else one that it is told to drive
+    beside, else any."""
     for b in pairs:
         if vehicle in (b.actor, b.other):
             other = b.other if b.actor == vehicle else b.actor
             if other in known:
                 return other
-    return next((v for v in ids if v in known and v != vehicle), None)
+    beside = (other for _, kin, other, _ in draft.motions[vehicle].kin if kin == "same")
+    return next((v for v in (*beside, *draft.who.ids) if v in known and v != vehicle), None)

@@ -82,7 +82,6 @@ _EACH_TURN = rule("lanes.each_turn")
 
 _NUMBERED_TURN = rule("lanes.numbered_turn")
 _ONE_LANE = rule("lanes.one_lane")
-_OFF_ROAD = rule("lanes.off_road")
 _CROSSED = rule("lanes.crossed")
 
 
@@ -155,8 +154,6 @@ def _items(text: str) -> Iterator[_Item]:
     """Lane counts in order: "two eastbound lanes", "a left turn lane", "one lane for northbound traffic"."""
     for match in _ITEM.finditer(text):
         mods, count = (match["mods"] or "").lower(), match["count"] or match["turncount"] or match["barecount"]
-        if _OFF_ROAD.search(mods):
-            continue
         word = rule("common.bound").search(mods)
         behind = match["behind1"] or match["behind2"] or match["bare"] or (word[0] if word else None)
         turn = _turn(mods, match["turn"])

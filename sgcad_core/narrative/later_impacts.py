@@ -70,7 +70,8 @@ def _things(segment: Segment, start: int) -> Iterator[ImpactRead]:
 
 
 def _undone(text: str, m: re.Match[str]) -> bool:
-    return bool(rule("course_evasion.to_avoid").search(text[max(0, m.start() - 25) : m.start()]))
+    before = text[max(0, m.start() - 25) : m.start()]
+    return bool(rule("course_evasion.to_avoid").search(before) or rule("course_impacts.nearly").search(before))
 
 
 def _hit(segment: Segment, m: re.Match[str], thing: str, before: bool) -> ImpactRead:

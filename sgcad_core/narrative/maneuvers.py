@@ -68,6 +68,9 @@ _MOVING = (
 )
 
 
+_DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
+
+
 def _last_state(motion: Motion) -> Decision | None:
     """What a vehicle did last in an account in order: it stands, backs, or what is told since it stood."""
     acts = sorted((d for d in motion.deeds if d.weight >= 3), key=lambda d: d.when)
@@ -135,7 +138,7 @@ def _within_road(acts: list[Deed]) -> list[Deed]:
 
 def _went_on(turn: Deed, since: list[Deed]) -> bool:
     """Whether a turn was over: it is told so, or a later sentence has the vehicle on its way again."""
-    if any(d.kind == "turn_done" and d.when > turn.when for d in since):
+    if any(d.kind == "turn_done" and d.when >= turn.when for d in since):
         return True
     later = [d for d in since if d.number > turn.number]
     return any(
@@ -232,8 +235,9 @@ def _over_the_line(motion: Motion, deed: Deed) -> Decision:
 
 
 def _moving(motion: Motion, least: int) -> Decision:
+    acts = _within_road(motion.deeds)
     for kind in _PLAIN:
-        if deed := motion.deed(kind, 3):
+        if any(d.kind == kind for d in acts) and (deed := motion.deed(kind, 3)):
             return Decision(kind, deed=deed)
     for over in ("code:over_left", "code:over_right"):
         if (deed := motion.deed(over)) and not motion.did("code:straight"):
@@ -242,7 +246,10 @@ def _moving(motion: Motion, least: int) -> Decision:
         return Decision("lane_change_left", False, deed)
     if deed := motion.deed("negotiating_curve", 3):
         return Decision("negotiating_curve", deed=deed)
-    if deed := motion.deed("slowing", least):
+    for side in _DEPARTURES:
+        if deed := motion.deed(f"code:{side}"):
+            return Decision(side, deed=deed)
+    if deed := motion.deed("slowing", least) or motion.deed("code:slowing"):
         return Decision("slowing", deed=deed)
     deed = motion.deed("straight") or motion.deed("code:straight")
     return Decision("straight", deed is not None, deed)

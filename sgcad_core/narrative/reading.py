@@ -33,6 +33,7 @@ from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_act
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.later_impacts import later_impacts, with_props
+from sgcad_core.narrative.motion import Deed, Motion
 from sgcad_core.narrative.motion_reader import motions
 from sgcad_core.narrative.near_crash import before_evasion, near_miss, near_misses, tells_hit
 from sgcad_core.narrative.provenance import Read, Telling, crash_provenance
@@ -160,11 +161,17 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
     )
     moved = motions(named.statements, before_evasion(cut) if of_study else cut, who, next(met, None))
     deeds = cut_by_deeds(named.statements, who)
-    course = CoursesRead() if near else courses_told(named.statements, deeds, who)
+    course = CoursesRead() if near else courses_told(named.statements, deeds, who, _coded_loss(moved))
     impacts = () if near else with_props(later_impacts(named.statements, deeds, who, struck), course)
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in who.ids}
-    draft = Draft(who, moved, hits, course, impacts, near, walks)
+    missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, who))
+    draft = Draft(who, moved, hits, course, impacts, near, walks, missed)
     return Events(draft, conditions(found), signal_states(cut))
+
+
+def _coded_loss(moved: Mapping[str, Motion]) -> dict[str, Deed]:
+    """Who lost control by the codes of a critical event."""
+    return {v: deed for v, motion in moved.items() if (deed := motion.deed("code:lost_control"))}
 
 
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:

@@ -46,12 +46,12 @@ def _add_kin(score: dict[int, float], draft: Draft, a: str, b: str) -> None:
         for weight, kin, other, words in draft.motions[me].kin:
             if other == you and not (words == "behind" and _on_foot(draft, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[kin]:
-                    score[q] += 0.5 * weight
+                    score[q] += 0.6 * weight
     for me, sign in ((a, 1), (b, -1)):
         side = draft.motions[me].from_side
         if side:
             quarter = 270 if (side == "left") == (sign == 1) else 90
-            score[quarter] += 1.0
+            score[quarter] += 1.5
 
 
 def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, b: str) -> None:

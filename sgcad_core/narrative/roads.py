@@ -83,9 +83,9 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     crash = _oriented(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
-    gathered = gather(mentions, headings)
-    junction = replace(junction_of(told, driven, gathered), unsupported=unsupported_places(told))
     limits, bends = speed_limits(told, headings), curves(told, headings)
+    gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
+    junction = replace(junction_of(told, driven, gathered), unsupported=unsupported_places(told))
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)

@@ -20,6 +20,8 @@ def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]
         return []  # somebody without a number was hit; the vehicles are not told to have touched
     if not pairs and len(draft.who.ids) >= 2:
         a, b = draft.who.ids[:2]
+        if draft.blows and frozenset((a, b)) in draft.missed:
+            return []  # one of both struck something else
         return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
     return [_join(draft, out, blow) for blow in pairs]
 
@@ -35,12 +37,22 @@ def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
         area_a, area_b = _sideswiped(out, a, b)
     if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
         a, b = b, a
+    if area_a is None and area_b is None and (caught := _caught_up(draft, a, b)):
+        a, b, area_a, area_b = *caught, "front", "back"
     area_a, area_b = complete_areas(out, a, b, area_a, area_b)
     leads_b = area_b == "front" and area_a != "front" and not _backs_into(out, a, area_a)
     if leads_b or (_backs_into(out, b, area_b) and _standing(out, a)):
         a, b, area_a, area_b = b, a, area_b, area_a
     may = {blow.actor: _allowed(blow.actor_area), blow.other: _allowed(blow.other_area)}
     return Joined(a, b, area_a, area_b, told, True, may[a], may[b])
+
+
+def _caught_up(draft: Draft, a: str, b: str) -> tuple[str, str] | None:
+    """Striker and struck where the codes say that one came from behind with more speed."""
+    for struck, striker in ((a, b), (b, a)):
+        if draft.motions[struck].did("code:hit_from_behind"):
+            return striker, struck
+    return None
 
 
 def _allowed(zone: Zone | None) -> tuple[Area, ...]:

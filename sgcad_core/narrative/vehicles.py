@@ -103,8 +103,9 @@ class Roster:
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
-        """A number that stands twice; "behind V2, V2 began" of our own numbers are two mentions."""
-        return match.group() if self.counted and "," in match.group() else match.group(1)
+        """A number that stands twice; two mentions in "behind V2, V2 began" of our own numbers and behind "when"."""
+        apart = self.counted or rule("vehicles.two_clauses").search(match.string[: match.start()])
+        return match.group() if apart and "," in match.group() else match.group(1)
 
     @cached_property
     def _named(self) -> re.Pattern[str] | None:

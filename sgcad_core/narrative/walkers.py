@@ -1,8 +1,8 @@
-"""From which side people come who have no number: as told by hand or by compass. Knows sentences, no motion."""
+"""People who have no number: whom "him" means, and from which side they come. Knows sentences, no motion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from sgcad_core.language import rule
@@ -16,6 +16,19 @@ class Walk(NamedTuple):
 
     hand: str | None = None
     way: Compass | None = None
+
+
+def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
+    """Sentences with "V1 struck him" as "V1 struck the pedestrian" where a person without a number was named before."""
+    last: str | None = None
+    for t in told:
+        him = rule("contact_words.him").search(t.text)
+        before = t.text[: him.start()] if him else t.text
+        named = [m["object"] for m in rule("contact_words.road_user").finditer(before)]
+        last = named[-1].lower() if named else last
+        if him and last:
+            t = t._replace(text=f"{t.text[: him.start()]}{him['verb']} the {last}{t.text[him.end() :]}")
+        yield t
 
 
 def walk_of(word: str, told: Iterable[Statement]) -> Walk:
