@@ -36,7 +36,7 @@ _SPEEDS = ((1.0, 1.0), (1.3, 0.75), (0.75, 1.3), (1.2, 1.2), (0.8, 0.8))
 """Factors on speeds that nobody tells. Two that are equally fast come to rest where they met, head on."""
 _PLACES = 5
 """Along the told sides, at each of the speeds."""
-_MOST, _MOST_AGAIN = 10, 25
+_MOST, _MOST_AGAIN = 5, 10
 """Of such encounters are tried: each costs about as much as the first. More where the two are to meet a second time:
 whether a tail swings into the other hangs on where the blow falls."""
 _BETTER = 0.25
