@@ -58,6 +58,7 @@ def test_the_hardest_for_a_driver_are_told_with_weights_and_what_decides(case):
     assert (place / "decides.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_map_elites_keeps_the_hardest_of_every_way_of_being_hard(case):
     ended = run(case, "-n", 30, "--driver", "aeb", "--role", "responder", "--search", "map-elites")
     assert ended.exit_code == 0, ended.output
