@@ -116,11 +116,21 @@ def _blow(
     if len(subjects) > 1:
         return _mutual(told, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], _subject_area(before, subjects[0])
+    if not passive and (part := _door(actor, before, scope, who)):
+        actor, actor_area = part
     return (
         _passive(told, actor, actor_area, scope, m.group(), who)
         if passive
         else _active(told, actor, actor_area, scope, m.group(), who)
     )
+
+
+def _door(actor: str, before: str, scope: str, who: Roster) -> tuple[str, Zone | None] | None:
+    """Whose door struck `actor`, where a report that numbers nobody does not say (the other's), and on which side."""
+    part = rule("contact.a_part").search(before) if who.counted else None
+    struck = says.ACTIVE_OBJECT.match(scope) if part else None
+    other = who.other(actor) if struck and struck["v"] == actor else None
+    return (other, area_of(part["area"])) if part and other else None
 
 
 def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
