@@ -15,7 +15,7 @@ from sgcad_core.narrative.compass import angle_of
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of, wrapped
-from sgcad_core.specs import Maneuver, RoadSpec, is_aisle
+from sgcad_core.specs import Compass, Maneuver, RoadSpec, is_aisle
 
 TURN_RAD: dict[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
 _QUARTER = math.pi / 2
@@ -81,7 +81,7 @@ class _Assignment:
     def _heading_cost(self, v: VehicleFacts, way: Way) -> float:
         if v.heading is None or not self.facts.oriented:
             return 0.0
-        along, wanted = (self._flow_rad(way), way.heading_rad), angle_of(v.heading) - square_rad(v, way)
+        along, wanted = (self._flow_rad(way), way.heading_rad), travel_rad(v, v.heading, way) - square_rad(v, way)
         off = min(*(apart(h, wanted) for h in along), apart(way.start_rad, wanted) + 0.2)
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
 
@@ -149,7 +149,7 @@ class _Assignment:
         if a.heading and b.heading:
             square = square_rad(a, one) - square_rad(b, other)
             told = not square or (a.heading_stated and b.heading_stated)
-            wanted = angle_of(b.heading) - angle_of(a.heading) + square if told else 0.0
+            wanted = travel_rad(b, b.heading, other) - travel_rad(a, a.heading, one) + square if told else 0.0
             cost += 3.0 * abs(wrapped(self._flow_rad(other) - self._flow_rad(one) - wanted)) / _QUARTER
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
@@ -171,6 +171,16 @@ class _Assignment:
             if partner:
                 cost += self._together(v, partner, option.placed.way, placed[name].way)
         return cost
+
+
+def travel_rad(v: VehicleFacts, heading: Compass, way: Way) -> float:
+    """Where a vehicle goes: who backs goes tail first, away from where it is told to face; stalls have their own rule."""
+    return angle_of(heading) + (math.pi if goes_tail_first(v) and not is_aisle(way.road) else 0.0)
+
+
+def goes_tail_first(v: VehicleFacts) -> bool:
+    """Whether it backs away from where it is told to face, not to where it is told to go."""
+    return v.maneuver == "backing" and v.faces
 
 
 def square_rad(v: VehicleFacts, way: Way) -> float:

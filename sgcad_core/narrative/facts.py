@@ -53,6 +53,8 @@ class VehicleFacts:
     """The turn that it meant to make, where told; `maneuver` is what it did."""
     from_stop: bool = False
     """Whether it had just started from a stop."""
+    faces: bool = False
+    """Whether the heading that is told is where it faces: who backs goes the other way."""
 
     @property
     def standing(self) -> bool:
@@ -121,6 +123,7 @@ def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
         lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
+        faces=f"faces {settled.headings.get(v.id)}" in motion.sources,
     )  # fmt: skip
 
 

@@ -24,6 +24,9 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         gap = words.get("gap") or words.get("gap2") or ""
         if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
             _note_heading(motion, words.get("dir") or words.get("dir2") or "", weight, by.id)
+            faces = compass_of(m["dir"]) if by is _HEADING and rule("headings.facing").search(m.group()) else None
+            if faces:
+                motion.read(f"faces {faces}", m["dir"], "headings.facing")
     for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)

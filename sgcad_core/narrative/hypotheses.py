@@ -42,7 +42,7 @@ def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
 
 
 def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
-    """The other side of a corner; any side where none is told."""
+    """The other side of a corner, which a report that numbers nobody leaves open; any side where none is told."""
     for role in ("striker", "struck"):
         may, now = getattr(first, f"{role}_may"), getattr(first, f"{role}_area")
         price = _CORNER if len(may) <= 3 else _OPEN_SIDE
@@ -50,7 +50,8 @@ def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
             if side != now:
                 other = replace(first, **{f"{role}_area": side})
                 words = f"the {side} of {getattr(first, role)} instead of the {now}"
-                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS))
+                told = len(may) < (2 if facts.unnumbered else len(AREAS))
+                yield Hypothesis(_with_first(facts, other), words, price, not told)
 
 
 def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
