@@ -123,8 +123,13 @@ def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
         lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
-        faces=f"faces {settled.headings.get(v.id)}" in motion.sources,
+        faces=_faces(motion, settled.headings.get(v.id)),
     )  # fmt: skip
+
+
+def _faces(motion: Motion, heading: Compass | None) -> bool:
+    """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
+    return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
 
 
 def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
