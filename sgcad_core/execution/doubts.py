@@ -28,8 +28,10 @@ from sgcad_core.specs import BehaviorSpec, Maneuver, size_m
 ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
 _UNMET, _OVER = 10.0, 1.0
-_ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "lane_change_left", "lane_change_right", "merge", "overtaking")
-_AWRY_RAD = math.radians(30)
+_AWRY_RAD: dict[Maneuver, float] = {
+    **dict.fromkeys(("straight", "slowing"), math.radians(30)),
+    **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
+}  # fmt: skip
 """Who goes along a road and has turned by more is not seen to do so."""
 MOST = 4
 """Other readings that are planned."""
@@ -145,7 +147,7 @@ def _turned_otherwise(maneuver: Maneuver, track: Trajectory, until_s: float) -> 
     turned = float(np.unwrap(heading)[-1] - heading[0]) if len(heading) else 0.0
     if maneuver in TURNING:
         return (-turned if maneuver == "turn_right" else turned) < TURNED_RAD
-    return maneuver in _ALONG and abs(turned) > _AWRY_RAD
+    return abs(turned) > _AWRY_RAD.get(maneuver, math.inf)
 
 
 def _left(
