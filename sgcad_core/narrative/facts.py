@@ -159,16 +159,16 @@ def _subject_first(
 ) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
     """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
 
-    Who was pushed into the subject by another is then under way, which the report does not say; so is who strikes
-    another and is told to have stood before.
+    Who stood and was pushed into the subject by another stands until then. Who strikes the side of another and is told
+    to have stood before is under way, which the report does not say.
     """
     mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
     if mine is None or not mine.stated:
         return vehicles, contacts
     pair = {v.id: v for v in vehicles if v.id in (mine.striker, mine.struck)}
-    if len(pair) == 2 and all(v.standing for v in pair.values()):
-        pushed = next(v for v in pair.values() if v is not vehicles[0])
-        came = pair[mine.striker] if mine is contacts[0] else pushed
+    aside = {mine.striker_area, mine.struck_area} & {"left", "right"}
+    if aside and mine is contacts[0] and len(pair) == 2 and all(v.standing for v in pair.values()):
+        came = pair[mine.striker]
         moving = replace(came, maneuver="straight", maneuver_stated=False)
         vehicles = tuple(moving if v is came else v for v in vehicles)
     return vehicles, (mine, *(c for c in contacts if c is not mine))

@@ -62,6 +62,8 @@ _UNBRAKED = 0.3
 """Cost of a contact before a told braking shows."""
 _UNDER_WAY_M = 2.5
 """Who starts from a stop is moving only this far on."""
+_PUSHED_M = 0.8
+"""Who stands and is pushed into another rolls so far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +182,7 @@ def driving(option: Option) -> Motion:
     begins = _begins(role, drift)
     penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
-        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
+        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + (_PUSHED_M / 2 if role.pushed else _UNDER_WAY_M))
     if pace.brakes and pace.slow_at_m is not None:
         penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
@@ -287,7 +289,9 @@ def _pace(role: Role, option: Option) -> Pace:
     usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
     curve = max(usual * pacing.factor, speed if told else 3.0)
     starts = None
-    if pacing.from_stop and role.course.turn is not None:
+    if role.pushed:
+        starts = role.place.station_m - _PUSHED_M
+    elif pacing.from_stop and role.course.turn is not None:
         starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
     elif pacing.from_stop:
         starts = line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)

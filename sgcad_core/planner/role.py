@@ -48,6 +48,8 @@ class Role:
     """Whether the blow is to turn the other one in a told way."""
     may_skid: bool = False
     """The report tells that somebody lost control."""
+    pushed: bool = False
+    """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
     """What the report tells of its evasion."""
 
