@@ -78,4 +78,11 @@ class SimulationFailed(SgcadError):
 
 
 class ProcessDied(SimulationFailed):
-    """A worker process was killed or crashed before its time was over; whoever killed it need not be the report."""
+    """A worker process was killed or crashed before its time was over; whoever killed it need not be the report.
+
+    `from_outside`: a signal ended it that no crash sends: somebody's kill, or the system's want of memory.
+    """
+
+    def __init__(self, message: str, *, from_outside: bool = False) -> None:
+        super().__init__(message)
+        self.from_outside = from_outside

@@ -59,8 +59,10 @@ class Worker:
                 done, result = process.ask(args, timeout_s)
             except _Died as death:
                 self._process = None
-                kind = SimulationFailed if str(death) else ProcessDied  # a reason is given where the time was over
-                raise kind(f"{self.target}: {process.end(str(death))}") from death
+                said = f"{self.target}: {process.end(str(death))}"
+                if str(death):  # a reason is given where the time was over
+                    raise SimulationFailed(said) from death
+                raise ProcessDied(said, from_outside=process.was_killed()) from death
         if done:
             return result
         raise result
@@ -163,6 +165,10 @@ class _Process:
         words = self.said()
         self.finalize()
         return f"the worker process {reason}" + (f"; its last words: {words}" if words else "")
+
+    def was_killed(self) -> bool:
+        """Whether a signal ended it that comes from outside."""
+        return -(self.popen.poll() or 0) in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 
     def said(self) -> str:
         self.errors.seek(0, os.SEEK_END)

@@ -16,7 +16,7 @@ from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, he
 from plugins.validator._near_crash import near_crash_findings
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.assign import square_rad
+from sgcad_core.narrative.assign import goes_tail_first, square_rad
 from sgcad_core.narrative.compass import angle_of, compass_of_angle
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
@@ -99,7 +99,11 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
         if fact is None or way is None or fact.heading is None or not fact.heading_stated:
             continue
         wanted = angle_of(fact.heading) - square_rad(fact, way)
-        if min(apart(way.start_rad, wanted), apart(way.end_rad, wanted), apart(way.heading_rad, wanted)) > _FAR_RAD:
+        along = (way.start_rad, way.end_rad, way.heading_rad)
+        off = min(apart(h, wanted) for h in along)
+        if goes_tail_first(fact):  # it may be written as facing along its way, or as going along it tail first
+            off = min(off, *(apart(h, wanted + math.pi) for h in along))
+        if off > _FAR_RAD:
             yield _finding(
                 f"{actor.id} first travels {compass_of_angle(way.heading_rad)}, but the report says {fact.heading}",
                 f"{actor.id}.road", f"{actor.road}, {actor.direction}",
@@ -187,7 +191,8 @@ def _choices(fact: VehicleFacts, spec: RoadSpec | None) -> list[dict[str, tuple[
     every = ways_of(spec) if spec is not None else ()
     ways = every
     if fact.heading is not None and fact.heading_stated:
-        ways = heading(ways, angle_of(fact.heading))
+        told = angle_of(fact.heading)
+        ways = heading(ways, told) + (heading(ways, told + math.pi) if goes_tail_first(fact) else ())
     ways = approaches(ways, spec) if spec is not None and fact.maneuver != "parked" else ways
     starts = [course(way, every, fact.maneuver) | does for way in ways]
     choices = [start for start in starts if start.get("exit_road") != ()]

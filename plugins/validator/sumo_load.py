@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.errors import InvalidOutput, ProcessDied, SimulationFailed
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.plain_xml import sumo_findings
@@ -32,9 +32,13 @@ class SumoLoad(Validator):
                 return [_finding("the network has no roads", remedy="give it at least one road with a lane")]
             if faults := sumo_findings("net", artifact.net_xml):  # libsumo loads negative lengths without complaint
                 return faults
-            said: str = _WORKER.call(artifact.net_xml, timeout_s=self.timeout_s)
+            said = self._load(artifact.net_xml)
         except InvalidOutput as fault:
             return list(fault.findings)
+        except ProcessDied as fault:
+            if fault.from_outside:  # says nothing of the network: the case fails, and is tried on the next run
+                raise
+            return [_finding(f"SUMO died of the network: {fault}", remedy="simplify the network")]
         except SimulationFailed as fault:
             return [_finding(f"SUMO died of the network: {fault}", remedy="simplify the network")]
         return (
@@ -42,6 +46,17 @@ class SumoLoad(Validator):
             if said
             else []
         )
+
+    def _load(self, net_xml: str) -> str:
+        """SUMO's words about the network, "" where it loads; once more where somebody killed the process."""
+        for last in (False, True):
+            try:
+                said: str = _WORKER.call(net_xml, timeout_s=self.timeout_s)
+                return said
+            except ProcessDied as fault:
+                if last or not fault.from_outside:
+                    raise
+        raise AssertionError("the last try returns or raises")
 
 
 def _details(message: str) -> str:

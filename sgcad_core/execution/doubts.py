@@ -7,22 +7,32 @@ no better than the first.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.metrics.driving import WHEELED, driven, first_touches
 from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.hypotheses import Hypothesis, hypotheses
+from sgcad_core.narrative.hypotheses import ONWARD, Hypothesis, hypotheses
 from sgcad_core.planner import plan
+from sgcad_core.planner.place import TURNING
+from sgcad_core.planner.showing import TURNED_RAD
 from sgcad_core.records import Scenario, Trajectory
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import BehaviorSpec, size_m
+from sgcad_core.specs import BehaviorSpec, Maneuver, size_m
 
 ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
 _UNMET, _OVER = 10.0, 1.0
+_AWRY_RAD: dict[Maneuver, float] = {
+    **dict.fromkeys(("straight", "slowing"), math.radians(30)),
+    **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
+}  # fmt: skip
+"""Who goes along a road and has turned by more is not seen to do so."""
 MOST = 4
 """Other readings that are planned."""
 
@@ -83,11 +93,13 @@ def least_doubted(
 
     What the text tells gives way only where the declared contact does not come about at all: on the development reports
     a corner's other side and other headings resolved three doubts of seven, and each time the codes had it as it was
-    first read. What would resolve a doubt is told all the same.
+    first read. What would resolve a doubt is told all the same. Of a report that numbers nobody a corner's other side
+    also stands in where the first one hides what somebody is told to do: the words fit both.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     if most <= 0.0:
         return Least(facts, "", ())
+    hidden = first.behavior is not None and _hides(first.behavior, first.planned)
     tried = [Tried("the first reading", most)]
     best: tuple[float, CrashFacts, str] = (most, facts, "")
     for other in [one for one in hypotheses(facts) if may_be(one.facts)][:MOST]:
@@ -95,19 +107,56 @@ def least_doubted(
         if left is None:
             continue
         tried.append(Tried(other.words, left))
-        gives_way = other.open or most >= _UNMET
+        gives_way = other.open or most >= _UNMET or (other.corner and hidden)
         if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
         if left <= 0.0 and gives_way:
             break
+    if best[0] >= _UNMET and (met := _by_force(facts, behave, graph)):
+        best = (met[1], met[0].facts, met[0].words)
+        tried.append(Tried(f"{met[0].words}, by force", met[1]))
     return Least(best[1], best[2], tuple(tried))
 
 
-def _left(other: Hypothesis, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph) -> float | None:
+def _by_force(
+    facts: CrashFacts, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph
+) -> tuple[Hypothesis, float] | None:
+    """Somebody who does not slow, with whom the declared contact comes about at least in odd driving."""
+    for other in hypotheses(facts):
+        left = _left(other, behave, graph, by_force=True) if other.words.endswith(ONWARD) else None
+        if left is not None and left < _UNMET:
+            return other, left
+    return None
+
+
+def _hides(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> bool:
+    """Whether one of the first pair, before it is touched, turns though it goes straight, or hardly turns though it is
+    to turn."""
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    touches = first_touches(motions, sizes)
+    pair = {name for c in behavior.contacts[:1] for name in (c.striker, c.struck)}
+    return any(
+        _turned_otherwise(actor.maneuver, track, touches.get(actor.id, math.inf))
+        for actor, track in zip(behavior.actors, motions, strict=True)
+        if actor.id in pair
+    )
+
+
+def _turned_otherwise(maneuver: Maneuver, track: Trajectory, until_s: float) -> bool:
+    heading = np.asarray(track.heading_rad)[: int(np.searchsorted(track.t_s, until_s, side="right"))]
+    turned = float(np.unwrap(heading)[-1] - heading[0]) if len(heading) else 0.0
+    if maneuver in TURNING:
+        return (-turned if maneuver == "turn_right" else turned) < TURNED_RAD
+    return abs(turned) > _AWRY_RAD.get(maneuver, math.inf)
+
+
+def _left(
+    other: Hypothesis, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph, *, by_force: bool = False
+) -> float | None:
     """The doubt that another reading leaves; None where it cannot be placed on the roads."""
     try:
         behavior = behave(other.facts)
-        planned = plan(behavior, graph, by_force=False)
+        planned = plan(behavior, graph, by_force=by_force)
     except (InvalidOutput, Refused):
         return None
     return doubt(behavior, planned.trajectories, planned.oddity)

@@ -81,9 +81,15 @@ class _Assignment:
     def _heading_cost(self, v: VehicleFacts, way: Way) -> float:
         if v.heading is None or not self.facts.oriented:
             return 0.0
-        along, wanted = (self._flow_rad(way), way.heading_rad), angle_of(v.heading) - square_rad(v, way)
+        along, wanted = (self._flow_rad(way), way.heading_rad), self._travel_rad(v, way) - square_rad(v, way)
         off = min(*(apart(h, wanted) for h in along), apart(way.start_rad, wanted) + 0.2)
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
+
+    def _travel_rad(self, v: VehicleFacts, way: Way) -> float:
+        """Where a vehicle goes on a way: who backs across a junction goes tail first, away from where it faces; where
+        none is, it faces along its way and rolls back in it. Stalls have a rule of their own."""
+        tail_first = goes_tail_first(v) and not is_aisle(way.road) and bool(exits(way, self.ways))
+        return angle_of(v.heading or "N") + (math.pi if tail_first else 0.0)
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
         """Driveways are for those who come from one; ramps likewise."""
@@ -149,7 +155,7 @@ class _Assignment:
         if a.heading and b.heading:
             square = square_rad(a, one) - square_rad(b, other)
             told = not square or (a.heading_stated and b.heading_stated)
-            wanted = angle_of(b.heading) - angle_of(a.heading) + square if told else 0.0
+            wanted = self._travel_rad(b, other) - self._travel_rad(a, one) + square if told else 0.0
             cost += 3.0 * abs(wrapped(self._flow_rad(other) - self._flow_rad(one) - wanted)) / _QUARTER
         same = (one.road.id, one.direction) == (other.road.id, other.direction)
         if one.to_node != other.to_node and not (one.road.id == other.road.id and not same and self.plain):
@@ -171,6 +177,11 @@ class _Assignment:
             if partner:
                 cost += self._together(v, partner, option.placed.way, placed[name].way)
         return cost
+
+
+def goes_tail_first(v: VehicleFacts) -> bool:
+    """Whether it backs away from where it is told to face, not to where it is told to go."""
+    return v.maneuver == "backing" and v.heading_stated and v.faces
 
 
 def square_rad(v: VehicleFacts, way: Way) -> float:

@@ -103,9 +103,10 @@ class Phrase:
 
     @property
     def clauses(self) -> str:
-        """What its modifiers tell of its motion, as clauses behind it."""
+        """What its modifiers tell of its motion, as clauses behind it, closed where the sentence leaves it."""
         told = [_STATES[m] for m in self.modifiers if _STATES.get(m)]
-        return f", {told[0]}" if told else ""
+        closed = rule("references.goes_on").match(self.match.string, self.match.end())
+        return f", {told[0]}{',' if closed else ''}" if told else ""
 
 
 def _is_car(head: str) -> bool:

@@ -171,7 +171,8 @@ def _resumed(
     text: str, aside: re.Match[str], before: list[tuple[int, int, tuple[str, ...]]]
 ) -> list[tuple[int, int, tuple[str, ...]]]:
     """Where the subject goes on behind one that only stands beside it: "passed V3 parked there and turned left"."""
-    if not before or not _BESIDE.search(text[max(0, aside.start() - 60) : aside.start()]):
+    beside = _BESIDE.search(text[max(0, aside.start() - 60) : aside.start()])
+    if not before or not (beside or rule("clauses.told_aside").match(text, aside.end())):
         return []
     stop = next((m.start() for m in _SUBJECT.finditer(text, aside.end())), len(text))
     onward = _RESUMES.search(text, aside.end(), stop)
@@ -206,7 +207,7 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
             return False
         return bool(rule("clauses.relative").match(behind) or _STANDS_BESIDE.match(behind))
     if _DRIVER_OF.search(before):
-        return _acts(behind)
+        return _acts(behind) and not (behind.startswith(" and ") and rule("clauses.touched_part").search(before))
     if _PREPOSITION.search(before):
         if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
             return True

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
 from sgcad_core.narrative.clauses import Statement, subject_starts
-from sgcad_core.narrative.contact_nouns import Touch, involved, paired_areas, struck_pair, together, touches
+from sgcad_core.narrative.contact_nouns import Touch, door_of, involved, paired_areas, struck_pair, together, touches
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import HIT, Role
 from sgcad_core.narrative.vehicles import MENTION, Roster
@@ -117,6 +117,9 @@ def _blow(
     if len(subjects) > 1:
         return _mutual(told, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], _subject_area(before, subjects[0])
+    other = None if passive or not who.counted else who.other(actor)
+    if other and (part := door_of(actor, before, scope)):
+        actor, actor_area = other, area_of(part)
     return (
         _passive(told, actor, actor_area, scope, m.group(), who)
         if passive
@@ -129,9 +132,8 @@ def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> 
     by = says.BY.search(scope)
     if not by:
         return None
-    return Blow(
-        by["v"], thing["object"].lower(), area_if_told(by["area"]), None, told.number, told.role, False, verb.lower()
-    )
+    area = area_if_told(by["area"])
+    return Blow(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
 
 
 def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, who: Roster) -> Blow | None:

@@ -61,6 +61,13 @@ def involved(text: str) -> Iterator[Touch]:
         yield Touch(m["v1"], m["v2"], None, None, "involved")
 
 
+def door_of(actor: str, before: str, scope: str) -> str | None:
+    """The door or mirror that struck `actor`, in words, where a sentence does not say whose: then it is another's."""
+    part = rule("contact.a_part").search(before)
+    struck = says.ACTIVE_OBJECT.match(scope) if part else None
+    return part["area"] if part and struck and struck["v"] == actor else None
+
+
 def _maybe(words: str | None) -> Zone | None:
     return area_of(words) if words else None
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.language import Rule, of_role, rule
-from sgcad_core.narrative.compass import compass_of, turned
+from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.motion import Deed, Motion
 
 _TURNING = rule("deeds.turning")
@@ -18,6 +18,7 @@ _EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
+_TURNS = ("turn_left", "turn_right")
 _ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
 """Ways of moving that are no maneuver of their own, and may be waited for."""
 _BEFORE = ("came_on", "moved_on")
@@ -41,18 +42,41 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
     for deed in (*of_role("deed"), *told_now):
         for m in deed.finditer(text):
             before = text[max(0, m.start() - 60) : m.start()]
-            hoped = motion.ordered and _only_hoped(deed.yields["deed"], before)
-            if not _NOT.search(before[-30:]) and not hoped:
+            undone = motion.ordered and _undone(deed.yields["deed"], before, m.group())
+            if not _NOT.search(before[-30:]) and not undone:
                 _note_deed(motion, deed, m, (weight, number, at + m.end()))
+    if motion.ordered:
+        _read_turn_on(motion, text, weight, number, at)
+        _read_from_onto(motion, text, weight, number, at)
 
 
-def _only_hoped(kind: str, before: str) -> bool:
-    """Whether the words before a deed say that it was waited for or meant, or done before what they tell."""
-    if kind in _HOPED and _LATER.search(before):
-        return True
+def _undone(kind: str, before: str, words: str) -> bool:
+    """Whether the words before a deed say that it was waited for or meant, done before what they tell, or of people."""
+    if kind in _HOPED and (_LATER.search(before) or rule("deeds.meant").search(before)):
+        return not (rule("deeds.done").match(words) or rule("deeds.begins").search(before))
     if kind in _BEFORE and rule("deeds.earlier").search(before):
         return True
-    return kind in _ONWARD and bool(rule("deeds.unmoved").search(before))
+    unmoved = rule("deeds.unmoved").search(before) or rule("deeds.by_people").search(before)
+    return kind in _ONWARD and bool(unmoved or rule("deeds.not_yet").search(before + words))
+
+
+def _read_turn_on(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """A turn that goes on, to the hand to which the vehicle was told to turn or to mean to turn."""
+    for m in rule("deeds.turn_on").finditer(text):
+        sides = [d.kind.removeprefix("want_") for d in motion.deeds if d.kind.removeprefix("want_") in _TURNS]
+        before = text[max(0, m.start() - 60) : m.start()]
+        if sides and not _NOT.search(before) and not _LATER.search(before):
+            motion.deeds.append(Deed(sides[-1], weight, number, m.group(), "deeds.turn_on", at + m.end()))
+
+
+def _read_from_onto(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """ "From westbound Elm Street onto southbound Oak Avenue": a turn by its two directions, where no word tells it."""
+    for m in rule("deeds.from_onto").finditer(text):
+        start, end = compass_of(m["from"]), compass_of(m["onto"])
+        side = {90: "right", 135: "right", 225: "left", 270: "left"}.get(between(start, end)) if start and end else None
+        told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.deeds)
+        if side and not told:
+            motion.deeds.append(Deed(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
 
 
 def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:

@@ -53,6 +53,8 @@ class VehicleFacts:
     """The turn that it meant to make, where told; `maneuver` is what it did."""
     from_stop: bool = False
     """Whether it had just started from a stop."""
+    faces: bool = False
+    """Whether the heading that is told is where it faces: who backs goes the other way."""
 
     @property
     def standing(self) -> bool:
@@ -121,7 +123,13 @@ def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
         lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
+        faces=_faces(motion, settled.headings.get(v.id)),
     )  # fmt: skip
+
+
+def _faces(motion: Motion, heading: Compass | None) -> bool:
+    """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
+    return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
 
 
 def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
@@ -151,16 +159,18 @@ def _subject_first(
 ) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
     """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
 
-    Who was pushed into the subject by another is then under way, which the report does not say.
+    Who stood and was pushed into the subject by another stands until then. Who strikes the side of another and is told
+    to have stood before is under way, which the report does not say.
     """
     mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
-    if mine is None or mine is contacts[0]:
+    if mine is None or not mine.stated:
         return vehicles, contacts
     pair = {v.id: v for v in vehicles if v.id in (mine.striker, mine.struck)}
-    if all(v.standing for v in pair.values()):
-        pushed = next(v for v in pair.values() if v is not vehicles[0])
-        moving = replace(pushed, maneuver="straight", maneuver_stated=False)
-        vehicles = tuple(moving if v is pushed else v for v in vehicles)
+    aside = {mine.striker_area, mine.struck_area} & {"left", "right"}
+    if aside and mine is contacts[0] and len(pair) == 2 and all(v.standing for v in pair.values()):
+        came = pair[mine.striker]
+        moving = replace(came, maneuver="straight", maneuver_stated=False)
+        vehicles = tuple(moving if v is came else v for v in vehicles)
     return vehicles, (mine, *(c for c in contacts if c is not mine))
 
 

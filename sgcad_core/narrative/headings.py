@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 from sgcad_core.language import rule
 from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.motion import Motion
+from sgcad_core.specs import Compass
 
 _HEADING = rule("headings.heading")
 _HEADING_BARE = rule("headings.heading_bare")
@@ -24,6 +27,8 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         gap = words.get("gap") or words.get("gap2") or ""
         if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
             _note_heading(motion, words.get("dir") or words.get("dir2") or words.get("dir3") or "", weight, by.id)
+            if way := compass_of(words.get("dir") or ""):
+                _note_sense(motion, m, way)
     for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)
@@ -36,6 +41,13 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         if heading:
             motion.exits.append(heading)
             motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
+
+
+def _note_sense(motion: Motion, told: re.Match[str], way: Compass) -> None:
+    """Note that a vehicle is told to face that way, or to go there backward."""
+    for sense, words in (("faces", rule("headings.facing")), ("backs", rule("headings.tail_first"))):
+        if words.search(told.group()):
+            motion.read(f"{sense} {way}", told["dir"], words.id)
 
 
 _BOUND_VEHICLE = rule("headings.bound_vehicle")

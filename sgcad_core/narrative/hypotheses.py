@@ -20,6 +20,9 @@ _CORNER, _OPEN_SIDE, _GUESSED, _LANE, _HEADING, _TURN, _SWAP = 0.1, 0.25, 0.2, 0
 """Prices: what a reading must gain by its checks to be preferred."""
 
 
+ONWARD = "drives straight on"
+
+
 class Hypothesis(NamedTuple):
     """A crash read otherwise, in what, and at what price."""
 
@@ -28,6 +31,8 @@ class Hypothesis(NamedTuple):
     price: float
     open: bool = False
     """Whether the text is silent on what differs, so that nothing told gives way."""
+    corner: bool = False
+    """Whether it is the other side of a corner in a report that numbers nobody: the words fit both."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
@@ -50,15 +55,16 @@ def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
             if side != now:
                 other = replace(first, **{f"{role}_area": side})
                 words = f"the {side} of {getattr(first, role)} instead of the {now}"
-                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS))
+                corner = facts.unnumbered and len(may) == 2
+                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner)
 
 
 def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
-    """A maneuver that is inferred gives way to driving straight on, a lane to any lane."""
+    """A maneuver that is inferred, and slowing, give way to driving straight on, a lane to any lane."""
     for v in pair:
-        if not v.maneuver_stated and v.maneuver != "straight":
-            yield _changed(facts, replace(v, maneuver="straight"), f"{v.id} drives straight on", _GUESSED)._replace(
-                open=True
+        if v.maneuver == "slowing" or (not v.maneuver_stated and v.maneuver != "straight"):
+            yield _changed(facts, replace(v, maneuver="straight"), f"{v.id} {ONWARD}", _GUESSED)._replace(
+                open=not v.maneuver_stated
             )
         if v.lane is not None or v.lane_word is not None:
             yield _changed(facts, replace(v, lane=None, lane_word=None), f"{v.id} in any lane", _LANE)

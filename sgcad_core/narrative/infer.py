@@ -31,6 +31,7 @@ def settle(draft: Draft) -> Settled:
         if motion.speeds_mph:
             out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
     _turned_headings(draft, out)
+    _faced_headings(draft, out)
     _still_moving(draft, out, pairs)
     _change_hands(draft, out, pairs)
     _mend_headings(draft, out, pairs)
@@ -64,6 +65,17 @@ def _turned_headings(draft: Draft, out: Settled) -> None:
         else:
             out.headings[v] = turned(out.headings[v], 90 if turn.kind == "turn_right" else -90)
             out.stated.discard(v)
+
+
+def _faced_headings(draft: Draft, out: Settled) -> None:
+    """Of an account in order: who backs heads where it was last told to face, whatever way it had come before."""
+    for v, motion in draft.motions.items():
+        faced = [(cue.number, what.removeprefix("faces "), cue) for what, cue in motion.sources.items()
+                 if what.startswith("faces ")]  # fmt: skip
+        if motion.ordered and faced and out.maneuvers[v] == "backing":
+            _, way, cue = max(faced, key=lambda told: told[0])
+            out.headings[v], out.sources[f"{v} heading"] = way, cue  # type: ignore[assignment]
+            out.stated.add(v)
 
 
 def _change_hands(draft: Draft, out: Settled, pairs: list[Blow]) -> None:

@@ -78,7 +78,8 @@ class Motion:
     axes: list[str] = field(default_factory=list)
     from_side: Literal["left", "right"] | None = None
     sources: dict[str, Cue] = field(default_factory=dict)
-    """Where lane, origin, target and each exit ("exit W") were first read."""
+    """Where lane, origin, target, each exit ("exit W") and where it faces or backs to ("faces W", "backs W") were first
+    read."""
 
     def did(self, kind: str, least: int = 1) -> bool:
         """Whether a deed is told with at least that weight."""

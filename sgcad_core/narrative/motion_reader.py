@@ -38,8 +38,9 @@ def motions(
         _read_part(found[identity.id], identity, who)
     impact = min((t.number for t in told if t.role == "impact"), default=len(told))
     impact = struck_at if who.counted and struck_at is not None else impact
+    blow = next((t for t in told if t.number == impact), None) if who.counted else None
     for segment in cut:
-        if segment.role in _UNREAD:
+        if segment.role in _UNREAD or (blow and _behind(blow, segment)):
             continue
         for vehicle in segment.subjects:
             motion = found[vehicle]
@@ -57,6 +58,14 @@ def motions(
         if t.role in ("codes", "factors"):
             read_code(found, t, who)
     return found
+
+
+def _behind(blow: Statement, segment: Segment) -> bool:
+    """Whether a segment of the sentence of the contact tells what came behind it."""
+    if segment.number != blow.number or not rule("motion_reader.next_event").search(blow.text[: segment.at]):
+        return False
+    return any(not rule("motion_reader.no_hit").search(blow.text[: m.start()].lower())
+               for m in HIT.finditer(blow.text, 0, segment.at))  # fmt: skip
 
 
 def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:

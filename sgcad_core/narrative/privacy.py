@@ -49,14 +49,18 @@ def redacted(text: Traced) -> Traced:
 def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
     """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it.
 
-    Of one about the driver whom a study watched it stays that he drives: all that follows is about him.
+    Of one about the driver whom a study watched it stays that he drives: all that follows is about him, be it in the
+    same sentence.
     """
     named: str | None = None
     for sentence in sentences:
         kept = _without_persons(sentence)
         mention = _MENTION.search(sentence.text)
-        if not kept.text.strip(" .!?") and rule("near_names.watched").match(sentence.text):
-            kept = sentence.sub(rule("near_names.watched"), r"\1\2 is driving. ", 1)
+        watched = rule("near_names.watched")
+        if not kept.text.strip(" .!?") and watched.match(sentence.text):
+            kept = sentence.sub(watched, r"\1\2 is driving. ", 1)
+        elif kept.text != sentence.text and (who := watched.match(sentence.text)) and not watched.match(kept.text):
+            kept = joined([sentence.cut(0, who.end("subject")).sub(watched, r"\1\2 is driving and "), kept])
         elif not kept.text.strip(" .!?"):
             named = mention.group(0) if mention else named
         elif _PERSON.match(kept.text) and named:

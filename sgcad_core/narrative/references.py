@@ -33,6 +33,8 @@ def number_actors(text: Traced) -> Traced:
     if numbers_somebody(text.text):
         return text
     automated = _automated(text.text)
+    for name in _companies(text.text):
+        text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
     cast = Cast([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
     return numbered(text, Numbering(cast))
 
@@ -57,6 +59,12 @@ def _numbered(block: Traced, numbering: Numbering) -> Traced:
 def _automated(text: str) -> bool:
     """Whether a report says of a vehicle that it is the automated one, or its own."""
     return any(m["automated"] for m in _PHRASE.finditer(text))
+
+
+def _companies(text: str) -> list[str]:
+    """Companies by whose names a report calls the automated vehicle: "the Acme AV"."""
+    called = (rule("references.branded").match(m["automated"]) for m in _PHRASE.finditer(text) if m["automated"])
+    return list(dict.fromkeys(name.group().strip() for name in called if name))
 
 
 @dataclass
@@ -119,11 +127,14 @@ class Numbering:
         return bool(rule("references.stranger").search(before)) or bool(ridden and self._has(phrase.kind))
 
     def _described(self, match: re.Match[str]) -> Actor | None:
-        """Who is only said to be what a phrase says: "the other vehicle was a 2031 van"."""
+        """Who is only said to be what a phrase says: "the other vehicle was a 2031 van", "the car, a van, ..."."""
         if self.last is None or self.last[0].string != match.string or (match["det"] or "").lower() not in ("a", "an"):
             return None
         between = match.string[self.last[0].end() : match.start()]
-        return self.last[1] if rule("references.was").fullmatch(between) else None
+        apposed = (
+            between == ", " and match.string[match.end() : match.end() + 1] == "," and Phrase(self.last[0]).definite
+        )
+        return self.last[1] if apposed or rule("references.was").fullmatch(between) else None
 
     def _has(self, kind: str) -> bool:
         return any(a.kind == kind for a in self.cast.actors)

@@ -200,6 +200,8 @@ def pacings(role: Role) -> list[Pacing]:
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
     if role.course.stalls and role.actor.maneuver == "backing":
         return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
+    if role.pushed:
+        return [Pacing(0.0, 1.0, True)]
     told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
     found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
     found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]

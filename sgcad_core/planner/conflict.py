@@ -40,6 +40,8 @@ class Conflicts:
     by_force: bool = True
     told: Courses = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    pushed: set[str] = field(default_factory=set)
+    """Who stands and is set rolling."""
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
@@ -84,7 +86,7 @@ class Conflicts:
         places = self._places(a, b)
         pair = [
             Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
-                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()))
+                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()), pushed=actor.id in self.pushed)
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
@@ -93,6 +95,7 @@ class Conflicts:
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
         self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
+        self.pushed.add(mover.id)
         self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
         return self.actors[a.id]
 

@@ -31,9 +31,10 @@ from sgcad_core.planner.drifting import line_of, profile
 from sgcad_core.planner.fit import misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
-from sgcad_core.planner.place import STOP_LINE_M, TURNING
+from sgcad_core.planner.place import TURNING
 from sgcad_core.planner.role import (
     BRAKED_TO,
+    PUSHED_M,
     Drift,
     Pacing,
     Role,
@@ -41,7 +42,7 @@ from sgcad_core.planner.role import (
     facing,
     is_beside,
     is_standing,
-    line_m,
+    starts_at_m,
     usual_speed,
 )
 from sgcad_core.planner.rolling import easiest, offset, offsets, rolled, swung, tightest
@@ -180,7 +181,7 @@ def driving(option: Option) -> Motion:
     begins = _begins(role, drift)
     penalty = misfit(role, path, drift, begins)
     if pace.starts_at_m is not None:
-        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + _UNDER_WAY_M)
+        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + (PUSHED_M / 2 if role.pushed else _UNDER_WAY_M))
     if pace.brakes and pace.slow_at_m is not None:
         penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
@@ -286,13 +287,8 @@ def _pace(role: Role, option: Option) -> Pace:
     speed = usual_speed(role) * pacing.factor
     usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
     curve = max(usual * pacing.factor, speed if told else 3.0)
-    starts = None
-    if pacing.from_stop and role.course.turn is not None:
-        starts = role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
-    elif pacing.from_stop:
-        starts = line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
     hard = told or bool(option.drift.note or option.twist.note or option.dodge)
-    pace = Pace(speed, curve, starts, grip_mps2=role.grip_mps2, hard=hard)
+    pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
     if role.actor.maneuver == "slowing" or role.told.brakes:
         at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0)

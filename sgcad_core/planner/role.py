@@ -23,6 +23,8 @@ IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
 """Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
+PUSHED_M = 0.8
+"""Who stands and is pushed into another rolls so far."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -48,6 +50,8 @@ class Role:
     """Whether the blow is to turn the other one in a told way."""
     may_skid: bool = False
     """The report tells that somebody lost control."""
+    pushed: bool = False
+    """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
     """What the report tells of its evasion."""
 
@@ -183,6 +187,17 @@ def _bearing_across(role: Role) -> float | None:
 def facing(side: Area) -> float:
     """Bearing of a side as seen from its box, radians left of ahead."""
     return SIDES.index(side) * math.pi / 2
+
+
+def starts_at_m(role: Role, pacing: Pacing) -> float | None:
+    """The station up to which it stands; None for who does not start from a stop."""
+    if role.pushed:
+        return role.place.station_m - PUSHED_M
+    if pacing.from_stop and role.course.turn is not None:
+        return role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
+    if pacing.from_stop:
+        return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
+    return None
 
 
 def line_m(role: Role) -> float:

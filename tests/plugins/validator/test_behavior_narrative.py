@@ -59,6 +59,16 @@ def test_a_wrong_heading_names_the_ways_that_fit() -> None:
     assert finding.remedy == "start it on S forward or N backward"
 
 
+@pytest.mark.parametrize(("road", "direction", "fine"), [("E", "forward", True), ("E", "backward", True),
+                                                        ("S", "forward", False)])  # fmt: skip
+def test_who_backs_may_face_along_its_way_or_go_along_it_tail_first(road: str, direction: str, fine: bool) -> None:
+    text = "The AV was going north. A van facing east reversed, and the rear of the van hit the right side of the AV."
+    written = behavior_of_facts(crash_facts(text), SPEC)
+    van = written.actors[1].model_copy(update={"road": road, "direction": direction, "exit_road": None})
+    found = _found(written.model_copy(update={"actors": (written.actors[0], van)}), text)
+    assert (not any("first travels" in f.what for f in found)) == fine
+
+
 @pytest.mark.parametrize("maneuver", ["turn_right", "straight", "stopped"])
 def test_another_maneuver_than_the_told_turn_is_asked_again(maneuver: str) -> None:
     (finding,) = _found(_changed(1, maneuver=maneuver))

@@ -83,3 +83,44 @@ def test_a_contact_that_does_not_come_about_is_the_worst_doubt() -> None:
         met.behavior.contacts[0].model_copy(update={"struck_area": "left"}),)})  # fmt: skip
     assert doubt(met.behavior, met.planned, 0.2) == 0.0
     assert doubt(apart, met.planned, 0.2) > doubt(met.behavior, met.planned, 2.0) == 2.0
+
+
+UNNUMBERED = "The AV was eastbound. A van was southbound. The front of the AV struck the right front corner of the van."
+
+
+def unnumbered_other_side(facts: CrashFacts) -> BehaviorSpec:
+    if facts.contacts[0].struck_area == crash_facts(UNNUMBERED).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
+def awry(by_rad: float) -> Scenario:
+    """A doubted scenario whose first actor has turned by so much before the contact."""
+    met = scenario(1.5)
+    first = met.planned[0]
+    headings = tuple(h + by_rad * i / len(first.heading_rad) for i, h in enumerate(first.heading_rad))
+    return met.model_copy(update={"planned": (first.model_copy(update={"heading_rad": headings}), *met.planned[1:])})
+
+
+def test_of_a_report_without_numbers_a_corner_gives_way_where_its_first_side_hides_what_is_told() -> None:
+    facts = crash_facts(UNNUMBERED)
+    assert least_doubted(facts, unnumbered_other_side, GRAPH, awry(0.0)).facts == facts
+    least = least_doubted(facts, unnumbered_other_side, GRAPH, awry(4.0))
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+
+
+def test_where_nothing_else_meets_somebody_who_slows_drives_on() -> None:
+    text = "V1 was eastbound and slowed for a bus. V2 was southbound. The front of V1 struck the right side of V2."
+    facts = crash_facts(text)
+
+    def only_onward(facts: CrashFacts) -> BehaviorSpec:
+        if facts.vehicles[0].maneuver == "slowing":
+            raise InvalidOutput("this reading cannot be placed")
+        return crossing()
+
+    met = scenario(0.0)
+    assert met.behavior is not None
+    wrong = met.behavior.contacts[0].model_copy(update={"struck_area": "left"})
+    unmet = met.model_copy(update={"behavior": met.behavior.model_copy(update={"contacts": (wrong,)})})
+    least = least_doubted(facts, only_onward, GRAPH, unmet)
+    assert least.facts.vehicles[0].maneuver == "straight"

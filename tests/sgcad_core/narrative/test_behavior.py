@@ -30,6 +30,21 @@ def test_who_backs_up_in_its_lane_stays_on_its_road_and_who_backs_west_drives_we
     assert _actor(_behavior(west), "V2").exit_road == "W"
 
 
+def test_who_faces_one_way_and_backs_comes_from_the_side_that_it_faces() -> None:
+    at_curb = (
+        "The AV was going north. A van stopped facing east on the cross street reversed, and the rear of the van hit "
+        "the right side of the AV."
+    )
+    van = _actor(_behavior(at_curb), "V2")
+    assert (van.road, van.exit_road) == ("E", "W")
+    before = (
+        "The AV was going north. A van traveling east stopped and reversed, and its rear hit the right side of the AV."
+    )
+    assert _actor(_behavior(before), "V2").road == "E"
+    told = "The AV was going north. A van was backing west, and the rear of the van hit the right side of the AV."
+    assert _actor(_behavior(told), "V2").road == "E"
+
+
 def test_a_stated_heading_starts_on_the_opposite_leg() -> None:
     found = _behavior("V1 was traveling north. V2 was traveling west. The front of V1 struck the left side of V2.")
     assert (_actor(found, "V1").road, _actor(found, "V1").direction) == ("S", "forward")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sgcad_core.narrative.hypotheses import hypotheses
+from sgcad_core.narrative.hypotheses import ONWARD, hypotheses
 from sgcad_core.narrative.reading import crash_facts
 
 INTRO = "Vehicle #1 was a 2001 Ford Taurus traveling north. Vehicle #2 was a 1999 Honda Civic traveling east. "
@@ -39,3 +39,15 @@ def test_each_reading_differs_in_one_thing() -> None:
     for other in hypotheses(facts):
         changed = sum(a != b for a, b in zip(facts.vehicles, other.facts.vehicles, strict=True))
         assert changed + (facts.contacts != other.facts.contacts) == 1
+
+
+def test_slowing_gives_way_to_driving_on() -> None:
+    found = words("Vehicle #1 slowed for a bus. The front of Vehicle #2 struck the left side of Vehicle #1.")
+    assert f"V1 {ONWARD}" in found
+
+
+def test_a_corner_is_open_only_where_a_report_numbers_nobody() -> None:
+    numbered = crash_facts(INTRO + "The front of Vehicle #1 struck the left front corner of Vehicle #2.")
+    assert not any(one.corner for one in hypotheses(numbered))
+    text = "The AV was going north. The front of a van going east hit the left front corner of the AV."
+    assert any(one.corner for one in hypotheses(crash_facts(text)))

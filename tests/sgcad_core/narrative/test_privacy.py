@@ -84,3 +84,13 @@ def test_any_text_can_be_redacted_and_stays_redacted(text):
     once = redact(text)
     assert "year-old male" not in once
     assert len(once) <= 2 * len(text) + 40
+
+
+def test_an_ambulance_that_drives_is_no_patient() -> None:
+    text = "While V1 was stopped, the ambulance went by V1 and scraped its mirror."
+    assert redact(text) == text
+
+
+def test_what_a_watched_driver_does_keeps_its_subject_where_his_state_goes() -> None:
+    kept = redact("Subject driver looks drowsy and drifts off the right side of the road.")
+    assert kept == "Subject driver is driving and drifts off the right side of the road."

@@ -142,7 +142,7 @@ def test_the_contact_of_the_subject_comes_before_those_of_others() -> None:
         "the front of the van then made contact with the rear of the stopped Acme AV."
     )
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1"), ("V3", "V2")]
-    assert [v.maneuver for v in facts.vehicles][:2] == ["stopped", "straight"]
+    assert [v.maneuver for v in facts.vehicles][:2] == ["stopped", "stopped"]
 
 
 def test_an_opened_door_is_a_side_of_its_vehicle() -> None:

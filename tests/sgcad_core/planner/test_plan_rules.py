@@ -329,6 +329,11 @@ def test_two_that_stand_are_not_left_standing():
     )
     assert made.realised
     assert any("set rolling" in note for note in made.notes)
+    assert made.contact is not None
+    rolls = track(made, "V1")
+    until = int(np.searchsorted(rolls.t_s, made.contact.t_s, side="right"))
+    assert math.hypot(rolls.x_m[until - 1] - rolls.x_m[0], rolls.y_m[until - 1] - rolls.y_m[0]) < 1.0
+    assert rolls.speed_mps[0] == pytest.approx(0.0, abs=0.01)
 
 
 def test_a_contact_with_an_unknown_actor_is_noted_and_left_out():
