@@ -199,9 +199,36 @@ def _driveway(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs, accesses=(access,)), crash)
 
 
+def _alley_mouth(r: random.Random, kind: str) -> Place:
+    """One who comes out of an alley, forwards or backwards, meets one on the street."""
+    own, _, ahead, right = _cross(r)
+    legs = _legs(r, (own, ahead), most=2, beside=_edges(r))
+    mouth = Leg(bearing=right, lanes_in=1, lanes_out=1, kind="driveway", alley=True)
+    along = _actor("V1", own, lane=1, exit_road=ahead)
+    if r.random() < 0.5:
+        crash = _crash(along, _actor("V2", right, "turn_left", exit_road=own), ("front", "left"))
+    else:
+        crash = _crash(_actor("V2", right, "backing", exit_road=own), along, ("back", "right"))
+    return Place(kind, RoadLayout(legs=(*legs, mouth)), crash)
+
+
+def _in_alley(r: random.Random, kind: str) -> Place:
+    """Two who meet in an alley, or one who passes one that stands in it."""
+    own = r.choice(COMPASS)
+    ends: tuple[Compass, ...] = (own, _turned(own, 4))
+    legs = tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", alley=True) for end in ends)
+    crash = r.choice([
+        _crash(_actor("V1", own), _actor("V2", ends[1], "stopped"), ("front", "front")),
+        _crash(_actor("V1", own), _actor("V2", own, "stopped"), ("front", "back")),
+        _crash(_actor("V1", own), _actor("V2", own, "parked"), ("right", "left")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs), crash)
+
+
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
     "parking lot, backs": _lot_backs,
     "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
+    "alley, comes out": _alley_mouth, "alley, within": _in_alley,
 }  # fmt: skip

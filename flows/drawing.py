@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
+from sgcad_core.kinds import UNPAINTED
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
@@ -86,7 +88,12 @@ def _width(graph: LaneGraph, edge: str, lane: int) -> float:
 
 
 def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
-    """Right edge, lines between lanes, left edge: yellow where traffic comes the other way or must not go."""
+    """Right edge, lines between lanes, left edge: yellow where traffic comes the other way or must not go.
+
+    Driveways and alleys carry no paint.
+    """
+    if edge.parameters.get(KIND) in UNPAINTED:
+        return []
     right, left = edge.lanes[0], edge.lanes[-1]
     lines = [Line(_side(right, -1), "edge"), Line(_side(left, +1), "center")]
     return lines + [Line(_side(lane, +1), "lane") for lane in edge.lanes[:-1]]

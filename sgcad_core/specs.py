@@ -85,6 +85,7 @@ class Road(Spec):
     beside: tuple[Beside, ...] = added(
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
+    alley: bool = added(False, "an alley: a narrow driveway without markings")
     crosswalks: tuple[Id, ...] = added((), "its ends (from_node, to_node) at which a crosswalk leads over it")
 
 
@@ -132,6 +133,7 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    alley: bool = added(False, "an alley: a narrow driveway without markings")
     skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 

@@ -10,7 +10,7 @@ from sgcad_core.account.made import Made, is_told
 from sgcad_core.account.motion import Seen
 from sgcad_core.account.records import Item
 from sgcad_core.facts import Value
-from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.narrative.road_provenance import road_names
 from sgcad_core.narrative.roads import RoadFact
@@ -118,9 +118,9 @@ def _lane_kind(made: Made, here: list[DrawnRoad], name: str, value: Value) -> Se
 # ------------------------------------------------------------------ the junction
 def _kind(made: Made, value: Value) -> Seen | None:
     kind, spec = str(value), made.network.spec
-    drawn = {road.kind for road in spec.roads} if spec else set()
+    drawn = {ALLEY if road.alley else road.kind for road in spec.roads} if spec else set()
     legs = max((len(found) for found in junctions(made.graph)), default=0)
-    if kind in (DRIVEWAY, RAMP):
+    if kind in (DRIVEWAY, ALLEY, RAMP):
         return Seen(kind in drawn, f"{legs} legs", f"no {kind} is drawn") if spec else None
     if kind == PARKING_LOT:
         return None

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
@@ -106,7 +106,7 @@ def _kind(
     if named != "none" and named != "some":
         return named, True
     if access and not (named == "some" and controlled(story)):
-        return DRIVEWAY, True
+        return _access_kind(vehicles), True
     if named == "some" or controlled(story):
         return (T, False) if _one_sided(story, roads) else (FOUR_LEG, False)
     if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
@@ -114,6 +114,12 @@ def _kind(
     if _crossing(vehicles) or _turning(vehicles):
         return (T, False) if _one_sided(story, roads) or not _crossing(vehicles) else (FOUR_LEG, False)
     return "none", False
+
+
+def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
+    """What joins the street where vehicles come out or turn in: an alley, if nobody uses anything else."""
+    used = {place for v in vehicles for place in (v.origin, v.target) if place in DRIVES}
+    return ALLEY if used == {ALLEY} else DRIVEWAY
 
 
 def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
@@ -191,7 +197,7 @@ def _stem(
 ) -> Compass | None:
     """Where a side leg lies that no compass word tells: on the side that the vehicles' paths need, else right of V1."""
     main = next((r.axis for r in roads if r.axis and r.kind not in JOINING and not r.cross), None)
-    from_paths = _stem_of_paths(vehicles, halted, main if kind == DRIVEWAY else None)
+    from_paths = _stem_of_paths(vehicles, halted, main if kind in (DRIVEWAY, ALLEY) else None)
     if from_paths:
         return from_paths
     said = _stem_told(story, vehicles, lead)

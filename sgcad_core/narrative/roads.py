@@ -10,10 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
+from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import LaneFacts
@@ -79,7 +80,7 @@ class RoadFacts:
 
 def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
-    mentions = road_mentions(_telling(told), who.ids)
+    mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
     crash = _oriented(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
@@ -97,6 +98,22 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     notes = _open_ends(roads, junction, crash)
     leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
     return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, leaves)
+
+
+def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:
+    """An alley is the road of a crash within it, into which nobody just turns; else it joins as driveways do."""
+    within = {v for m in mentions if m.kind == ALLEY and m.how == "on" for v in m.vehicles}
+    joining = {v.id for v in crash.vehicles if ALLEY in (v.origin, v.target)}
+    turns = {v.id for v in crash.vehicles if v.maneuver in QUARTER_DEG}
+    if within - joining and joining <= within - turns:
+        kept = tuple(_staying(v) if v.id in joining else v for v in crash.vehicles)
+        return tuple(m for m in mentions if m.kind != ALLEY or m.vehicles), replace(crash, vehicles=kept)
+    return tuple(replace(m, kind=DRIVEWAY) if m.kind == ALLEY else m for m in mentions), crash
+
+
+def _staying(v: VehicleFacts) -> VehicleFacts:
+    origin, target = (None if place == ALLEY else place for place in (v.origin, v.target))
+    return replace(v, origin=origin, target=target)
 
 
 def _somebody_walks(crash: CrashFacts) -> bool:

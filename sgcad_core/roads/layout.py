@@ -227,7 +227,8 @@ class _LegDrawing:
             turns_forward=leg.turns_in if index == 0 else (), center_turn_lane=leg.center_turn_lane,
             median=leg.median, via=self.path.between(s_out, s_in), kind=leg.kind,
             minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road" or self.rim is not None),
-            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, crosswalks=(inner,) if walked else (),
+            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, alley=leg.alley,
+            crosswalks=(inner,) if walked else (),
         )  # fmt: skip
 
     def _access(self, access: Access, side: str, joint: str, s_m: float, so_far: list[Road]) -> tuple[Node, Road]:

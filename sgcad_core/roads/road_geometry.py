@@ -23,6 +23,8 @@ Direction = Literal["forward", "backward"]
 LANE_M = 3.6
 """U.S. through lane (12 ft)."""
 DRIVEWAY_LANE_M = 3.0
+ALLEY_LANE_M = 2.7
+"""Half of an alley of 18 ft; cities ask for 16 to 20 ft."""
 CIRCLE_LANE_M = 4.9
 """Of a roundabout (16 ft, NCHRP 672)."""
 MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier": 1.8}
@@ -111,6 +113,8 @@ def lane_width_m(road: Road) -> float:
         return CIRCLE_LANE_M
     if is_aisle(road):
         return AISLE_LANE_M
+    if road.alley:
+        return ALLEY_LANE_M
     return DRIVEWAY_LANE_M if road.kind == DRIVEWAY else LANE_M
 
 

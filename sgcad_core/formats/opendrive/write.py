@@ -28,7 +28,7 @@ from sgcad_core.formats.opendrive.streets import Street, streets
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
@@ -37,7 +37,8 @@ TRIM_M = 0.1
 """Lanes of a node that touch leave a connecting road no length: its roads are cut back by so much."""
 FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m"
 """A metric plane, x east and y north. Its place on the globe is nobody's: reports name no coordinates."""
-ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate"}
+ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate",
+              ALLEY: "townLocal"}  # fmt: skip
 """By the area that is told, else the kind of road."""
 
 

@@ -18,7 +18,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.lane_graph import edge_id
@@ -36,7 +36,7 @@ from sgcad_core.roads.road_spec import spec_findings
 from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 from sgcad_core.units import MPS_PER_MPH
 
-SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, "circle": 20}
+SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, ALLEY: 15, "circle": 20}
 """Where the report states no limit."""
 CIRCLE = "circle"
 """Of a piece of a roundabout, where others tell their kind."""
@@ -147,7 +147,7 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     edge.set("to", ends[1])
     edge.set("priority", str(_priority(road)))
     edge.set("numLanes", str(count + center))
-    kind = CIRCLE if road.circle else road.kind
+    kind = CIRCLE if road.circle else ALLEY if road.alley else road.kind
     edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[kind]) * MPS_PER_MPH:.3f}")
     edge.set("width", f"{lane_width_m(road):g}")
     edge.set("spreadType", "right")
