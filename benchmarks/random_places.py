@@ -225,10 +225,34 @@ def _in_alley(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs), crash)
 
 
+def _lane_closed(r: random.Random, kind: str) -> Place:
+    """One who leaves a closed lane touches one beside, or one who waits before the cones is struck."""
+    own = r.choice(COMPASS)
+    ends: tuple[Compass, ...] = (own, _turned(own, 4))
+    count, right = r.randint(2, 4), r.random() < 0.6
+    shut = r.randint(1, count - 1) if r.random() < 0.3 else 1
+    closed = tuple(range(1, shut + 1)) if right else tuple(range(count - shut + 1, count + 1))
+    fields: dict[str, Any] = {
+        "lanes_in": count, "lanes_out": count, "speed_limit_mph": r.choice([35, 45, 55, 65]),
+        "median": r.choice(["none", "grass", "barrier"]), "beside": r.choice([(), ("shoulder",)]),
+    }  # fmt: skip
+    legs = (Leg(bearing=own, **fields), Leg(bearing=ends[1], closed_out=closed, **fields))
+    leaves, stays = (shut, shut + 1) if right else (count - shut + 1, count - shut)
+    way: Maneuver = r.choice(["merge", "lane_change_left" if right else "lane_change_right"])
+    sides: tuple[Area, Area] = ("left", "right") if right else ("right", "left")
+    crash = r.choice([
+        _crash(_actor("V1", own, way, lane=leaves), _actor("V2", own, lane=stays), sides),
+        _crash(_actor("V2", own, lane=leaves), _actor("V1", own, "stopped", lane=leaves), ("front", "back")),
+        _crash(_actor("V2", own, lane=stays), _actor("V1", own, "slowing", lane=stays), ("front", "back")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs), crash)
+
+
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
     "parking lot, backs": _lot_backs,
     "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
     "alley, comes out": _alley_mouth, "alley, within": _in_alley,
+    "lane closed": _lane_closed,
 }  # fmt: skip

@@ -6,7 +6,7 @@ Knows SUMO's .net.xml; metres, x east, y north; nothing of pixels or colors but 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
 from sgcad_core.kinds import UNPAINTED
+from sgcad_core.roads.closures import cones
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
@@ -62,6 +63,8 @@ class Drawing:
     lines: tuple[Line, ...]
     crossings: tuple[Strip, ...] = ()
     marks: tuple[Mark, ...] = ()
+    cones: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    """(n, 2) places of traffic cones."""
 
 
 def drawing_of(net_xml: str) -> Drawing:
@@ -72,8 +75,9 @@ def drawing_of(net_xml: str) -> Drawing:
     lines = [line for edge in graph.edges.values() for line in _edge_lines(edge, graph)]
     lines += _stop_lines(root, graph)
     return Drawing(
-        tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph))
-    )
+        tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph)),
+        np.vstack([np.zeros((0, 2)), *(places for _, places in cones(graph))]),
+    )  # fmt: skip
 
 
 def _areas(root: Any) -> list[Floats]:

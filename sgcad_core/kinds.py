@@ -22,6 +22,7 @@ T: Final = "t"
 FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
 PARKING_LOT: Final = "parking_lot"
+WORK_ZONE: Final = "work_zone"
 DRIVEWAY: Final = "driveway"
 ALLEY: Final = "alley"
 RAMP: Final = "ramp"
@@ -97,6 +98,12 @@ class Unsupported:
 UNSUPPORTED: tuple[Unsupported, ...] = (
     Unsupported("parking_garage", "a parking garage", "refuse", "leave the case out: no aisles or decks can be drawn"),
     Unsupported("interchange", "an interchange", "note", "see that the ramp or the road of the crash is drawn"),
+    Unsupported(
+        WORK_ZONE,
+        "a work zone",
+        "note",
+        "the road is drawn without it: lanes that are closed are drawn on roads of two or more each way, off junctions",
+    ),
     Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
 )
 

@@ -45,6 +45,7 @@ Surface = Literal["dry", "wet", "snow", "ice"]
 SpeedMph = Annotated[int, Field(ge=0, le=120)]
 SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
 Lanes = Annotated[int, Field(ge=0, le=8)]
+LaneNumber = Annotated[int, Field(ge=1, le=8)]
 CLEARANCE_M = 0.6
 """How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
 width. A convention of ours, marked `default` wherever it stands."""
@@ -86,6 +87,8 @@ class Road(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     alley: bool = added(False, "an alley: a narrow driveway without markings")
+    closed_forward: tuple[LaneNumber, ...] = added((), "its lanes that a work zone closes, 1 = at the right curb")
+    closed_backward: tuple[LaneNumber, ...] = added((), "the same of the other direction")
     crosswalks: tuple[Id, ...] = added((), "its ends (from_node, to_node) at which a crosswalk leads over it")
 
 
@@ -134,6 +137,9 @@ class Leg(Spec):
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
     alley: bool = added(False, "an alley: a narrow driveway without markings")
+    closed_out: tuple[LaneNumber, ...] = added(
+        (), "lanes away from the hub that a work zone closes, from the right curb"
+    )
     skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 

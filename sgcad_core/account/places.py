@@ -14,6 +14,7 @@ from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, junction_kind, 
 from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.narrative.road_provenance import road_names
 from sgcad_core.narrative.roads import RoadFact
+from sgcad_core.roads.closures import tapers
 from sgcad_core.roads.drawn import DrawnRoad, junctions, near
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.told_totals import allowed_totals
@@ -157,6 +158,13 @@ def _condition(made: Made, name: str, value: Value) -> Seen | None:
     return None if behavior is None else Seen(seen == value, seen, f"the scenario has {seen or 'none'}")
 
 
+def _closed_lane(made: Made, value: Value) -> Seen:
+    """The side on which lanes are closed, as one drives."""
+    sides = {"right" if taper.side < 0 else "left" for taper in tapers(made.graph)}
+    return Seen(value in sides, ", ".join(sorted(sides)) or "none", "no such lane is closed")
+
+
 _JUNCTION: dict[str, Callable[[Made, Value], Seen | None]] = {
     "junction.kind": _kind, "junction.control": _control, "junction.stem": _stem,
+    "place.closed_lane": _closed_lane,
 }  # fmt: skip

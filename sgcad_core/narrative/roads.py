@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
@@ -20,6 +20,7 @@ from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
+from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -69,6 +70,8 @@ class RoadFacts:
     crosswalk: bool = False
     """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
     urban: bool = False
+    closed: ClosedLanes | None = None
+    """Lanes that a work zone closes, where they can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
 
@@ -85,7 +88,7 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     gathered = gather(mentions, headings)
-    junction = replace(junction_of(told, driven, gathered), unsupported=unsupported_places(told))
+    junction = junction_of(told, driven, gathered)
     limits, bends = speed_limits(told, headings), curves(told, headings)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
@@ -97,7 +100,23 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
     leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, leaves)
+    told_closed = closed_lanes(told, driven)
+    closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
+    undrawn = {WORK_ZONE: None} if told_closed and not closed else {}
+    named = (place for place in unsupported_places(told) if place != WORK_ZONE or not closed)
+    junction = replace(junction, unsupported=tuple(dict.fromkeys([*named, *undrawn])))
+    if closed and not closed.side_stated:
+        notes = (*notes, "which lane is closed is not told")
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, leaves)
+
+
+def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFact, ...]) -> bool:
+    """Whether closed lanes can be drawn: on a road without a junction that keeps a lane open that way."""
+    lanes = next((r.lanes for r in roads if r.kind not in JOINING and r.axis == axis_of(closed.toward)), LaneFacts())
+    counted = lanes.toward.get(closed.toward) or lanes.each_way
+    if counted is None and lanes.total:
+        counted = lanes.total if lanes.one_way or lanes.divided else lanes.total // 2
+    return junction.kind == "none" and (counted is None or counted > closed.count)
 
 
 def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:
@@ -174,8 +193,8 @@ def _telling(told: tuple[Statement, ...]) -> list[Statement]:
 
 
 def _without_circle(told: Statement) -> Statement:
-    """The sentence without the lanes of a roundabout, which are those of no road."""
-    return told._replace(text=CIRCLE_LANES.sub(ROUNDABOUT, told.text))
+    """The sentence without the lanes of a roundabout, which are those of no road, and without closed ones."""
+    return told._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, told.text)))
 
 
 def _road(

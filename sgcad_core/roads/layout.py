@@ -228,6 +228,7 @@ class _LegDrawing:
             median=leg.median, via=self.path.between(s_out, s_in), kind=leg.kind,
             minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road" or self.rim is not None),
             speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, alley=leg.alley,
+            closed_backward=leg.closed_out,
             crosswalks=(inner,) if walked else (),
         )  # fmt: skip
 

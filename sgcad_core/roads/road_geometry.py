@@ -97,6 +97,12 @@ def lanes(road: Road, direction: Direction) -> int:
     return road.lanes_forward if direction == "forward" else road.lanes_backward
 
 
+def open_lanes(road: Road, direction: Direction) -> tuple[int, ...]:
+    """Lanes of a direction that no work zone closes, from 0 at the right curb."""
+    closed = road.closed_forward if direction == "forward" else road.closed_backward
+    return tuple(i for i in range(lanes(road, direction)) if i + 1 not in closed)
+
+
 def two_way(road: Road) -> bool:
     """Whether the road has lanes in both directions."""
     return road.lanes_forward > 0 and road.lanes_backward > 0

@@ -5,19 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Crosswalk, Stall
+from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, Crosswalk, Stall
 from sgcad_core.formats.opendrive.elements import add, number
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.xml import Element
+from sgcad_core.roads.closures import CONE_M
 
 STOP_LINE = "stopLine"
+CONE_HEIGHT_M = 0.7
+"""28 in, the least on faster roads (MUTCD 6F.64)."""
 
 
 def add_objects(
-    road: Element, stop_lines: Sequence[StopLine], crosswalks: Sequence[Crosswalk], stalls: Sequence[Stall]
+    road: Element,
+    stop_lines: Sequence[StopLine],
+    crosswalks: Sequence[Crosswalk],
+    stalls: Sequence[Stall],
+    cones: Sequence[Cone] = (),
 ) -> None:
-    """Stop lines, crosswalks and parking spaces; no <objects> where there are none."""
-    if not stop_lines and not crosswalks and not stalls:
+    """Stop lines, crosswalks, parking spaces and cones; no <objects> where there are none."""
+    if not (stop_lines or crosswalks or stalls or cones):
         return
     objects = add(road, "objects")
     for line in stop_lines:
@@ -38,6 +45,12 @@ def add_objects(
         for name, value in sizes:
             made.set(name, number(value))
         add(made, "parkingSpace", access="all")
+    for cone in cones:
+        made = add(objects, "object", id=cone.id, type="obstacle", subtype="cone", name="cone", dynamic="no")
+        made.set("orientation", "none")
+        _place(made, cone.s_m, cone.t_m, 0.0)
+        for name, value in (("hdg", 0.0), ("radius", CONE_M / 2), ("height", CONE_HEIGHT_M)):
+            made.set(name, number(value))
 
 
 def _add_crosswalk(objects: Element, walk: Crosswalk) -> None:

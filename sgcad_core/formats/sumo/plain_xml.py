@@ -21,7 +21,7 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
-from sgcad_core.roads.lane_graph import edge_id
+from sgcad_core.roads.lane_graph import ROAD_WORKS, edge_id
 from sgcad_core.roads.road_geometry import (
     Direction,
     Roadway,
@@ -30,6 +30,7 @@ from sgcad_core.roads.road_geometry import (
     has_center_lane,
     lane_width_m,
     lanes,
+    open_lanes,
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
@@ -61,6 +62,8 @@ BESIDE: Mapping[Beside, Use] = {
     "bike_lane": Use("biking", "bicycle"), "parking": Use("parking", "custom1"),
     "shoulder": Use("shoulder", "emergency"), "sidewalk": Use("sidewalk", "pedestrian"),
 }  # fmt: skip
+CLOSED = Use(ROAD_WORKS, "custom2")
+"""Of a lane that a work zone closes."""
 _TYPES: Mapping[NodeControl, str] = {
     "none": "priority", "yield": "priority", "signal": "traffic_light", "stop": "priority_stop",
     "all_way_stop": "allway_stop", "flashing": "priority_stop",
@@ -156,8 +159,12 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
         use = BESIDE[what]
         lane = etree.SubElement(edge, "lane", index=str(index), width=f"{beside_m(road, what):g}", type=use.type)
         lane.set("allow", use.allow)
-    for index in range(len(outer), count) if "sidewalk" in outer else ():
-        etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
+    open_ = {i + len(outer) for i in open_lanes(road, direction)}
+    for index in range(len(outer), count):
+        if index not in open_:
+            etree.SubElement(edge, "lane", index=str(index), type=CLOSED.type, allow=CLOSED.allow)
+        elif "sidewalk" in outer:
+            etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
