@@ -78,6 +78,8 @@ def _lacks(place: Place, graph: LaneGraph) -> Iterator[str]:
         yield f"{found} intersections, {wanted} declared"
     if bool(layout.circle_lanes) != bool(graph.circles):
         yield f"{layout.circle_lanes} lanes around declared, {len(graph.circles)} circles"
+    if layout.opening != bool(graph.openings):
+        yield f"{len(graph.openings)} openings in medians"
     around = {len(edge.car_lanes) for edge in graph.edges.values() if graph.is_around(edge)}
     if around not in (set(), {layout.circle_lanes}):
         yield f"{around} lanes around, {layout.circle_lanes} declared"

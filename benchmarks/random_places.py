@@ -248,11 +248,31 @@ def _lane_closed(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs), crash)
 
 
+def _median_opening(r: random.Random, kind: str) -> Place:
+    """One who turns round through an opening in the median, or waits to, is struck."""
+    own = r.choice(COMPASS)
+    far = _turned(own, 4)
+    count = r.randint(1, 3)  # one lane and a narrow median leave no car the room to turn
+    fields: dict[str, Any] = {
+        "lanes_in": count, "lanes_out": count,
+        "median": r.choice(["raised", "grass", "barrier"]) if count > 1 else "grass",
+        "speed_limit_mph": r.choice([35, 45, 55]), "beside": r.choice([(), ("shoulder",)]),
+    }  # fmt: skip
+    legs = tuple(Leg(bearing=end, **fields) for end in (own, far))
+    around, inner = _actor("V2", far, "u_turn", exit_road=far), count
+    crash = r.choice([
+        _crash(_actor("V1", own, exit_road=far), around, ("front", "right")),
+        _crash(_actor("V1", far, lane=inner), _actor("V2", far, "stopped", lane=inner), ("front", "back")),
+        _crash(_actor("V1", far, lane=inner), around, ("front", "left")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs, opening=True), crash)
+
+
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
     "parking lot, backs": _lot_backs,
     "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
     "alley, comes out": _alley_mouth, "alley, within": _in_alley,
-    "lane closed": _lane_closed,
+    "lane closed": _lane_closed, "median opening": _median_opening,
 }  # fmt: skip

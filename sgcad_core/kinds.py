@@ -23,6 +23,7 @@ FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
 PARKING_LOT: Final = "parking_lot"
 WORK_ZONE: Final = "work_zone"
+MEDIAN_OPENING: Final = "median_opening"
 DRIVEWAY: Final = "driveway"
 ALLEY: Final = "alley"
 RAMP: Final = "ramp"
@@ -103,6 +104,12 @@ UNSUPPORTED: tuple[Unsupported, ...] = (
         "a work zone",
         "note",
         "the road is drawn without it: lanes that are closed are drawn on roads of two or more each way, off junctions",
+    ),
+    Unsupported(
+        MEDIAN_OPENING,
+        "an opening in the median",
+        "note",
+        "the road is drawn without it: openings are drawn on roads without a junction",
     ),
     Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
 )

@@ -64,6 +64,7 @@ class Node(Point):
 
     id: Id
     control: NodeControl = Field("none", description="stop / yield: the minor roads stop / yield")
+    opening: bool = added(False, "an opening in the median, by which one turns round")
 
 
 class Road(Spec):
@@ -168,6 +169,7 @@ class RoadLayout(Spec):
     circle_lanes: Annotated[int, Field(ge=0, le=2)] = added(
         0, "lanes around, where the hub is a roundabout (every leg yields); 0: it is none"
     )
+    opening: bool = added(False, "an opening in the median at the hub of two legs, by which one turns round")
 
 
 # ------------------------------------------------------------------ behavior

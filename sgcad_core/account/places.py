@@ -167,4 +167,5 @@ def _closed_lane(made: Made, value: Value) -> Seen:
 _JUNCTION: dict[str, Callable[[Made, Value], Seen | None]] = {
     "junction.kind": _kind, "junction.control": _control, "junction.stem": _stem,
     "place.closed_lane": _closed_lane,
+    "place.median_opening": lambda made, _: Seen(bool(made.graph.openings), None, "no opening is drawn"),
 }  # fmt: skip

@@ -19,6 +19,7 @@ from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES, Cue
+from sgcad_core.narrative.places import MEDIAN_OPENING
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
@@ -126,7 +127,7 @@ def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], 
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
     some: Cue | None = None
     for t in story:
-        text = _NO_JUNCTION.sub(" ", t.text)
+        text = MEDIAN_OPENING.sub(" ", _NO_JUNCTION.sub(" ", t.text))
         found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
         if found:
             first, words, record = min(found, key=lambda place: place[0].start())

@@ -15,7 +15,15 @@ from sgcad_core.narrative.compass import OPPOSITE_HAND, between, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
-from sgcad_core.narrative.layout_places import circle_lanes, offset, parking_lot, skewed, with_closed, with_edges
+from sgcad_core.narrative.layout_places import (
+    circle_lanes,
+    offset,
+    parking_lot,
+    skewed,
+    with_closed,
+    with_edges,
+    with_opening,
+)
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
@@ -48,7 +56,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        return with_closed(self.facts, with_edges(self.facts, self._roads_alone()))
+        return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, self._roads_alone())))
 
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()

@@ -46,6 +46,16 @@ def with_closed(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
     )
 
 
+def with_opening(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
+    """The layout with an opening in its median; a road of which no median is told has a raised one."""
+    two_way = all(leg.lanes_in and leg.lanes_out and leg.kind == "road" for leg in layout.legs)
+    if facts.opening is None or len(layout.legs) != 2 or layout.accesses or not two_way:
+        return layout
+    parted = {"median": "raised", "center_turn_lane": False}
+    legs = tuple(leg if leg.median != "none" else leg.model_copy(update=parted) for leg in layout.legs)
+    return layout.model_copy(update={"legs": legs, "opening": True})
+
+
 def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     """An aisle with stalls on both sides; two that cross where vehicles are told to come along both.
 

@@ -1,4 +1,4 @@
-"""What a story tells of a road besides its junction: lanes that a work zone closes.
+"""What a story tells of a road besides its junction: lanes that a work zone closes, openings in its median.
 
 Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn and no file format.
 """
@@ -33,6 +33,7 @@ class ClosedLanes:
 
 CLOSED_LANES = rule("places.closed_side")
 _CLOSURE = rule("places.closure")
+MEDIAN_OPENING = rule("places.median_opening")
 _LEFT = ("left", "leftmost", "left-most", "inside", "inner")
 _AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "left"}
 """The side of the lane that one leaves by a change of lane."""
@@ -55,6 +56,13 @@ def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
         if match := _CLOSURE.search(t.text):
             return ClosedLanes(_left_by(lead), 1, lead.heading, False, Cue(t.number, match[0], _CLOSURE.id))
     return None
+
+
+def median_opening(told: Sequence[Statement]) -> Cue | None:
+    """Where a story tells of an opening in the median."""
+    story = (t for t in told if t.role in CRASH_ROLES or t.role == "other")
+    found = ((t, match) for t in story if (match := MEDIAN_OPENING.search(t.text)))
+    return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
 
 
 def _left_by(v: VehicleFacts) -> Side:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, WORK_ZONE, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
@@ -20,7 +20,7 @@ from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
-from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes
+from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes, median_opening
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -72,6 +72,8 @@ class RoadFacts:
     urban: bool = False
     closed: ClosedLanes | None = None
     """Lanes that a work zone closes, where they can be drawn."""
+    opening: Cue | None = None
+    """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
 
@@ -102,12 +104,20 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
     told_closed = closed_lanes(told, driven)
     closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
-    undrawn = {WORK_ZONE: None} if told_closed and not closed else {}
-    named = (place for place in unsupported_places(told) if place != WORK_ZONE or not closed)
-    junction = replace(junction, unsupported=tuple(dict.fromkeys([*named, *undrawn])))
+    opens = median_opening(told)
+    opening = opens if junction.kind == "none" and not closed else None
+    places = {WORK_ZONE: (told_closed, closed), MEDIAN_OPENING: (opens, opening)}
+    junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, leaves)
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves)
+
+
+def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
+    """Kinds of places that are named and not drawn; `places`: of some kinds what is told and what is drawn."""
+    told = [kind for kind, (seen, drawn) in places.items() if seen and not drawn]
+    lacking = [kind for kind in named if not places.get(kind, (None, None))[1]]
+    return tuple(dict.fromkeys([*lacking, *told]))
 
 
 def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFact, ...]) -> bool:

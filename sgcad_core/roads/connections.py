@@ -74,7 +74,14 @@ def links(spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[Link, ...]:
         arriving, leaving = _ways_at(node.id, spec, roadways)
         for approach in arriving:
             found += [*_approach_links(approach, arriving, leaving), *_going_on(approach, leaving)]
+            found += _turning_round(approach, leaving) if node.opening else []
     return tuple(_outer_lanes_counted(dict.fromkeys(found), spec))
+
+
+def _turning_round(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
+    """From the innermost lane into that of the other direction of the same road, through an opening in the median."""
+    back = [way for way in leaving if way.road == approach.road]
+    return [Link(approach.edge, approach.lanes - 1, way.edge, way.lanes - 1) for way in back]
 
 
 def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link]:

@@ -142,6 +142,12 @@ class LaneGraph:
         start = self.center_of.get(edge.from_node)
         return start is not None and start == self.center_of.get(edge.to_node)
 
+    @cached_property
+    def openings(self) -> tuple[str, ...]:
+        """Nodes at which one turns round from one direction of a road into the other."""
+        back = (c for c in self.connections if road_of(c.from_edge)[0] == road_of(c.to_edge)[0])
+        return tuple({self.edges[c.from_edge].to_node: None for c in back if c.from_edge != c.to_edge})
+
     def leaving(self, edge: str, lane: int | None = None) -> tuple[Connection, ...]:
         """Connections out of an edge (or of one of its lanes)."""
         return tuple(c for c in self.connections if c.from_edge == edge and lane in (None, c.from_lane))

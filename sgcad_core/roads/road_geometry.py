@@ -38,6 +38,8 @@ AISLE_LANE_M = 3.6
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
+OPENING_M = 15.0
+"""Length of an opening in a median (AASHTO 2018, 9.8: 40 ft and more)."""
 ISLAND_M = 40.0
 """Length of a roundabout's splitter island."""
 
@@ -148,8 +150,17 @@ def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequen
     there = meeting[road.from_node], meeting[road.to_node]
     opens = _opens(road, there[0]), _opens(road, there[1])
     gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
-    line = smooth(points) + _beside_road(road, nodes, meeting)
+    line = _cut(smooth(points) + _beside_road(road, nodes, meeting), ends[0].opening, ends[1].opening)
     return Roadway(road, line, median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+
+
+def _cut(line: Floats, at_start: bool, at_end: bool) -> Floats:
+    """A center line that ends before an opening in the median."""
+    along = arc_lengths(line)
+    start, end = OPENING_M / 2 * at_start, along[-1] - OPENING_M / 2 * at_end
+    if end - start == along[-1] or end - start < STEP_M:
+        return line
+    return resample(line, np.array([start, *along[(along > start) & (along < end)], end]))
 
 
 def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
