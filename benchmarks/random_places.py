@@ -268,11 +268,25 @@ def _median_opening(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs, opening=True), crash)
 
 
+def _gore(r: random.Random, kind: str) -> Place:
+    """One who crosses a gore touches one on the road, or one who strays into it strikes what stands there."""
+    own = r.choice(COMPASS)
+    legs, far, off = _freeway(r, own), _turned(own, 4), _turned(own, 5)
+    ramp = Leg(bearing=off, lanes_in=0, lanes_out=1, kind="ramp")
+    along = _actor("V1", own, lane=1, exit_road=far)
+    crash = r.choice([
+        _crash(_actor("V2", own, lane=1, exit_road=far, gore=True), along, ("left", "right")),
+        _crash(along, _actor("V2", own, "stopped", gore=True), ("front", "back")),
+        _crash(along, _actor("O1", own, "stopped", kind="object", gore=True), ("front", "front")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=(*legs, ramp)), crash)
+
+
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
     "parking lot, backs": _lot_backs,
     "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
     "alley, comes out": _alley_mouth, "alley, within": _in_alley,
-    "lane closed": _lane_closed, "median opening": _median_opening,
+    "lane closed": _lane_closed, "median opening": _median_opening, "gore": _gore,
 }  # fmt: skip

@@ -18,6 +18,7 @@ from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
 from sgcad_core.kinds import UNPAINTED
 from sgcad_core.roads.closures import cones
+from sgcad_core.roads.gores import gores
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
@@ -65,6 +66,8 @@ class Drawing:
     marks: tuple[Mark, ...] = ()
     cones: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     """(n, 2) places of traffic cones."""
+    gores: tuple[Floats, ...] = ()
+    """Corners of the painted gores at ramps, (n, 2) each."""
 
 
 def drawing_of(net_xml: str) -> Drawing:
@@ -77,6 +80,7 @@ def drawing_of(net_xml: str) -> Drawing:
     return Drawing(
         tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph)),
         np.vstack([np.zeros((0, 2)), *(places for _, places in cones(graph))]),
+        tuple(gore.corners for gore in gores(graph)),
     )  # fmt: skip
 
 

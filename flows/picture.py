@@ -80,6 +80,9 @@ def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
     colors = [ASPHALT if s.cars else "#a9a69c" for s in drawing.strips]
     strips = [s.points for s in drawing.strips]
     axes.add_collection(LineCollection(strips, linewidths=widths, colors=colors, capstyle="butt", zorder=1))
+    axes.add_collection(
+        PolyCollection(drawing.gores, facecolors=ASPHALT, edgecolors=WHITE, hatch="///", linewidths=0.8, zorder=1.5)
+    )
     if len(drawing.cones):
         size = max(CONE_M * points_per_m, 2.0)
         axes.plot(*drawing.cones.T, linestyle="none", marker="o", markersize=size, color=CONE, zorder=2.5)

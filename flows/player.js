@@ -63,6 +63,14 @@
         trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? asphalt : COLOR.path; ink.stroke();
       }
     }
+    for (const gore of data.drawing.gores || []) {         // painted triangles: asphalt, hatched
+      trace(gore); ink.closePath(); ink.fillStyle = COLOR.asphalt; ink.fill(); ink.save(); ink.clip();
+      ink.strokeStyle = COLOR.edge; ink.lineWidth = 0.35;
+      for (let i = 2; i < gore.length / 2; i += 4) {
+        const n = gore.length; trace([gore[i], gore[i + 1], gore[n - 2 - i], gore[n - 1 - i]]); ink.stroke();
+      }
+      ink.restore(); trace(gore); ink.closePath(); ink.lineWidth = Math.max(0.15, 0.9 / box.scale); ink.strokeStyle = COLOR.edge; ink.stroke();
+    }
     for (const [width, flat] of data.drawing.crossings || []) {   // bars across the way that is walked
       trace(flat); ink.lineWidth = width; ink.strokeStyle = COLOR.edge; ink.setLineDash([0.5, 0.6]); ink.stroke();
     }

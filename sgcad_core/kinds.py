@@ -24,6 +24,7 @@ ROUNDABOUT: Final = "roundabout"
 PARKING_LOT: Final = "parking_lot"
 WORK_ZONE: Final = "work_zone"
 MEDIAN_OPENING: Final = "median_opening"
+GORE: Final = "gore"
 DRIVEWAY: Final = "driveway"
 ALLEY: Final = "alley"
 RAMP: Final = "ramp"
@@ -111,6 +112,7 @@ UNSUPPORTED: tuple[Unsupported, ...] = (
         "note",
         "the road is drawn without it: openings are drawn on roads without a junction",
     ),
+    Unsupported(GORE, "a gore area", "note", "the gore is drawn at its ramp; see that the vehicle or thing is in it"),
     Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
 )
 

@@ -192,6 +192,7 @@ class Actor(Spec):
     speed_mph: SpeedMph | None = None
     length_m: Annotated[float, Field(gt=0.1, le=30)] | None = None
     width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
+    gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
 
 
 class Contact(Spec):

@@ -144,10 +144,16 @@ def _joins(road_name: Callable[[Made, str], str | None]) -> Judge:
         if wanted is None or spec is None or name is None:
             return None
         kind = next((ALLEY if road.alley else road.kind for road in spec.roads if road.id == name), "road")
-        lot = made.reading.roads.junction.kind == PARKING_LOT
+        lot = made.reading.roads.junction.kind == PARKING_LOT or (str(value) == RAMP and _in_gore(made, who))
         return Seen(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
 
     return judged
+
+
+def _in_gore(made: Made, who: str) -> bool:
+    """Whether it crosses the gore of a ramp, so that it is on the ramp for a while."""
+    behavior = made.scenario.behavior
+    return behavior is not None and any(a.gore for a in behavior.actors if a.id == who)
 
 
 def _start(made: Made, who: str) -> str | None:

@@ -19,7 +19,7 @@ from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES, Cue
-from sgcad_core.narrative.places import MEDIAN_OPENING
+from sgcad_core.narrative.places import MEDIAN_OPENING, in_gores
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
@@ -102,6 +102,8 @@ def _kind(
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
+    if in_gores(story) and named in ("none", "some"):
+        return RAMP, True
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
         return RAMP, True
     if named != "none" and named != "some":

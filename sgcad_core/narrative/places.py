@@ -1,4 +1,4 @@
-"""What a story tells of a road besides its junction: lanes that a work zone closes, openings in its median.
+"""What a story tells of a road besides its junction: lanes that a work zone closes, openings in its median, gores.
 
 Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn and no file format.
 """
@@ -18,6 +18,8 @@ from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.specs import Compass
 
 Side = Literal["left", "right"]
+InGore = Literal["stands", "strikes", "crosses", "leaves"]
+"""What one does in a gore; who leaves crosses it into the ramp."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class ClosedLanes:
 CLOSED_LANES = rule("places.closed_side")
 _CLOSURE = rule("places.closure")
 MEDIAN_OPENING = rule("places.median_opening")
+_GORE, _IN_GORE, _TO_RAMP = rule("places.gore"), rule("places.in_gore"), rule("places.to_ramp")
 _LEFT = ("left", "leftmost", "left-most", "inside", "inner")
 _AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "left"}
 """The side of the lane that one leaves by a change of lane."""
@@ -63,6 +66,22 @@ def median_opening(told: Sequence[Statement]) -> Cue | None:
     story = (t for t in told if t.role in CRASH_ROLES or t.role == "other")
     found = ((t, match) for t in story if (match := MEDIAN_OPENING.search(t.text)))
     return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
+
+
+def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
+    """Vehicles that a story puts into a gore: who stands there, strikes something there, or crosses it, and whither."""
+    found: dict[str, InGore] = {}
+    for t in (t for t in told if t.role in CRASH_ROLES or t.role == "other"):
+        for match in _IN_GORE.finditer(t.text):
+            how, who = next((how, who) for how, who in match.groupdict().items() if who)
+            away = how == "crosses" and _TO_RAMP.search(t.text[match.end() : match.end() + 60])
+            found.setdefault(who, "leaves" if away else how)  # type: ignore[arg-type]
+    return found
+
+
+def names_gore(told: Sequence[Statement]) -> bool:
+    """Whether a story names a gore at all."""
+    return any(_GORE.search(t.text) for t in told if t.role in CRASH_ROLES or t.role == "other")
 
 
 def _left_by(v: VehicleFacts) -> Side:

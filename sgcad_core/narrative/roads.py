@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
@@ -20,7 +20,7 @@ from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
-from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes, median_opening
+from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes, in_gores, median_opening, names_gore
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -101,12 +101,15 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
+    exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gores(told))
+    leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
     told_closed = closed_lanes(told, driven)
     closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
     opens = median_opening(told)
     opening = opens if junction.kind == "none" and not closed else None
-    places = {WORK_ZONE: (told_closed, closed), MEDIAN_OPENING: (opens, opening)}
+    gore = in_gores(told) if junction.kind == RAMP else {}
+    crash = replace(crash, gore=gore)
+    places = {WORK_ZONE: (told_closed, closed), MEDIAN_OPENING: (opens, opening), GORE: (names_gore(told), gore)}
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")

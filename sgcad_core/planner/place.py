@@ -97,6 +97,8 @@ def _stations(course: Course) -> Floats:
 
 def _pull(actor: Actor) -> float:
     """How strongly an actor insists on its own place, per metre."""
+    if actor.gore:
+        return 1.0
     if actor.maneuver in TURNING:
         return 0.08
     return 0.04 if actor.maneuver in STANDING else 0.02

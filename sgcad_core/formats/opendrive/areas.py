@@ -14,6 +14,7 @@ from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.plane import Floats, parallel_polyline
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.closures import cones
+from sgcad_core.roads.gores import gores
 from sgcad_core.roads.lane_graph import LaneGraph
 
 STALL_WIDTH_M = 2.7
@@ -21,7 +22,7 @@ STALL_WIDTH_M = 2.7
 
 
 class Crosswalk(NamedTuple):
-    """A crosswalk over a street; ids are those of objects.
+    """A crosswalk over a street, or a gore beside one; ids are those of objects.
 
     `corners`: (n, 2) around it, along and to the left of the street's reference line where that ends (`s_m`).
     """
@@ -35,6 +36,17 @@ class Crosswalk(NamedTuple):
 def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
     """All crosswalks, with the next ids."""
     return tuple(walk for street in roads for walk in _over(street, graph, ids))
+
+
+def gores_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
+    """The painted gores at ramps, as areas of the streets that the ramps leave or join, with the next ids."""
+    by_edge = {edge.id: street for street in roads for edge in street.edges}
+    found = []
+    for gore in gores(graph):
+        if street := by_edge.get(gore.road):
+            s_m = street.driven_end(gore.road, at_end=not gore.leaves)
+            found.append(Crosswalk(next(ids), street.id, s_m, _local(street, s_m, gore.corners)))
+    return tuple(found)
 
 
 class Stall(NamedTuple):

@@ -22,9 +22,10 @@ def add_objects(
     crosswalks: Sequence[Crosswalk],
     stalls: Sequence[Stall],
     cones: Sequence[Cone] = (),
+    gores: Sequence[Crosswalk] = (),
 ) -> None:
-    """Stop lines, crosswalks, parking spaces and cones; no <objects> where there are none."""
-    if not (stop_lines or crosswalks or stalls or cones):
+    """Stop lines, crosswalks, parking spaces, cones and gores; no <objects> where there are none."""
+    if not (stop_lines or crosswalks or stalls or cones or gores):
         return
     objects = add(road, "objects")
     for line in stop_lines:
@@ -37,7 +38,9 @@ def add_objects(
         _validity(made, line.lanes)
 
     for walk in crosswalks:
-        _add_crosswalk(objects, walk)
+        _add_area(objects, walk, ("crosswalk", "zebra", "crosswalk"))
+    for gore in gores:
+        _add_area(objects, gore, ("roadMark", "gore", "gore"))
     for stall in stalls:
         made = add(objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none")
         _place(made, stall.s_m, stall.t_m, 0.0)
@@ -53,14 +56,18 @@ def add_objects(
             made.set(name, number(value))
 
 
-def _add_crosswalk(objects: Element, walk: Crosswalk) -> None:
-    """A crosswalk where the street ends, its corners relative to there: it lies beyond, in the junction."""
-    made = add(objects, "object", id=walk.id, type="crosswalk", subtype="zebra", name="crosswalk", dynamic="no")
+def _add_area(objects: Element, walk: Crosswalk, called: tuple[str, str, str]) -> None:
+    """An area where the street ends, its corners relative to there; `called`: type, subtype and name.
+
+    A crosswalk lies beyond the street's end, in the junction.
+    """
+    kind, subtype, name = called
+    made = add(objects, "object", id=walk.id, type=kind, subtype=subtype, name=name, dynamic="no")
     made.set("orientation", "none")
     _place(made, walk.s_m, 0.0, 0.0)
     (low_u, low_v), (high_u, high_v) = walk.corners.min(axis=0), walk.corners.max(axis=0)
-    for name, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
-        made.set(name, number(value))
+    for key, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
+        made.set(key, number(value))
     outline = add(add(made, "outlines"), "outline", id="0", closed="true", outer="true")
     for i, (u, v) in enumerate(walk.corners):
         add(outline, "cornerLocal", id=str(i), u=number(u), v=number(v), z="0", height="0")

@@ -12,7 +12,7 @@ import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, stalls_of
+from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, stalls_of
 from sgcad_core.formats.opendrive.connecting import Connector, way
 from sgcad_core.formats.opendrive.elements import (
     add,
@@ -77,6 +77,7 @@ class _Document:
         self.crosswalks = crosswalks_of(graph, roads, ids)
         self.stalls = {street.id: tuple(stalls_of(street, ids)) for street in roads}
         self.cones = cones_of(graph, roads, ids)
+        self.gores = gores_of(graph, roads, ids)
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -131,7 +132,8 @@ class _Document:
         add_street_lanes(add(road, "lanes"), street)
         lines = [line for line in self.control.stop_lines if line.road == street.id]
         walks = [walk for walk in self.crosswalks if walk.road == street.id]
-        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()))
+        gores = [gore for gore in self.gores if gore.road == street.id]
+        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()), gores)
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:
