@@ -79,6 +79,12 @@ def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
     return found
 
 
+def names_closure(told: Sequence[Statement]) -> bool:
+    """Whether a story tells of a closed lane at all, though perhaps not for whom."""
+    story = [t.text for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    return any(CLOSED_LANES.search(text) or _CLOSURE.search(text) for text in story)
+
+
 def names_gore(told: Sequence[Statement]) -> bool:
     """Whether a story names a gore at all."""
     return any(_GORE.search(t.text) for t in told if t.role in CRASH_ROLES or t.role == "other")

@@ -20,7 +20,15 @@ from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
-from sgcad_core.narrative.places import CLOSED_LANES, ClosedLanes, closed_lanes, in_gores, median_opening, names_gore
+from sgcad_core.narrative.places import (
+    CLOSED_LANES,
+    ClosedLanes,
+    closed_lanes,
+    in_gores,
+    median_opening,
+    names_closure,
+    names_gore,
+)
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -109,7 +117,11 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     opening = opens if junction.kind == "none" and not closed else None
     gore = in_gores(told) if junction.kind == RAMP else {}
     crash = replace(crash, gore=gore)
-    places = {WORK_ZONE: (told_closed, closed), MEDIAN_OPENING: (opens, opening), GORE: (names_gore(told), gore)}
+    places = {
+        WORK_ZONE: (names_closure(told), closed),
+        MEDIAN_OPENING: (opens, opening),
+        GORE: (names_gore(told), gore),
+    }
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")

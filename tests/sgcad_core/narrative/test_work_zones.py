@@ -66,6 +66,11 @@ def test_a_work_zone_that_is_not_drawn_is_named(text: str) -> None:
     assert not any(leg.closed_out for leg in layout_of_facts(facts).legs)
 
 
+def test_a_closed_lane_is_named_where_nobody_is_told_to_drive_any_way() -> None:
+    facts = road_facts("V1 saw too late that the lane was closed by cones. V1 hit V2 from behind.")
+    assert facts.closed is not None or "work_zone" in facts.junction.unsupported
+
+
 def test_a_lane_behind_a_stalled_truck_is_not_closed() -> None:
     text = (
         "V1 was traveling north on a four-lane road. The right lane was blocked by a truck. The front of V1 struck V2."
