@@ -26,7 +26,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import BESIDE, plain_xml
 from sgcad_core.planner.plan import plan
 from sgcad_core.records import CrashReport, Evidence, RoadNetwork
-from sgcad_core.roads.lane_graph import LaneGraph, network_figures
+from sgcad_core.roads.lane_graph import ROAD_WORKS, LaneGraph, network_figures
 from sgcad_core.roads.layout import OUTER, road_spec
 from sgcad_core.roads.road_geometry import ORDER
 from sgcad_core.specs import Leg
@@ -78,6 +78,8 @@ def _lacks(place: Place, graph: LaneGraph) -> Iterator[str]:
         yield f"{found} intersections, {wanted} declared"
     if bool(layout.circle_lanes) != bool(graph.circles):
         yield f"{layout.circle_lanes} lanes around declared, {len(graph.circles)} circles"
+    if layout.opening != bool(graph.openings):
+        yield f"{len(graph.openings)} openings in medians"
     around = {len(edge.car_lanes) for edge in graph.edges.values() if graph.is_around(edge)}
     if around not in (set(), {layout.circle_lanes}):
         yield f"{around} lanes around, {layout.circle_lanes} declared"
@@ -87,10 +89,13 @@ def _leg_lacks(leg: Leg, graph: LaneGraph) -> Iterator[str]:
     types = [BESIDE[what].type for what in ORDER if what in leg.beside][::-1]
     for edge, lanes in ((leg.bearing, leg.lanes_in), (f"-{leg.bearing}", leg.lanes_out)):
         found = graph.edges.get(edge)
-        if (len(found.car_lanes) if found else 0) != lanes:
+        if (len(found.laid_lanes) if found else 0) != lanes:
             yield f"edge {edge} has other lanes than the {lanes} declared"
-        elif found and [lane.type for lane in found.lanes if lane.type] != types:
+        elif found and [lane.type for lane in found.lanes if lane.type not in ("", ROAD_WORKS)] != types:
             yield f"edge {edge} has other edges than {types}"
+        closed = [i + 1 for i, lane in enumerate(found.laid_lanes) if lane.type == ROAD_WORKS] if found else []
+        if closed != list(leg.closed_out if edge.startswith("-") else ()):
+            yield f"edge {edge} has closed lanes {closed}, {leg.closed_out} are declared"
     over = any(leg.bearing in crossing.edges or f"-{leg.bearing}" in crossing.edges for crossing in graph.crossings)
     if over != leg.crosswalk:
         yield f"crosswalk on {leg.bearing}: {over}, declared {leg.crosswalk}"

@@ -199,9 +199,94 @@ def _driveway(r: random.Random, kind: str) -> Place:
     return Place(kind, RoadLayout(legs=legs, accesses=(access,)), crash)
 
 
+def _alley_mouth(r: random.Random, kind: str) -> Place:
+    """One who comes out of an alley, forwards or backwards, meets one on the street."""
+    own, _, ahead, right = _cross(r)
+    legs = _legs(r, (own, ahead), most=2, beside=_edges(r))
+    mouth = Leg(bearing=right, lanes_in=1, lanes_out=1, kind="driveway", alley=True)
+    along = _actor("V1", own, lane=1, exit_road=ahead)
+    if r.random() < 0.5:
+        crash = _crash(along, _actor("V2", right, "turn_left", exit_road=own), ("front", "left"))
+    else:
+        crash = _crash(_actor("V2", right, "backing", exit_road=own), along, ("back", "right"))
+    return Place(kind, RoadLayout(legs=(*legs, mouth)), crash)
+
+
+def _in_alley(r: random.Random, kind: str) -> Place:
+    """Two who meet in an alley, or one who passes one that stands in it."""
+    own = r.choice(COMPASS)
+    ends: tuple[Compass, ...] = (own, _turned(own, 4))
+    legs = tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", alley=True) for end in ends)
+    crash = r.choice([
+        _crash(_actor("V1", own), _actor("V2", ends[1], "stopped"), ("front", "front")),
+        _crash(_actor("V1", own), _actor("V2", own, "stopped"), ("front", "back")),
+        _crash(_actor("V1", own), _actor("V2", own, "parked"), ("right", "left")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs), crash)
+
+
+def _lane_closed(r: random.Random, kind: str) -> Place:
+    """One who leaves a closed lane touches one beside, or one who waits before the cones is struck."""
+    own = r.choice(COMPASS)
+    ends: tuple[Compass, ...] = (own, _turned(own, 4))
+    count, right = r.randint(2, 4), r.random() < 0.6
+    shut = r.randint(1, count - 1) if r.random() < 0.3 else 1
+    closed = tuple(range(1, shut + 1)) if right else tuple(range(count - shut + 1, count + 1))
+    fields: dict[str, Any] = {
+        "lanes_in": count, "lanes_out": count, "speed_limit_mph": r.choice([35, 45, 55, 65]),
+        "median": r.choice(["none", "grass", "barrier"]), "beside": r.choice([(), ("shoulder",)]),
+    }  # fmt: skip
+    legs = (Leg(bearing=own, **fields), Leg(bearing=ends[1], closed_out=closed, **fields))
+    leaves, stays = (shut, shut + 1) if right else (count - shut + 1, count - shut)
+    way: Maneuver = r.choice(["merge", "lane_change_left" if right else "lane_change_right"])
+    sides: tuple[Area, Area] = ("left", "right") if right else ("right", "left")
+    crash = r.choice([
+        _crash(_actor("V1", own, way, lane=leaves), _actor("V2", own, lane=stays), sides),
+        _crash(_actor("V2", own, lane=leaves), _actor("V1", own, "stopped", lane=leaves), ("front", "back")),
+        _crash(_actor("V2", own, lane=stays), _actor("V1", own, "slowing", lane=stays), ("front", "back")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs), crash)
+
+
+def _median_opening(r: random.Random, kind: str) -> Place:
+    """One who turns round through an opening in the median, or waits to, is struck."""
+    own = r.choice(COMPASS)
+    far = _turned(own, 4)
+    count = r.randint(1, 3)  # one lane and a narrow median leave no car the room to turn
+    fields: dict[str, Any] = {
+        "lanes_in": count, "lanes_out": count,
+        "median": r.choice(["raised", "grass", "barrier"]) if count > 1 else "grass",
+        "speed_limit_mph": r.choice([35, 45, 55]), "beside": r.choice([(), ("shoulder",)]),
+    }  # fmt: skip
+    legs = tuple(Leg(bearing=end, **fields) for end in (own, far))
+    around, inner = _actor("V2", far, "u_turn", exit_road=far), count
+    crash = r.choice([
+        _crash(_actor("V1", own, exit_road=far), around, ("front", "right")),
+        _crash(_actor("V1", far, lane=inner), _actor("V2", far, "stopped", lane=inner), ("front", "back")),
+        _crash(_actor("V1", far, lane=inner), around, ("front", "left")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=legs, opening=True), crash)
+
+
+def _gore(r: random.Random, kind: str) -> Place:
+    """One who crosses a gore touches one on the road, or one who strays into it strikes what stands there."""
+    own = r.choice(COMPASS)
+    legs, far, off = _freeway(r, own), _turned(own, 4), _turned(own, 5)
+    ramp = Leg(bearing=off, lanes_in=0, lanes_out=1, kind="ramp")
+    along = _actor("V1", own, lane=1, exit_road=far)
+    crash = r.choice([
+        _crash(_actor("V2", own, lane=1, exit_road=far, gore=True), along, ("left", "right")),
+        _crash(along, _actor("V2", own, "stopped", gore=True), ("front", "back")),
+        _crash(along, _actor("O1", own, "stopped", kind="object", gore=True), ("front", "front")),
+    ])  # fmt: skip
+    return Place(kind, RoadLayout(legs=(*legs, ramp)), crash)
+
+
 KINDS: Mapping[str, Callable[[random.Random, str], Place]] = {
     "roundabout, enters": _roundabout_enters, "roundabout, waits": _roundabout_waits, "crosswalk": _crosswalk,
     "parking lane": _parked, "bicycle lane": _right_hook, "four legs": _crossing, "t": _left_turn,
     "parking lot, backs": _lot_backs,
     "parking lot, crosses": _lot_crosses, "ramp, merges": _ramp, "ramp, leaves": _exit, "driveway": _driveway,
+    "alley, comes out": _alley_mouth, "alley, within": _in_alley,
+    "lane closed": _lane_closed, "median opening": _median_opening, "gore": _gore,
 }  # fmt: skip

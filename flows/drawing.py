@@ -6,15 +6,19 @@ Knows SUMO's .net.xml; metres, x east, y north; nothing of pixels or colors but 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
+from sgcad_core.kinds import UNPAINTED
+from sgcad_core.roads.closures import cones
+from sgcad_core.roads.gores import gores
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
@@ -60,6 +64,10 @@ class Drawing:
     lines: tuple[Line, ...]
     crossings: tuple[Strip, ...] = ()
     marks: tuple[Mark, ...] = ()
+    cones: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    """(n, 2) places of traffic cones."""
+    gores: tuple[Floats, ...] = ()
+    """Corners of the painted gores at ramps, (n, 2) each."""
 
 
 def drawing_of(net_xml: str) -> Drawing:
@@ -70,8 +78,10 @@ def drawing_of(net_xml: str) -> Drawing:
     lines = [line for edge in graph.edges.values() for line in _edge_lines(edge, graph)]
     lines += _stop_lines(root, graph)
     return Drawing(
-        tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph))
-    )
+        tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph)),
+        np.vstack([np.zeros((0, 2)), *(places for _, places in cones(graph))]),
+        tuple(gore.corners for gore in gores(graph)),
+    )  # fmt: skip
 
 
 def _areas(root: Any) -> list[Floats]:
@@ -86,7 +96,12 @@ def _width(graph: LaneGraph, edge: str, lane: int) -> float:
 
 
 def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
-    """Right edge, lines between lanes, left edge: yellow where traffic comes the other way or must not go."""
+    """Right edge, lines between lanes, left edge: yellow where traffic comes the other way or must not go.
+
+    Driveways and alleys carry no paint.
+    """
+    if edge.parameters.get(KIND) in UNPAINTED:
+        return []
     right, left = edge.lanes[0], edge.lanes[-1]
     lines = [Line(_side(right, -1), "edge"), Line(_side(left, +1), "center")]
     return lines + [Line(_side(lane, +1), "lane") for lane in edge.lanes[:-1]]

@@ -11,6 +11,7 @@ import numpy as np
 from flows.drawing import Drawing
 from flows.view import Mover, View
 from sgcad_core.geometry.plane import Box, corners
+from sgcad_core.roads.closures import CONE_M
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +21,7 @@ DPI = 110
 MARGIN_M = 14.0
 GHOST_S = 1.0
 """An actor's box is drawn once every so many seconds, paler the earlier."""
+CONE = "#ff7a1a"
 GROUND, ASPHALT, WHITE, YELLOW, RED = "#eef0ea", "#5b6067", "#f4f4f0", "#e8b93c", "#d7263d"
 LINES = {
     "edge": (WHITE, 0.9, "-"),
@@ -78,6 +80,12 @@ def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
     colors = [ASPHALT if s.cars else "#a9a69c" for s in drawing.strips]
     strips = [s.points for s in drawing.strips]
     axes.add_collection(LineCollection(strips, linewidths=widths, colors=colors, capstyle="butt", zorder=1))
+    axes.add_collection(
+        PolyCollection(drawing.gores, facecolors=ASPHALT, edgecolors=WHITE, hatch="///", linewidths=0.8, zorder=1.5)
+    )
+    if len(drawing.cones):
+        size = max(CONE_M * points_per_m, 2.0)
+        axes.plot(*drawing.cones.T, linestyle="none", marker="o", markersize=size, color=CONE, zorder=2.5)
     for style, (color, width, dashes) in LINES.items():
         lines = [line.points for line in drawing.lines if line.style == style]
         axes.add_collection(LineCollection(lines, colors=color, linewidths=width, linestyles=[dashes], zorder=2))

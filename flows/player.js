@@ -6,7 +6,7 @@
   const contact = data.collision.observed, declared = data.collision.declared;
   const near = data.near_crash, closest = near && !contact ? near.observed : null;
   const moment = contact || closest, momentStep = moment ? moment.t_s / step : null, contactStep = contact ? momentStep : null;
-  const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d" };
+  const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d", cone: "#ff7a1a" };
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
   const seated = parent !== window && /[#&]embed\b/.test(location.hash);   // in the desk: the stage alone, which says what is pointed at
   document.body.classList.toggle("seated", seated);
@@ -65,6 +65,14 @@
         trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? asphalt : COLOR.path; ink.stroke();
       }
     }
+    for (const gore of data.drawing.gores || []) {         // painted triangles: asphalt, hatched
+      trace(gore); ink.closePath(); ink.fillStyle = COLOR.asphalt; ink.fill(); ink.save(); ink.clip();
+      ink.strokeStyle = COLOR.edge; ink.lineWidth = 0.35;
+      for (let i = 2; i < gore.length / 2; i += 4) {
+        const n = gore.length; trace([gore[i], gore[i + 1], gore[n - 2 - i], gore[n - 1 - i]]); ink.stroke();
+      }
+      ink.restore(); trace(gore); ink.closePath(); ink.lineWidth = Math.max(0.15, 0.9 / box.scale); ink.strokeStyle = COLOR.edge; ink.stroke();
+    }
     for (const [width, flat] of data.drawing.crossings || []) {   // bars across the way that is walked
       trace(flat); ink.lineWidth = width; ink.strokeStyle = COLOR.edge; ink.setLineDash([0.5, 0.6]); ink.stroke();
     }
@@ -74,6 +82,10 @@
       ink.setLineDash(style === "lane" ? [3, 6] : []); ink.stroke();
     }
     ink.setLineDash([]);
+    const cones = data.drawing.cones || [], wide = Math.max(0.22, 1.6 / box.scale);
+    for (let i = 0; i < cones.length; i += 2) {
+      ink.beginPath(); ink.arc(cones[i], cones[i + 1], wide, 0, 7); ink.fillStyle = COLOR.cone; ink.fill();
+    }
   }
   function arrow(directions) {                           // painted ahead along x: one stem, a head each way
     ink.beginPath(); ink.moveTo(-2, 0); ink.lineTo(0.6, 0);

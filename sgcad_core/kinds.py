@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-JunctionKind = Literal["none", "roundabout", "parking_lot", "t", "four_leg", "driveway", "ramp"]
+JunctionKind = Literal["none", "roundabout", "parking_lot", "t", "four_leg", "alley", "driveway", "ramp"]
 RoadKind = Literal["road", "driveway", "ramp"]
 Maneuver = Literal[
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
@@ -22,7 +22,11 @@ T: Final = "t"
 FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
 PARKING_LOT: Final = "parking_lot"
+WORK_ZONE: Final = "work_zone"
+MEDIAN_OPENING: Final = "median_opening"
+GORE: Final = "gore"
 DRIVEWAY: Final = "driveway"
+ALLEY: Final = "alley"
 RAMP: Final = "ramp"
 """Names of junctions and roads for code that treats one of them apart; no other module spells them (a test looks)."""
 PLAIN: Final = "plain"
@@ -31,6 +35,8 @@ MERGE: Final = "merge"
 """Layouts of made reports that are not called as their kind is (`Junction.layout`)."""
 JOINING: Final = (DRIVEWAY, RAMP)
 """Roads that lead to or from a street and are told of by a word alone."""
+UNPAINTED: Final = (DRIVEWAY, ALLEY)
+"""What networks call roads that carry no markings; in a spec an alley is a driveway that says so (`Road.alley`)."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +71,7 @@ JUNCTIONS: tuple[Junction, ...] = (
     Junction(PARKING_LOT, "a parking lot", 2, 0, "", stem=DRIVEWAY, rule="junction.parking_lot"),
     Junction(FOUR_LEG, "a four-leg intersection", 4, 1, FOUR, rule="junction.four"),
     Junction(T, "a T-intersection", 3, 1, T, rule="junction.t"),
+    Junction(ALLEY, "an alley", 3, 1, "", stem=DRIVEWAY),
     Junction(DRIVEWAY, "a driveway", 3, 1, DRIVEWAY, stem=DRIVEWAY),
     Junction(RAMP, "a ramp that merges", 3, 1, MERGE, stem=RAMP),
 )
@@ -93,6 +100,19 @@ class Unsupported:
 UNSUPPORTED: tuple[Unsupported, ...] = (
     Unsupported("parking_garage", "a parking garage", "refuse", "leave the case out: no aisles or decks can be drawn"),
     Unsupported("interchange", "an interchange", "note", "see that the ramp or the road of the crash is drawn"),
+    Unsupported(
+        WORK_ZONE,
+        "a work zone",
+        "note",
+        "the road is drawn without it: lanes that are closed are drawn on roads of two or more each way, off junctions",
+    ),
+    Unsupported(
+        MEDIAN_OPENING,
+        "an opening in the median",
+        "note",
+        "the road is drawn without it: openings are drawn on roads without a junction",
+    ),
+    Unsupported(GORE, "a gore area", "note", "the gore is drawn at its ramp; see that the vehicle or thing is in it"),
     Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
 )
 

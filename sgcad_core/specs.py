@@ -45,6 +45,7 @@ Surface = Literal["dry", "wet", "snow", "ice"]
 SpeedMph = Annotated[int, Field(ge=0, le=120)]
 SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
 Lanes = Annotated[int, Field(ge=0, le=8)]
+LaneNumber = Annotated[int, Field(ge=1, le=8)]
 CLEARANCE_M = 0.6
 """How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
 width. A convention of ours, marked `default` wherever it stands."""
@@ -63,6 +64,7 @@ class Node(Point):
 
     id: Id
     control: NodeControl = Field("none", description="stop / yield: the minor roads stop / yield")
+    opening: bool = added(False, "an opening in the median, by which one turns round")
 
 
 class Road(Spec):
@@ -85,6 +87,9 @@ class Road(Spec):
     beside: tuple[Beside, ...] = added(
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
+    alley: bool = added(False, "an alley: a narrow driveway without markings")
+    closed_forward: tuple[LaneNumber, ...] = added((), "its lanes that a work zone closes, 1 = at the right curb")
+    closed_backward: tuple[LaneNumber, ...] = added((), "the same of the other direction")
     crosswalks: tuple[Id, ...] = added((), "its ends (from_node, to_node) at which a crosswalk leads over it")
 
 
@@ -132,6 +137,10 @@ class Leg(Spec):
         (), "on both sides of the lanes, from the lanes outwards; parking: along the curb"
     )
     crosswalk: bool = added(False, "whether a marked crosswalk leads over this leg at the hub")
+    alley: bool = added(False, "an alley: a narrow driveway without markings")
+    closed_out: tuple[LaneNumber, ...] = added(
+        (), "lanes away from the hub that a work zone closes, from the right curb"
+    )
     skew_deg: Annotated[int, Field(ge=-40, le=40)] = added(0, "how far it lies clockwise of its bearing, degrees")
 
 
@@ -160,6 +169,7 @@ class RoadLayout(Spec):
     circle_lanes: Annotated[int, Field(ge=0, le=2)] = added(
         0, "lanes around, where the hub is a roundabout (every leg yields); 0: it is none"
     )
+    opening: bool = added(False, "an opening in the median at the hub of two legs, by which one turns round")
 
 
 # ------------------------------------------------------------------ behavior
@@ -182,6 +192,7 @@ class Actor(Spec):
     speed_mph: SpeedMph | None = None
     length_m: Annotated[float, Field(gt=0.1, le=30)] | None = None
     width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
+    gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
 
 
 class Contact(Spec):

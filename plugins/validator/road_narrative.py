@@ -16,7 +16,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.paths import ahead, legs_used, turns_off
@@ -109,11 +109,11 @@ class RoadNarrative(Validator):
         """A plain road where a vehicle leaves or enters a driveway or side road that the report names."""
         junction = facts.junction
         missing = self._without(legs_used(facts), [leg for legs in junctions for leg in legs])
-        named = junction.stated if junction.kind == DRIVEWAY else junction.stem_stated and not junction.stated
+        named = junction.stated if junction.kind in (DRIVEWAY, ALLEY) else junction.stem_stated and not junction.stated
         if missing != [junction.stem] or not named or not any(map(turns_off, facts.crash.vehicles)):
             return
         where = f"{NAMES[missing[0]]} of"
-        what = f"a vehicle uses a {'driveway' if junction.kind == 'driveway' else 'road'} {where} the crash"
+        what = f"a vehicle uses a {junction.kind if junction.kind in (DRIVEWAY, ALLEY) else 'road'} {where} the crash"
         holds = (Hold(items="legs", at_least=3), *laid(facts, pictured))
         severity: Severity = "doubt" if pictured else "repair"
         yield _finding(what, "junction", "no junction", f"lay a leg {where} a junction", severity, holds)

@@ -15,7 +15,7 @@ from sgcad_core.account.made import Made, is_told
 from sgcad_core.account.records import Item
 from sgcad_core.facts import Fact, Value
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
 from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.crash_seen import Driven
 from sgcad_core.metrics.rest import attitude_of
@@ -143,15 +143,21 @@ def _joins(road_name: Callable[[Made, str], str | None]) -> Judge:
     """Whether a vehicle comes from, or goes into, such a road."""
 
     def judged(made: Made, who: str, value: Value) -> Seen | None:
-        wanted = {DRIVEWAY: DRIVEWAY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
+        wanted = {DRIVEWAY: DRIVEWAY, ALLEY: ALLEY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
         spec, name = made.network.spec, road_name(made, who)
         if wanted is None or spec is None or name is None:
             return None
-        kind = next((road.kind for road in spec.roads if road.id == name), "road")
-        lot = made.reading.roads.junction.kind == PARKING_LOT
+        kind = next((ALLEY if road.alley else road.kind for road in spec.roads if road.id == name), "road")
+        lot = made.reading.roads.junction.kind == PARKING_LOT or (str(value) == RAMP and _in_gore(made, who))
         return Seen(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
 
     return judged
+
+
+def _in_gore(made: Made, who: str) -> bool:
+    """Whether it crosses the gore of a ramp, so that it is on the ramp for a while."""
+    behavior = made.scenario.behavior
+    return behavior is not None and any(a.gore for a in behavior.actors if a.id == who)
 
 
 def _start(made: Made, who: str) -> str | None:

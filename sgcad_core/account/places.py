@@ -10,10 +10,11 @@ from sgcad_core.account.made import Made, is_told
 from sgcad_core.account.motion import Seen
 from sgcad_core.account.records import Item
 from sgcad_core.facts import Value
-from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
 from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.narrative.road_provenance import road_names
 from sgcad_core.narrative.roads import RoadFact
+from sgcad_core.roads.closures import tapers
 from sgcad_core.roads.drawn import DrawnRoad, junctions, near
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.told_totals import allowed_totals
@@ -118,9 +119,9 @@ def _lane_kind(made: Made, here: list[DrawnRoad], name: str, value: Value) -> Se
 # ------------------------------------------------------------------ the junction
 def _kind(made: Made, value: Value) -> Seen | None:
     kind, spec = str(value), made.network.spec
-    drawn = {road.kind for road in spec.roads} if spec else set()
+    drawn = {ALLEY if road.alley else road.kind for road in spec.roads} if spec else set()
     legs = max((len(found) for found in junctions(made.graph)), default=0)
-    if kind in (DRIVEWAY, RAMP):
+    if kind in (DRIVEWAY, ALLEY, RAMP):
         return Seen(kind in drawn, f"{legs} legs", f"no {kind} is drawn") if spec else None
     if kind == PARKING_LOT:
         return None
@@ -157,6 +158,14 @@ def _condition(made: Made, name: str, value: Value) -> Seen | None:
     return None if behavior is None else Seen(seen == value, seen, f"the scenario has {seen or 'none'}")
 
 
+def _closed_lane(made: Made, value: Value) -> Seen:
+    """The side on which lanes are closed, as one drives."""
+    sides = {"right" if taper.side < 0 else "left" for taper in tapers(made.graph)}
+    return Seen(value in sides, ", ".join(sorted(sides)) or "none", "no such lane is closed")
+
+
 _JUNCTION: dict[str, Callable[[Made, Value], Seen | None]] = {
     "junction.kind": _kind, "junction.control": _control, "junction.stem": _stem,
+    "place.closed_lane": _closed_lane,
+    "place.median_opening": lambda made, _: Seen(bool(made.graph.openings), None, "no opening is drawn"),
 }  # fmt: skip

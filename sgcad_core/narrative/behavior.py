@@ -10,6 +10,7 @@ from sgcad_core.errors import Refused
 from sgcad_core.kinds import RAMP
 from sgcad_core.narrative.assign import Placed, assign, square_rad
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.narrative.gore_actors import in_gore
 from sgcad_core.narrative.lane_choice import lane_of
 from sgcad_core.narrative.limits import FROM_STOP_MPH
 from sgcad_core.narrative.near_crash import NearFacts
@@ -49,6 +50,7 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     if not contacts:
         actors, contacts = _with_others(actors, facts)
     near = _near_crash(facts, contacts)
+    actors = in_gore(actors, [_contact(c) for c in contacts], facts.gore, spec)
     met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
     cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(

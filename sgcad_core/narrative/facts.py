@@ -6,6 +6,7 @@ what it says (relation words, critical events, the sides that touched) and marke
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.narrative.conditions import Conditions
@@ -99,6 +100,8 @@ class CrashFacts:
     """Whether any heading is told: if not, all headings are right only relative to one another."""
     unnumbered: bool = False
     """Whether the report numbers nobody: V1 is its subject."""
+    gore: Mapping[str, str] = field(default_factory=dict)
+    """Vehicles in a gore, and what they do there (`places.InGore`)."""
     gap: Gap | None = None
     """Why no crash can be drawn from the text, if so."""
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
@@ -19,6 +19,7 @@ from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES, Cue
+from sgcad_core.narrative.places import MEDIAN_OPENING, in_gores
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES
 from sgcad_core.specs import Compass
@@ -101,12 +102,14 @@ def _kind(
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
+    if in_gores(story) and named in ("none", "some"):
+        return RAMP, True
     if _ramp_used(vehicles, roads) and _merging(story, roads) and named in ("none", "some"):
         return RAMP, True
     if named != "none" and named != "some":
         return named, True
     if access and not (named == "some" and controlled(story)):
-        return DRIVEWAY, True
+        return _access_kind(vehicles), True
     if named == "some" or controlled(story):
         return (T, False) if _one_sided(story, roads) else (FOUR_LEG, False)
     if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
@@ -116,11 +119,17 @@ def _kind(
     return "none", False
 
 
+def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
+    """What joins the street where vehicles come out or turn in: an alley, if nobody uses anything else."""
+    used = {place for v in vehicles for place in (v.origin, v.target) if place in DRIVES}
+    return ALLEY if used == {ALLEY} else DRIVEWAY
+
+
 def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
     some: Cue | None = None
     for t in story:
-        text = _NO_JUNCTION.sub(" ", t.text)
+        text = MEDIAN_OPENING.sub(" ", _NO_JUNCTION.sub(" ", t.text))
         found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
         if found:
             first, words, record = min(found, key=lambda place: place[0].start())
@@ -191,7 +200,7 @@ def _stem(
 ) -> Compass | None:
     """Where a side leg lies that no compass word tells: on the side that the vehicles' paths need, else right of V1."""
     main = next((r.axis for r in roads if r.axis and r.kind not in JOINING and not r.cross), None)
-    from_paths = _stem_of_paths(vehicles, halted, main if kind == DRIVEWAY else None)
+    from_paths = _stem_of_paths(vehicles, halted, main if kind in (DRIVEWAY, ALLEY) else None)
     if from_paths:
         return from_paths
     said = _stem_told(story, vehicles, lead)

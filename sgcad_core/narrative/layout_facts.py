@@ -9,13 +9,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
 from sgcad_core.narrative.carriageway import Carriageway, Way, carriageway
 from sgcad_core.narrative.compass import OPPOSITE_HAND, between, turned
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.junction import JunctionFacts
 from sgcad_core.narrative.lanes import LaneFacts
-from sgcad_core.narrative.layout_places import circle_lanes, offset, parking_lot, skewed, with_edges
+from sgcad_core.narrative.layout_places import (
+    circle_lanes,
+    offset,
+    parking_lot,
+    skewed,
+    with_closed,
+    with_edges,
+    with_opening,
+)
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
@@ -48,7 +56,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        return with_edges(self.facts, self._roads_alone())
+        return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, self._roads_alone())))
 
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()
@@ -59,7 +67,7 @@ class _Builder:
             return parking_lot(self.facts, main.axis or "N")
         if junction.kind == RAMP:
             return RoadLayout(legs=self._merge(main))
-        if junction.kind == DRIVEWAY:
+        if junction.kind in (DRIVEWAY, ALLEY):
             return RoadLayout(legs=self._with_driveway(main))
         stem = self._stem(main) if junction.kind == T else None
         if stem and axis_of(stem) == main.axis and cross.axis != main.axis:
@@ -131,7 +139,8 @@ class _Builder:
 
     def _with_driveway(self, main: RoadFact) -> tuple[Leg, ...]:
         stem = self._stem(main)
-        drive = Leg(bearing=stem, lanes_in=1, lanes_out=1, kind=DRIVEWAY, control=self._leg_control(stem))
+        control, alley = self._leg_control(stem), self.facts.junction.kind == ALLEY
+        drive = Leg(bearing=stem, lanes_in=1, lanes_out=1, kind=DRIVEWAY, control=control, alley=alley)
         return (*self._through(main, stem), drive)
 
     def _merge(self, main: RoadFact) -> tuple[Leg, ...]:
@@ -182,7 +191,8 @@ class _Builder:
             bearing=bearing, lanes_in=lanes_in, lanes_out=lanes_out,
             turns_in=_turns(coming, lanes_in) if at_junction else (),
             center_turn_lane=_center(lanes, lanes_in, lanes_out),
-            median=_median(road, lanes_in, lanes_out), kind=_kind(road), curve=_curve(road, inward),
+            median=_median(road, lanes_in, lanes_out), kind=_kind(road), alley=road.kind == ALLEY,
+            curve=_curve(road, inward),
             control=self._leg_control(bearing) if at_junction else "none",
             speed_limit_mph=road.speed_limit_mph or _usual_limit(road) or self.defaults.speed_limit_mph,
         )  # fmt: skip
@@ -261,12 +271,12 @@ def _median(road: RoadFact, lanes_in: int, lanes_out: int) -> Median:
 
 
 def _usual_limit(road: RoadFact) -> int | None:
-    """The statutory limit that most states post on freeways and on rural roads, mph; None elsewhere."""
-    return {"freeway": 60, RAMP: None, DRIVEWAY: None}.get(road.kind, 50 if road.rural else None)
+    """The statutory limit that most states post on freeways, on rural roads and in alleys, mph; None elsewhere."""
+    return {"freeway": 60, RAMP: None, DRIVEWAY: None, ALLEY: 15}.get(road.kind, 50 if road.rural else None)
 
 
 def _kind(road: RoadFact) -> RoadKind:
-    return road.kind if road.kind in JOINING else "road"
+    return DRIVEWAY if road.kind == ALLEY else road.kind if road.kind in JOINING else "road"
 
 
 def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:

@@ -31,6 +31,31 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
     return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
 
 
+def with_closed(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
+    """The layout with the lanes that a work zone closes, beyond the middle of a plain road; one lane stays open."""
+    closed = facts.closed
+    ahead = next((leg for leg in layout.legs if closed and leg.bearing == closed.toward), None)
+    if closed is None or ahead is None or len(layout.legs) != 2 or layout.accesses:
+        return layout
+    lanes = max(closed.count + 1, ahead.lanes_out)
+    shut = range(1, closed.count + 1) if closed.side == "right" else range(lanes - closed.count + 1, lanes + 1)
+    came = {"lanes_in": lanes}
+    goes = {"lanes_out": lanes, "closed_out": tuple(shut)}
+    return layout.model_copy(
+        update={"legs": tuple(leg.model_copy(update=goes if leg is ahead else came) for leg in layout.legs)}
+    )
+
+
+def with_opening(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
+    """The layout with an opening in its median; a road of which no median is told has a raised one."""
+    two_way = all(leg.lanes_in and leg.lanes_out and leg.kind == "road" for leg in layout.legs)
+    if facts.opening is None or len(layout.legs) != 2 or layout.accesses or not two_way:
+        return layout
+    parted = {"median": "raised", "center_turn_lane": False}
+    legs = tuple(leg if leg.median != "none" else leg.model_copy(update=parted) for leg in layout.legs)
+    return layout.model_copy(update={"legs": legs, "opening": True})
+
+
 def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     """An aisle with stalls on both sides; two that cross where vehicles are told to come along both.
 

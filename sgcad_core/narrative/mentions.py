@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import COMPASS, compass_of
@@ -22,7 +22,7 @@ from sgcad_core.specs import Compass
 
 Relation = Literal["same", "other", "main", "both"]
 How = Literal["on", "from", "onto"]
-Kind = Literal["road", "freeway", "ramp", "driveway", "crossroads"]
+Kind = Literal["road", "freeway", "ramp", "driveway", "alley", "crossroads"]
 
 
 @dataclass(frozen=True)
@@ -226,6 +226,8 @@ def _kind(phrase: str, head: str, lead: str) -> Kind:
     word = head.lower()
     if RAMP in word:
         return RAMP
+    if rule("mentions.alley").search(word):
+        return ALLEY
     if rule("mentions.driveway").search(word) or rule("mentions.private").search(phrase):
         return DRIVEWAY
     if rule("mentions.freeway").search(phrase) and not rule("mentions.aside").search(lead):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
 
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.specs import Compass
 
-Access = Literal["driveway", "parking_lot", "ramp", "shoulder", "side_road"]
-DRIVES: tuple[Access, ...] = (DRIVEWAY, "parking_lot")
+Access = Literal["driveway", "alley", "parking_lot", "ramp", "shoulder", "side_road"]
+DRIVES: tuple[Access, ...] = (DRIVEWAY, ALLEY, "parking_lot")
 """Where vehicles come from or turn into that drive on no street there."""
 Kin = Literal["same", "opposite", "crossing"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP, junction_kind
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
@@ -35,7 +35,7 @@ def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     for heading, maneuver in ways:
         legs.append(turned(heading, 180))
         legs += [turned(heading, QUARTER_DEG[maneuver])] if maneuver in QUARTER_DEG else []
-    if junction.kind == DRIVEWAY:
+    if junction.kind in (DRIVEWAY, ALLEY):
         legs += [heading for heading in _along(driving, facts) if turned(heading, 180) in legs]
     if junction_kind(junction.kind).crossing and (junction.stated or faced):
         legs += _crossing(crash)

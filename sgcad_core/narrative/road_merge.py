@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.kinds import JOINING
+from sgcad_core.kinds import ALLEY, JOINING
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.lane_sources import also, both
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of
 from sgcad_core.specs import Compass
 
-_OWN_KINDS = (*JOINING, "freeway")
+_OWN_KINDS = (*JOINING, "freeway", ALLEY)
 """Kinds of road that a mention tells by its word alone."""
 
 

@@ -43,6 +43,16 @@ def road_provenance(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
     for name, road in zip(road_names(facts), facts.roads, strict=True):
         yield from _road(telling, f"roads.{name}", road)
     yield from _junction(telling, facts)
+    if facts.opening:
+        yield telling.stated("place.median_opening", True, facts.opening)
+    if closed := facts.closed:
+        field = "place.closed_lane"
+        said = closed.side_stated
+        yield (
+            telling.stated(field, closed.side, closed.where)
+            if said
+            else telling.inferred(field, closed.side, "places.who leaves it", closed.where)
+        )
 
 
 def _road(telling: Telling, at: str, road: RoadFact) -> Iterator[Fact]:

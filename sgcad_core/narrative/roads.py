@@ -10,15 +10,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, JOINING, RAMP, ROUNDABOUT, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
+from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.narrative.motion import DRIVES, Cue
+from sgcad_core.narrative.places import (
+    CLOSED_LANES,
+    ClosedLanes,
+    closed_lanes,
+    in_gores,
+    median_opening,
+    names_closure,
+    names_gore,
+)
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES
@@ -68,6 +78,10 @@ class RoadFacts:
     crosswalk: bool = False
     """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
     urban: bool = False
+    closed: ClosedLanes | None = None
+    """Lanes that a work zone closes, where they can be drawn."""
+    opening: Cue | None = None
+    """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
 
@@ -79,13 +93,13 @@ class RoadFacts:
 
 def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
-    mentions = road_mentions(_telling(told), who.ids)
+    mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
     crash = _oriented(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
     gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
-    junction = replace(junction_of(told, driven, gathered), unsupported=unsupported_places(told))
+    junction = junction_of(told, driven, gathered)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
@@ -95,8 +109,55 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    leaves = any(map(_EXIT_RAMP.search, story)) and not any(map(_ENTRANCE_RAMP.search, story))
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, leaves)
+    exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gores(told))
+    leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
+    told_closed = closed_lanes(told, driven)
+    closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
+    opens = median_opening(told)
+    opening = opens if junction.kind == "none" and not closed else None
+    gore = in_gores(told) if junction.kind == RAMP else {}
+    crash = replace(crash, gore=gore)
+    places = {
+        WORK_ZONE: (names_closure(told), closed),
+        MEDIAN_OPENING: (opens, opening),
+        GORE: (names_gore(told), gore),
+    }
+    junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
+    if closed and not closed.side_stated:
+        notes = (*notes, "which lane is closed is not told")
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves)
+
+
+def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
+    """Kinds of places that are named and not drawn; `places`: of some kinds what is told and what is drawn."""
+    told = [kind for kind, (seen, drawn) in places.items() if seen and not drawn]
+    lacking = [kind for kind in named if not places.get(kind, (None, None))[1]]
+    return tuple(dict.fromkeys([*lacking, *told]))
+
+
+def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFact, ...]) -> bool:
+    """Whether closed lanes can be drawn: on a road without a junction that keeps a lane open that way."""
+    lanes = next((r.lanes for r in roads if r.kind not in JOINING and r.axis == axis_of(closed.toward)), LaneFacts())
+    counted = lanes.toward.get(closed.toward) or lanes.each_way
+    if counted is None and lanes.total:
+        counted = lanes.total if lanes.one_way or lanes.divided else lanes.total // 2
+    return junction.kind == "none" and (counted is None or counted > closed.count)
+
+
+def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:
+    """An alley is the road of a crash within it, into which nobody just turns; else it joins as driveways do."""
+    within = {v for m in mentions if m.kind == ALLEY and m.how == "on" for v in m.vehicles}
+    joining = {v.id for v in crash.vehicles if ALLEY in (v.origin, v.target)}
+    turns = {v.id for v in crash.vehicles if v.maneuver in QUARTER_DEG}
+    if within - joining and joining <= within - turns:
+        kept = tuple(_staying(v) if v.id in joining else v for v in crash.vehicles)
+        return tuple(m for m in mentions if m.kind != ALLEY or m.vehicles), replace(crash, vehicles=kept)
+    return tuple(replace(m, kind=DRIVEWAY) if m.kind == ALLEY else m for m in mentions), crash
+
+
+def _staying(v: VehicleFacts) -> VehicleFacts:
+    origin, target = (None if place == ALLEY else place for place in (v.origin, v.target))
+    return replace(v, origin=origin, target=target)
 
 
 def _somebody_walks(crash: CrashFacts) -> bool:
@@ -157,8 +218,8 @@ def _telling(told: tuple[Statement, ...]) -> list[Statement]:
 
 
 def _without_circle(told: Statement) -> Statement:
-    """The sentence without the lanes of a roundabout, which are those of no road."""
-    return told._replace(text=CIRCLE_LANES.sub(ROUNDABOUT, told.text))
+    """The sentence without the lanes of a roundabout, which are those of no road, and without closed ones."""
+    return told._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, told.text)))
 
 
 def _road(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule, values
 from sgcad_core.narrative.limits import FASTEST_MPH, MILES
 from sgcad_core.narrative.motion import Access, Motion
@@ -85,6 +85,7 @@ _ORIGIN = rule("surroundings.origin")
 _TARGET = rule("surroundings.target")
 _NEAR_DRIVE = rule("surroundings.approaching_driveway")
 _ON_DRIVE = rule("surroundings.on_drive")
+_OUT_OF_ALLEY = rule("surroundings.out_of_alley")
 _RAMP = rule("surroundings.ramp")
 _SHOULDER = rule("surroundings.shoulder")
 
@@ -104,6 +105,8 @@ def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, st
     """Where a vehicle came from, the words that tell it, and by which rule."""
     if origin:
         return _place(origin.group("place")), origin.group("place"), _ORIGIN.id
+    if alley := _OUT_OF_ALLEY.search(text):
+        return ALLEY, alley.group(), _OUT_OF_ALLEY.id
     drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
     if drive and not _NEAR_DRIVE.search(text):
         return DRIVEWAY, drive.group(), _ON_DRIVE.id
@@ -113,4 +116,6 @@ def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, st
 
 
 def _place(word: str) -> Access:
+    if rule("surroundings.alley").search(word):
+        return ALLEY
     return DRIVEWAY if rule("surroundings.driveway").search(word) else "parking_lot"

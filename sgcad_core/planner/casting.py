@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import cast
 
 from sgcad_core.planner.course import Course, find_course
+from sgcad_core.planner.gore_lines import through_gore
 from sgcad_core.planner.motion import Motion
 from sgcad_core.planner.role import Role, speed_there, usual_speed
 from sgcad_core.planner.stalls import out_of_stall
@@ -31,6 +32,8 @@ def course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
 
 def _course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
     course = find_course(graph, actor, gentle)
+    if actor.gore:
+        return through_gore(graph, actor, course, lambda other: find_course(graph, other, gentle))
     if actor.maneuver == "backing" and course.stalls:
         return out_of_stall(course, size_m(actor)[0])
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):

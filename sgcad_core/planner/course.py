@@ -17,9 +17,11 @@ from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.planner.lane_chain import from_right, lane_chain, merged
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.planner.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.route import Route, Way, find_route
+from sgcad_core.roads.closures import taper_of
 from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.specs import Actor
 from sgcad_core.units import MPS_PER_MPH
@@ -34,7 +36,7 @@ _OVER_M = 1.0
 class Passage(NamedTuple):
     """A node on the way: stations where its area begins and ends, and whether roads really meet there.
 
-    `around`: behind it the way goes on around a roundabout.
+    `around`: behind it the way goes on around a roundabout. `taper_m`: length of a work zone's taper before it.
     """
 
     node: str
@@ -42,6 +44,7 @@ class Passage(NamedTuple):
     exit_m: float
     is_junction: bool
     around: bool = False
+    taper_m: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +110,8 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
     """
     route = find_route(graph, actor)
     notes = list(route.notes)
-    lanes, links = _lane_chain(graph, route, actor, notes)
-    pieces = _pieces(route, lanes, links)
+    lanes, links = lane_chain(graph, route, actor, notes)
+    pieces = _pieces(route, *merged(graph, route, lanes, links, actor))
     if route.made_up_turn_rad:
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
@@ -116,59 +119,6 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
     usual = actor.speed_mph * MPS_PER_MPH if actor.speed_mph else lane.speed_mps
     smooth = min(usual, _SMOOTH_MPS) * math.sqrt(LATERAL_MPS2 / gentle_mps2)
     return _measured(graph, route, lane, pieces, (tuple(notes), smooth))
-
-
-# ------------------------------------------------------------------ lanes
-def _lane_chain(
-    graph: LaneGraph, route: Route, actor: Actor, notes: list[str]
-) -> tuple[list[Lane], list[Connection | None]]:
-    """A lane for every way and the connection (or None) between each two."""
-    lanes: list[Lane] = [route.ways[0].lanes[0]] * len(route.ways)
-    links: list[Connection | None] = [None] * (len(route.ways) - 1)
-    lanes[route.start] = _first_lane(graph, route, actor, notes)
-    for i in range(route.start, len(links)):
-        links[i], lanes[i + 1] = _next_lane(graph, route.ways[i], lanes[i], route.ways[i + 1])
-    for i in range(route.start - 1, -1, -1):
-        links[i], lanes[i] = _previous_lane(graph, route.ways[i], route.ways[i + 1], lanes[i + 1])
-    return lanes, links
-
-
-def _first_lane(graph: LaneGraph, route: Route, actor: Actor, notes: list[str]) -> Lane:
-    way = route.ways[route.start]
-    if actor.lane is not None:
-        if actor.lane > len(way.lanes):
-            notes.append(f"{actor.id}: lane {actor.lane} of {way.road} taken as {len(way.lanes)}, its leftmost")
-        return way.lanes[min(actor.lane, len(way.lanes)) - 1]
-    linked = list(way.lanes)
-    if route.start + 1 < len(route.ways):
-        onward = {c.from_lane for c in graph.leaving(way.id) if c.to_edge == route.ways[route.start + 1].id}
-        linked = [lane for lane in way.lanes if lane.index in onward] or linked
-    leftmost = actor.maneuver in ("turn_left", "u_turn", "crossing_centerline", "departing_road_left", "overtaking")
-    return linked[-1 if leftmost or actor.maneuver == "lane_change_right" else 0]
-
-
-def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
-    between = [c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id]
-    by_index = {other.index: other for other in onward.lanes}
-    between = [c for c in between if c.to_lane in by_index]
-    if between and not way.wrong_way:
-        side = _from_right(way, lane)
-        best = min(between, key=lambda c: abs(_from_right(onward, by_index[c.to_lane]) - side))
-        return best, by_index[best.to_lane]
-    return None, onward.lanes[min(_from_right(way, lane), len(onward.lanes) - 1)]
-
-
-def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple[Connection | None, Lane]:
-    by_index = {other.index: other for other in way.lanes}
-    into = [c for c in graph.leaving(way.id) if (c.to_edge, c.to_lane) == (onward.id, lane.index)]
-    into = [c for c in into if c.from_lane in by_index]
-    if into and not onward.wrong_way:
-        return into[0], by_index[into[0].from_lane]
-    return None, way.lanes[min(_from_right(onward, lane), len(way.lanes) - 1)]
-
-
-def _from_right(way: Way, lane: Lane) -> int:
-    return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), 0)
 
 
 # ------------------------------------------------------------------ line
@@ -214,7 +164,9 @@ def _measured(
             continue
         onward = route.ways[piece.way + 1].id if piece.way + 1 < len(route.ways) else ""
         around = onward in graph.edges and graph.is_around(graph.edges[onward])
-        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around))
+        taper = taper_of(graph, way.id)
+        cones_m = taper.length_m if taper and taper.onward == onward else 0.0
+        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around, cones_m))
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
     opposite, left, right = _room(graph, route.ways[route.start], lane)
@@ -264,7 +216,7 @@ def _degree(graph: LaneGraph, node: str) -> int:
 
 def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float]:
     """To the nearest opposing lane center, the left edge and the right edge of the road, metres."""
-    side = _from_right(way, lane)
+    side = from_right(way, lane)
     right = lane.width_m / 2 + sum(other.width_m for other in way.lanes[:side])
     left = lane.width_m / 2 + sum(other.width_m for other in way.lanes[side + 1 :])
     road, direction = road_of(way.id)

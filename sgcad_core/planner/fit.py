@@ -22,6 +22,8 @@ _NOT_SHOWN = 2.0
 _UNMOVED, _MOVED_SHARE = 1.2, 0.7
 """Cost of a change of lane that has not begun; none from so much of a body's width to the side on, where the bodies
 still overlap by a third."""
+OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
+"""Cost of each metre between the encounter and the gore that one of both is in, and how far it is then across it."""
 _BEFORE_TURN_M = 12.0
 """So long before a turn begins the box still points along the road: it starts to turn before the junction."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
@@ -32,6 +34,9 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
     place = role.place.station_m
     penalty = outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
+    if role.actor.gore and role.course.passages:
+        crossed = role.course.passages[0]
+        penalty = penalty + outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
     turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
     maneuver = role.actor.maneuver
     if maneuver in TURNING:
@@ -62,6 +67,8 @@ def outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
 
 
 def waiting_zone(role: Role) -> tuple[float, float]:
-    """Stations between which a standing actor plausibly waits."""
+    """Stations between which a standing actor plausibly waits; in a gore, those of the gore."""
+    if role.actor.gore:
+        return role.course.start_m, role.course.end_m
     line, place = line_m(role), role.place.station_m
     return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

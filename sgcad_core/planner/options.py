@@ -28,7 +28,7 @@ from sgcad_core.planner.choices import (
     spins,
 )
 from sgcad_core.planner.drifting import line_of, profile
-from sgcad_core.planner.fit import misfit, outside, waiting_zone
+from sgcad_core.planner.fit import OUT_OF_GORE, misfit, outside, waiting_zone
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.path import Path, ramp, tamed
 from sgcad_core.planner.place import TURNING
@@ -241,7 +241,7 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = outside(path.s_m, *waiting_zone(role), 0.03)
+    penalty = outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
 
 

@@ -22,6 +22,8 @@ _MID_BLOCK: frozenset[Maneuver] = frozenset({
     "departing_road_right",
 })  # fmt: skip
 _BEFORE_JUNCTION_M = 22.0
+_ALONG_TAPER = 0.55
+"""Share of a taper that lies ahead where one leaves the lane that it closes."""
 _GRID_M = 2.0
 _REACH_M = 25.0
 STOP_LINE_M = 1.5
@@ -45,6 +47,9 @@ class Place(NamedTuple):
 def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
     """Where an actor's own part of the crash plausibly happens, whoever the other one is."""
     waits = actor.maneuver in STANDING or actor.maneuver == "slowing"
+    taper = next((p for p in course.passages if p.taper_m and p.entry_m > course.start_m), None)
+    if taper is not None:
+        return taper.entry_m - (taper.taper_m + length_m / 2 if waits else _ALONG_TAPER * taper.taper_m)
     if course.turn is not None and not waits:
         share = 0.4 if actor.maneuver == "u_turn" else 0.67
         return course.turn.entry_m + share * (course.turn.exit_m - course.turn.entry_m)
@@ -92,6 +97,8 @@ def _stations(course: Course) -> Floats:
 
 def _pull(actor: Actor) -> float:
     """How strongly an actor insists on its own place, per metre."""
+    if actor.gore:
+        return 1.0
     if actor.maneuver in TURNING:
         return 0.08
     return 0.04 if actor.maneuver in STANDING else 0.02

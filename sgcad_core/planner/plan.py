@@ -19,6 +19,7 @@ from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.casting import course_of, is_declared, other_of, pair_of, seen_s
 from sgcad_core.planner.conflict import Conflicts
 from sgcad_core.planner.course import Course
+from sgcad_core.planner.gore_lines import into_gores
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.options import Option
 from sgcad_core.planner.pairing import Encounter
@@ -72,6 +73,7 @@ def plan(
     `courses`: what the report tells of evasion and rest, by actor. `may_skid`: it tells that somebody lost control, so
     boxes may turn against their way before they touch. Not `by_force`: without slides and the longest search.
     """
+    behavior = into_gores(behavior)
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)

@@ -151,7 +151,8 @@ def _way(graph: LaneGraph, edge: str) -> Way:
 
 
 def _driven(edge: Edge) -> tuple[Lane, ...]:
-    return edge.car_lanes or edge.lanes
+    """Lanes for cars; one that a work zone closes keeps its number, as one comes to it by the lane before it."""
+    return edge.laid_lanes or edge.lanes
 
 
 def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:

@@ -14,7 +14,7 @@ from typing import Any, get_args
 from pydantic import ValidationError
 
 from sgcad_core.facts import Value
-from sgcad_core.kinds import DRIVEWAY, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T, junction_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T, junction_kind
 from sgcad_core.narrative.compass import angle_of, turned
 from sgcad_core.revision.values import (
     ROAD_FIELDS,
@@ -105,6 +105,7 @@ def _of_stem_kind(spec: RoadSpec, sides: Sequence[Compass], kind: JunctionKind) 
     for leg in legs_of(spec):
         if bearing_of(leg, spec) in sides:
             spec = _changed(spec, leg.id, "kind", junction_kind(kind).stem)
+            spec = _changed(spec, leg.id, "alley", kind == ALLEY)
     return spec
 
 
@@ -128,7 +129,7 @@ def _other_layout(layout: RoadLayout, kind: JunctionKind, stem: Compass | None) 
         return RoadLayout(legs=through)
     if junction_kind(kind).crossing:
         return RoadLayout(legs=_crossed(streets, through, (side, turned(side, 180))))
-    joined = _leg_at(streets, side).model_copy(update={"kind": junction_kind(kind).stem})
+    joined = _leg_at(streets, side).model_copy(update={"kind": junction_kind(kind).stem, "alley": kind == ALLEY})
     return RoadLayout(legs=(*through, joined))
 
 
@@ -171,11 +172,11 @@ def _with_leg(spec: RoadSpec, at: Compass, kind: JunctionKind) -> RoadSpec:
     hub, facing = hub_of(spec), drawn.get(turned(at, 180))
     x, y = hub.x_m + LEG_M * math.cos(angle_of(at)), hub.y_m + LEG_M * math.sin(angle_of(at))
     end = Node(id=_free(f"{at}_end", [n.id for n in spec.nodes]), x_m=round(x, 2), y_m=round(y, 2))
-    alike = facing if facing and kind != DRIVEWAY else None
+    alike = facing if facing and junction_kind(kind).stem != DRIVEWAY else None
     lanes = _towards(facing, hub) if alike and facing else (1, 1)
     road = Road(
         id=at, from_node=end.id, to_node=hub.id, lanes_forward=lanes[1], lanes_backward=lanes[0],
-        kind=DRIVEWAY if kind == DRIVEWAY else "road", minor=alike.minor if alike else True,
+        kind=junction_kind(kind).stem, alley=kind == ALLEY, minor=alike.minor if alike else True,
         speed_limit_mph=(alike or next(iter(drawn.values()))).speed_limit_mph,
     )  # fmt: skip
     return spec.model_copy(update={"nodes": (*spec.nodes, end), "roads": (*spec.roads, road)})

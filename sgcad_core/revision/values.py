@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sgcad_core.facts import Value
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T
 from sgcad_core.narrative.compass import compass_of_angle, turned
 from sgcad_core.narrative.ways import Way, degree, ways_of
 from sgcad_core.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers, is_aisle
@@ -150,4 +150,5 @@ def junction_kind_of(spec: RoadSpec) -> JunctionKind:
         return RAMP
     if len(legs) > 3:
         return FOUR_LEG
-    return DRIVEWAY if any(leg.kind == DRIVEWAY for leg in legs) else T
+    stem = next((leg for leg in legs if leg.kind == DRIVEWAY), None)
+    return T if stem is None else ALLEY if stem.alley else DRIVEWAY

@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.roads.lane_graph import edge_id, road_of
-from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes
+from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes, open_lanes
 from sgcad_core.specs import Beside, RoadSpec, Turn
 
 Movement = Literal["left", "through", "right"]
@@ -52,6 +52,9 @@ class _Way:
     center_lane: bool = False
     circle: bool = False
     beside: tuple[Beside, ...] = ()
+    open: tuple[int, ...] = ()
+    """Its lanes that no work zone closes; `lanes` counts these."""
+    laid: int = 0
 
     @property
     def edge(self) -> str:
@@ -71,15 +74,29 @@ def links(spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[Link, ...]:
         arriving, leaving = _ways_at(node.id, spec, roadways)
         for approach in arriving:
             found += [*_approach_links(approach, arriving, leaving), *_going_on(approach, leaving)]
+            found += _turning_round(approach, leaving) if node.opening else []
     return tuple(_outer_lanes_counted(dict.fromkeys(found), spec))
 
 
+def _turning_round(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
+    """From the innermost lane into that of the other direction of the same road, through an opening in the median."""
+    back = [way for way in leaving if way.road == approach.road]
+    return [Link(approach.edge, approach.lanes - 1, way.edge, way.lanes - 1) for way in back]
+
+
 def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link]:
-    """Links with SUMO's indices: those of what lies beside the lanes come first."""
-    more = {road.id: len(beside(road)) for road in spec.roads}
+    """Links with SUMO's indices: what lies beside the lanes comes first, and lanes that are closed count."""
+    roads = {road.id: road for road in spec.roads}
+
+    def counted(edge: str, lane: int) -> int:
+        name, way = road_of(edge)
+        road, open_ = roads[name], open_lanes(roads[name], way)
+        laid = lane if lane < 0 else open_[lane] if lane < len(open_) else lanes(road, way)
+        return laid + len(beside(road))
+
     for link in found:
-        start, end = (more[road_of(edge)[0]] for edge in (link.from_edge, link.to_edge))
-        yield link._replace(from_lane=link.from_lane + start, to_lane=link.to_lane + end)
+        start, end = counted(link.from_edge, link.from_lane), counted(link.to_edge, link.to_lane)
+        yield link._replace(from_lane=start, to_lane=end)
 
 
 def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
@@ -107,10 +124,12 @@ def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tupl
             h_in, h_out = (ends[1], ends[1] + math.pi) if inward == "forward" else (ends[0] + math.pi, ends[0])
             turns = road.turns_forward if inward == "forward" else road.turns_backward
             center, more = has_center_lane(road), (road.circle, beside(road))
-            if count := lanes(road, inward):
-                arriving.append(_Way(road.id, inward, road.kind, count, h_in, turns, center, *more))
-            if count := lanes(road, outward):
-                leaving.append(_Way(road.id, outward, road.kind, count, h_out, (), center, *more))
+            if open_ := open_lanes(road, inward):
+                more_in = (*more, open_, lanes(road, inward))
+                arriving.append(_Way(road.id, inward, road.kind, len(open_), h_in, turns, center, *more_in))
+            if open_ := open_lanes(road, outward):
+                more_out = (*more, open_, lanes(road, outward))
+                leaving.append(_Way(road.id, outward, road.kind, len(open_), h_out, (), center, *more_out))
     return arriving, leaving
 
 
@@ -130,6 +149,8 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
         return []
     if approach.circle:
         return _around(approach, exits)
+    if (ahead := exits[0].way) and len(exits) == 1 and approach.laid == ahead.laid and approach.open != ahead.open:
+        return _past_closure(approach, ahead) + _center_lane_link(approach, {"through": exits})
     by_movement = _movements(exits)
     uses = _lane_uses(approach, by_movement)
     found = []
@@ -138,6 +159,12 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
         for target in targets:
             found += _join(approach, serving, movement, target, arriving)
     return found + _center_lane_link(approach, by_movement)
+
+
+def _past_closure(approach: _Way, ahead: _Way) -> list[Link]:
+    """Where a work zone begins or ends every lane that is open on both sides goes on; out of the others one merges."""
+    both = [lane for lane in approach.open if lane in ahead.open]
+    return [Link(approach.edge, approach.open.index(i), ahead.edge, ahead.open.index(i)) for i in both]
 
 
 def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:

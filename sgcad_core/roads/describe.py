@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.kinds import ALLEY
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.specs import Node, Road, RoadSpec, centers
 
@@ -122,7 +123,7 @@ def _turn(before_rad: float, after_rad: float) -> str:
 
 # ------------------------------------------------------------------ words
 def _features(road: Road) -> str:
-    found: list[str] = [] if road.kind == "road" else [road.kind]
+    found: list[str] = [ALLEY] if road.alley else [] if road.kind == "road" else [road.kind]
     found += ["one-way"] if 0 in (road.lanes_forward, road.lanes_backward) else []
     found += ["two-way left-turn lane in the middle"] if road.center_turn_lane else []
     found += [f"{road.median} median"] if road.median != "none" else []

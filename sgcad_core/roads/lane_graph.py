@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Direction = Literal["left", "through", "right", "u_turn"]
+ROAD_WORKS = "roadWorks"
+"""Type of a lane that a work zone closes (OpenDRIVE's word)."""
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -43,7 +45,7 @@ class Lane:
     speed_mps: float
     allows_cars: bool
     type: str = ""
-    """Of a lane that is not for cars: biking, parking, shoulder, sidewalk; "" where the file names none."""
+    """Of a lane that is not for cars: biking, parking, shoulder, sidewalk, roadWorks; "" where the file names none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +64,11 @@ class Edge:
     def car_lanes(self) -> tuple[Lane, ...]:
         """Lanes that passenger cars may use, from right to left."""
         return tuple(lane for lane in self.lanes if lane.allows_cars)
+
+    @property
+    def laid_lanes(self) -> tuple[Lane, ...]:
+        """Lanes that were laid for cars, those that a work zone closes among them, from right to left."""
+        return tuple(lane for lane in self.lanes if lane.allows_cars or lane.type == ROAD_WORKS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +141,12 @@ class LaneGraph:
         """Whether an edge is a piece of a roundabout."""
         start = self.center_of.get(edge.from_node)
         return start is not None and start == self.center_of.get(edge.to_node)
+
+    @cached_property
+    def openings(self) -> tuple[str, ...]:
+        """Nodes at which one turns round from one direction of a road into the other."""
+        back = (c for c in self.connections if road_of(c.from_edge)[0] == road_of(c.to_edge)[0])
+        return tuple({self.edges[c.from_edge].to_node: None for c in back if c.from_edge != c.to_edge})
 
     def leaving(self, edge: str, lane: int | None = None) -> tuple[Connection, ...]:
         """Connections out of an edge (or of one of its lanes)."""

@@ -52,7 +52,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
     mouths = [Mouth(leg.bearing, _angle(leg), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
-    nodes, roads = circle(rim, mouths) if rim else ([Node(id="hub", x_m=0, y_m=0, control=hub_control(legs))], [])
+    nodes, roads = circle(rim, mouths) if rim else ([_hub(layout, legs)], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
         length_m = min(leg_m, _LONGEST_M.get("aisle" if is_aisle(leg) else leg.kind, leg_m))
@@ -61,6 +61,11 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
         nodes += leg_nodes
         roads += leg_roads
     return RoadSpec(nodes=tuple(nodes), roads=tuple(roads))
+
+
+def _hub(layout: RoadLayout, legs: Sequence[Leg]) -> Node:
+    opens = layout.opening and len(legs) == 2
+    return Node(id="hub", x_m=0, y_m=0, control=hub_control(legs), opening=opens)
 
 
 def hub_control(legs: Sequence[Leg]) -> NodeControl:
@@ -227,7 +232,9 @@ class _LegDrawing:
             turns_forward=leg.turns_in if index == 0 else (), center_turn_lane=leg.center_turn_lane,
             median=leg.median, via=self.path.between(s_out, s_in), kind=leg.kind,
             minor=index == 0 and (leg.control in ("stop", "yield") or leg.kind != "road" or self.rim is not None),
-            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, crosswalks=(inner,) if walked else (),
+            speed_limit_mph=leg.speed_limit_mph, beside=leg.beside, alley=leg.alley,
+            closed_backward=leg.closed_out,
+            crosswalks=(inner,) if walked else (),
         )  # fmt: skip
 
     def _access(self, access: Access, side: str, joint: str, s_m: float, so_far: list[Road]) -> tuple[Node, Road]:

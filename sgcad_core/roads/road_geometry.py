@@ -23,6 +23,8 @@ Direction = Literal["forward", "backward"]
 LANE_M = 3.6
 """U.S. through lane (12 ft)."""
 DRIVEWAY_LANE_M = 3.0
+ALLEY_LANE_M = 2.7
+"""Half of an alley of 18 ft; cities ask for 16 to 20 ft."""
 CIRCLE_LANE_M = 4.9
 """Of a roundabout (16 ft, NCHRP 672)."""
 MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier": 1.8}
@@ -36,6 +38,8 @@ AISLE_LANE_M = 3.6
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
+OPENING_M = 15.0
+"""Length of an opening in a median (AASHTO 2018, 9.8: 40 ft and more)."""
 ISLAND_M = 40.0
 """Length of a roundabout's splitter island."""
 
@@ -95,6 +99,12 @@ def lanes(road: Road, direction: Direction) -> int:
     return road.lanes_forward if direction == "forward" else road.lanes_backward
 
 
+def open_lanes(road: Road, direction: Direction) -> tuple[int, ...]:
+    """Lanes of a direction that no work zone closes, from 0 at the right curb."""
+    closed = road.closed_forward if direction == "forward" else road.closed_backward
+    return tuple(i for i in range(lanes(road, direction)) if i + 1 not in closed)
+
+
 def two_way(road: Road) -> bool:
     """Whether the road has lanes in both directions."""
     return road.lanes_forward > 0 and road.lanes_backward > 0
@@ -111,6 +121,8 @@ def lane_width_m(road: Road) -> float:
         return CIRCLE_LANE_M
     if is_aisle(road):
         return AISLE_LANE_M
+    if road.alley:
+        return ALLEY_LANE_M
     return DRIVEWAY_LANE_M if road.kind == DRIVEWAY else LANE_M
 
 
@@ -138,8 +150,17 @@ def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequen
     there = meeting[road.from_node], meeting[road.to_node]
     opens = _opens(road, there[0]), _opens(road, there[1])
     gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
-    line = smooth(points) + _beside_road(road, nodes, meeting)
+    line = _cut(smooth(points) + _beside_road(road, nodes, meeting), ends[0].opening, ends[1].opening)
     return Roadway(road, line, median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
+
+
+def _cut(line: Floats, at_start: bool, at_end: bool) -> Floats:
+    """A center line that ends before an opening in the median."""
+    along = arc_lengths(line)
+    start, end = OPENING_M / 2 * at_start, along[-1] - OPENING_M / 2 * at_end
+    if end - start == along[-1] or end - start < STEP_M:
+        return line
+    return resample(line, np.array([start, *along[(along > start) & (along < end)], end]))
 
 
 def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:

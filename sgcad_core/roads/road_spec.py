@@ -38,6 +38,11 @@ def _road_faults(spec: RoadSpec, index: int, road: Road) -> Iterator[Finding]:
         if node not in (road.from_node, road.to_node):
             remedy = f"use {road.from_node} or {road.to_node}"
             yield _finding("the road does not end there", f"roads[{index}].crosswalks", node, remedy)
+    for way in ("forward", "backward"):
+        closed, lanes = getattr(road, f"closed_{way}"), getattr(road, f"lanes_{way}")
+        if closed and (max(closed) > lanes or len(set(closed)) >= lanes):
+            remedy = f"close lanes from 1 to {lanes}, and leave one open"
+            yield _finding("no such lanes can be closed", f"roads[{index}].closed_{way}", str(closed), remedy)
     if not road.lanes_forward and not road.lanes_backward:
         yield _finding("the road has no lanes", f"roads[{index}]", "0 and 0", "give one direction a lane")
 

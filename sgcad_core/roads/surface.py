@@ -67,7 +67,7 @@ def road_surface(graph: LaneGraph) -> RoadSurface:
 
 def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float]]:
     for edge in graph.edges.values():
-        for lane in edge.car_lanes:
+        for lane in edge.laid_lanes:
             yield (*_cut(lane.shape), lane.width_m / 2)
     for c in graph.connections:
         widths = [lane.width_m for lane in graph.edges[c.from_edge].lanes if lane.index == c.from_lane]

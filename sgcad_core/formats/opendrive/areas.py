@@ -1,9 +1,9 @@
-"""Areas on the ground: crosswalks, which are SUMO's crossings, and the stalls along aisles. Metres; no XML."""
+"""Areas and things on the ground: crosswalks, which are SUMO's crossings, stalls, cones. Metres; knows no XML."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,8 @@ from sgcad_core.formats.opendrive.streets import Street
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.plane import Floats, parallel_polyline
 from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.roads.closures import cones
+from sgcad_core.roads.gores import gores
 from sgcad_core.roads.lane_graph import LaneGraph
 
 STALL_WIDTH_M = 2.7
@@ -20,7 +22,7 @@ STALL_WIDTH_M = 2.7
 
 
 class Crosswalk(NamedTuple):
-    """A crosswalk over a street; ids are those of objects.
+    """A crosswalk over a street, or a gore beside one; ids are those of objects.
 
     `corners`: (n, 2) around it, along and to the left of the street's reference line where that ends (`s_m`).
     """
@@ -34,6 +36,17 @@ class Crosswalk(NamedTuple):
 def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
     """All crosswalks, with the next ids."""
     return tuple(walk for street in roads for walk in _over(street, graph, ids))
+
+
+def gores_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
+    """The painted gores at ramps, as areas of the streets that the ramps leave or join, with the next ids."""
+    by_edge = {edge.id: street for street in roads for edge in street.edges}
+    found = []
+    for gore in gores(graph):
+        if street := by_edge.get(gore.road):
+            s_m = street.driven_end(gore.road, at_end=not gore.leaves)
+            found.append(Crosswalk(next(ids), street.id, s_m, _local(street, s_m, gore.corners)))
+    return tuple(found)
 
 
 class Stall(NamedTuple):
@@ -57,6 +70,37 @@ def stalls_of(street: Street, ids: Iterator[str]) -> Iterator[Stall]:
                 s_m = (i + 0.5) * STALL_WIDTH_M
                 t_m = (street.border_t(strip, s_m) + street.border_t(strip, s_m, inner=True)) / 2
                 yield Stall(next(ids), s_m, t_m, side * math.pi / 2, strip.width_at(s_m))
+
+
+class Cone(NamedTuple):
+    """A traffic cone; ids are those of objects."""
+
+    id: str
+    s_m: float
+    t_m: float
+
+
+def cones_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> Mapping[str, tuple[Cone, ...]]:
+    """The cones of work zones, by the id of the street on which they stand, with the next ids."""
+    by_edge = {edge.id: street for street in roads for edge in street.edges}
+    found: dict[str, tuple[Cone, ...]] = {}
+    for edge, places in cones(graph):
+        if street := by_edge.get(edge):
+            made = (Cone(next(ids), *station(street, place)) for place in places)
+            found[street.id] = (*found.get(street.id, ()), *made)
+    return found
+
+
+def station(street: Street, point: Floats) -> tuple[float, float]:
+    """s and t of a point beside a street's reference line, to a centimetre on bends that roads have."""
+    tried = np.linspace(0.0, street.length_m, max(int(street.length_m), 1) + 1)
+    poses = np.array([pose_at(street.line, s) for s in tried])
+    near = int(np.hypot(*(poses[:, :2] - point).T).argmin())
+    x, y, heading = poses[near]
+    dx, dy = point[0] - x, point[1] - y
+    s_m = float(np.clip(tried[near] + dx * math.cos(heading) + dy * math.sin(heading), 0.0, street.length_m))
+    x, y, heading = pose_at(street.line, s_m)
+    return s_m, float((point[1] - y) * math.cos(heading) - (point[0] - x) * math.sin(heading))
 
 
 def _over(street: Street, graph: LaneGraph, ids: Iterator[str]) -> Iterator[Crosswalk]:

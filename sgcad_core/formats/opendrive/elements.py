@@ -15,7 +15,7 @@ from sgcad_core.formats.opendrive.streets import BESIDE_TYPES, Street, Strip
 from sgcad_core.formats.opendrive.widths import Width
 from sgcad_core.formats.sumo.parameters import LIMIT, MEDIAN, USUAL
 from sgcad_core.formats.xml import Element
-from sgcad_core.roads.lane_graph import Edge
+from sgcad_core.roads.lane_graph import ROAD_WORKS, Edge
 
 LANE_CODE = "sumoLane"
 """`<userData>` of a lane: the SUMO lane that it is."""
@@ -87,7 +87,7 @@ def _lane(side: Element, street: Street, strip: Strip, edge: Edge | None) -> Non
         _width(lane, width)
     _mark(lane, outer_mark(street, strip))
     if strip.lane is not None and edge is not None:
-        if strip.type not in BESIDE_TYPES:
+        if strip.type not in BESIDE_TYPES or strip.type == ROAD_WORKS:
             _speed(lane, edge, strip.lane.speed_mps)
         add(lane, "userData", code=LANE_CODE, value=strip.lane.id)
     elif strip.type == "median" and MEDIAN in street.forward.parameters:

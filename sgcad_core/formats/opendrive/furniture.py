@@ -5,19 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Crosswalk, Stall
+from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, Crosswalk, Stall
 from sgcad_core.formats.opendrive.elements import add, number
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.xml import Element
+from sgcad_core.roads.closures import CONE_M
 
 STOP_LINE = "stopLine"
+CONE_HEIGHT_M = 0.7
+"""28 in, the least on faster roads (MUTCD 6F.64)."""
 
 
 def add_objects(
-    road: Element, stop_lines: Sequence[StopLine], crosswalks: Sequence[Crosswalk], stalls: Sequence[Stall]
+    road: Element,
+    stop_lines: Sequence[StopLine],
+    crosswalks: Sequence[Crosswalk],
+    stalls: Sequence[Stall],
+    cones: Sequence[Cone] = (),
+    gores: Sequence[Crosswalk] = (),
 ) -> None:
-    """Stop lines, crosswalks and parking spaces; no <objects> where there are none."""
-    if not stop_lines and not crosswalks and not stalls:
+    """Stop lines, crosswalks, parking spaces, cones and gores; no <objects> where there are none."""
+    if not (stop_lines or crosswalks or stalls or cones or gores):
         return
     objects = add(road, "objects")
     for line in stop_lines:
@@ -30,7 +38,9 @@ def add_objects(
         _validity(made, line.lanes)
 
     for walk in crosswalks:
-        _add_crosswalk(objects, walk)
+        _add_area(objects, walk, ("crosswalk", "zebra", "crosswalk"))
+    for gore in gores:
+        _add_area(objects, gore, ("roadMark", "gore", "gore"))
     for stall in stalls:
         made = add(objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none")
         _place(made, stall.s_m, stall.t_m, 0.0)
@@ -38,16 +48,26 @@ def add_objects(
         for name, value in sizes:
             made.set(name, number(value))
         add(made, "parkingSpace", access="all")
+    for cone in cones:
+        made = add(objects, "object", id=cone.id, type="obstacle", subtype="cone", name="cone", dynamic="no")
+        made.set("orientation", "none")
+        _place(made, cone.s_m, cone.t_m, 0.0)
+        for name, value in (("hdg", 0.0), ("radius", CONE_M / 2), ("height", CONE_HEIGHT_M)):
+            made.set(name, number(value))
 
 
-def _add_crosswalk(objects: Element, walk: Crosswalk) -> None:
-    """A crosswalk where the street ends, its corners relative to there: it lies beyond, in the junction."""
-    made = add(objects, "object", id=walk.id, type="crosswalk", subtype="zebra", name="crosswalk", dynamic="no")
+def _add_area(objects: Element, walk: Crosswalk, called: tuple[str, str, str]) -> None:
+    """An area where the street ends, its corners relative to there; `called`: type, subtype and name.
+
+    A crosswalk lies beyond the street's end, in the junction.
+    """
+    kind, subtype, name = called
+    made = add(objects, "object", id=walk.id, type=kind, subtype=subtype, name=name, dynamic="no")
     made.set("orientation", "none")
     _place(made, walk.s_m, 0.0, 0.0)
     (low_u, low_v), (high_u, high_v) = walk.corners.min(axis=0), walk.corners.max(axis=0)
-    for name, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
-        made.set(name, number(value))
+    for key, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
+        made.set(key, number(value))
     outline = add(add(made, "outlines"), "outline", id="0", closed="true", outer="true")
     for i, (u, v) in enumerate(walk.corners):
         add(outline, "cornerLocal", id=str(i), u=number(u), v=number(v), z="0", height="0")

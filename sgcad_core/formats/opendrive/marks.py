@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from sgcad_core.formats.opendrive.streets import Street, Strip
 from sgcad_core.formats.sumo.parameters import CENTER_LINE, KIND, MEDIAN
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import UNPAINTED
 
 LINE_M = 0.12
 """Width of one normal line (4 to 6 in)."""
@@ -66,5 +66,5 @@ def outer_mark(street: Street, strip: Strip) -> Mark:
 
 
 def _unmarked(street: Street) -> bool:
-    """Driveways carry no paint."""
-    return street.forward.parameters.get(KIND) == DRIVEWAY
+    """Driveways and alleys carry no paint."""
+    return street.forward.parameters.get(KIND) in UNPAINTED

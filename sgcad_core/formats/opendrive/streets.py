@@ -18,7 +18,7 @@ from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.reference import Piece, length_of, pieces, pose_at
 from sgcad_core.formats.opendrive.widths import Width, clean, fitted, offsets_at, offsets_or_end, stations_of
 from sgcad_core.geometry.plane import Floats, arc_lengths, parallel_polyline, resample
-from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, road_of
+from sgcad_core.roads.lane_graph import ROAD_WORKS, Edge, Lane, LaneGraph, road_of
 
 Side = Literal["left", "right"]
 SAME_M = 0.005
@@ -27,7 +27,7 @@ WIDEST_M = 40.0
 OVERLAP_M = 0.05
 """Directions farther apart than the one, or overlapping by more than the other, are roads of their own."""
 LEAST_LENGTH_M = 0.05
-BESIDE_TYPES = ("biking", "parking", "shoulder", "sidewalk")
+BESIDE_TYPES = ("biking", "parking", "shoulder", "sidewalk", ROAD_WORKS)
 """Lanes that are not for cars, by the type that the .net.xml names; OpenDRIVE calls them the same."""
 CURB_M = 0.15
 """The outermost part of a sidewalk towards the lanes, as wide as a curb (6 in)."""

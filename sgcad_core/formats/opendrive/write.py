@@ -12,7 +12,7 @@ import numpy as np
 from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.areas import crosswalks_of, stalls_of
+from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, stalls_of
 from sgcad_core.formats.opendrive.connecting import Connector, way
 from sgcad_core.formats.opendrive.elements import (
     add,
@@ -28,7 +28,7 @@ from sgcad_core.formats.opendrive.streets import Street, streets
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
@@ -37,7 +37,8 @@ TRIM_M = 0.1
 """Lanes of a node that touch leave a connecting road no length: its roads are cut back by so much."""
 FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m"
 """A metric plane, x east and y north. Its place on the globe is nobody's: reports name no coordinates."""
-ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate"}
+ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate",
+              ALLEY: "townLocal"}  # fmt: skip
 """By the area that is told, else the kind of road."""
 
 
@@ -75,6 +76,8 @@ class _Document:
         ids = map(str, count(len(self.control.stop_lines) + 1))
         self.crosswalks = crosswalks_of(graph, roads, ids)
         self.stalls = {street.id: tuple(stalls_of(street, ids)) for street in roads}
+        self.cones = cones_of(graph, roads, ids)
+        self.gores = gores_of(graph, roads, ids)
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -129,7 +132,8 @@ class _Document:
         add_street_lanes(add(road, "lanes"), street)
         lines = [line for line in self.control.stop_lines if line.road == street.id]
         walks = [walk for walk in self.crosswalks if walk.road == street.id]
-        add_objects(road, lines, walks, self.stalls[street.id])
+        gores = [gore for gore in self.gores if gore.road == street.id]
+        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()), gores)
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:

@@ -63,8 +63,9 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
 def _compile(plain: PlainXml, spec: RoadSpec | None) -> RoadNetwork:
     with scratch("net") as folder:
-        code, log = _run(plain, folder)
+        code, said = _run(plain, folder)
         net = _read(folder / "road.net.xml")
+    log = _without_closed(said, spec)
     if code != 0 or not net:
         return RoadNetwork(plain=plain, spec=spec, log=log or "netconvert wrote no network", returncode=code or 1)
     try:
@@ -72,6 +73,15 @@ def _compile(plain: PlainXml, spec: RoadSpec | None) -> RoadNetwork:
     except InvalidOutput as fault:
         return RoadNetwork(plain=plain, spec=spec, net_xml=net, log=f"{log}\n{fault}".strip(), returncode=1)
     return RoadNetwork(plain=plain, spec=spec, net_xml=net, xodr=xodr, log=log, returncode=code)
+
+
+def _without_closed(said: str, spec: RoadSpec | None) -> str:
+    """netconvert's words without those on lanes that a work zone closes: nothing leads into them."""
+    ways = [(f"{sign}{r.id}", shut) for r in (spec.roads if spec else ())
+            for sign, shut in (("", r.closed_forward), ("-", r.closed_backward))]  # fmt: skip
+    closed = tuple(f"Lane '{edge}_" for edge, shut in ways if shut)
+    lines = said.splitlines()
+    return "\n".join(line for line in lines if not ("is not connected" in line and any(c in line for c in closed)))
 
 
 def _run(plain: PlainXml, folder: Path) -> tuple[int, str]:

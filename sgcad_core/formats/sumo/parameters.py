@@ -6,7 +6,7 @@ A key that is missing says that nothing is known (a map, a network that a model 
 from __future__ import annotations
 
 KIND = "kind"
-"""Of an edge: road, driveway, ramp."""
+"""Of an edge: road, driveway, alley, ramp, circle."""
 MEDIAN = "median"
 """Of an edge: none, painted, raised, grass, barrier."""
 LIMIT = "speed_limit"

@@ -18,10 +18,10 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records import Finding, PlainXml
 from sgcad_core.roads.connections import Link, links
-from sgcad_core.roads.lane_graph import edge_id
+from sgcad_core.roads.lane_graph import ROAD_WORKS, edge_id
 from sgcad_core.roads.road_geometry import (
     Direction,
     Roadway,
@@ -30,13 +30,14 @@ from sgcad_core.roads.road_geometry import (
     has_center_lane,
     lane_width_m,
     lanes,
+    open_lanes,
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
 from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 from sgcad_core.units import MPS_PER_MPH
 
-SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, "circle": 20}
+SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, ALLEY: 15, "circle": 20}
 """Where the report states no limit."""
 CIRCLE = "circle"
 """Of a piece of a roundabout, where others tell their kind."""
@@ -61,6 +62,8 @@ BESIDE: Mapping[Beside, Use] = {
     "bike_lane": Use("biking", "bicycle"), "parking": Use("parking", "custom1"),
     "shoulder": Use("shoulder", "emergency"), "sidewalk": Use("sidewalk", "pedestrian"),
 }  # fmt: skip
+CLOSED = Use(ROAD_WORKS, "custom2")
+"""Of a lane that a work zone closes."""
 _TYPES: Mapping[NodeControl, str] = {
     "none": "priority", "yield": "priority", "signal": "traffic_light", "stop": "priority_stop",
     "all_way_stop": "allway_stop", "flashing": "priority_stop",
@@ -147,7 +150,7 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     edge.set("to", ends[1])
     edge.set("priority", str(_priority(road)))
     edge.set("numLanes", str(count + center))
-    kind = CIRCLE if road.circle else road.kind
+    kind = CIRCLE if road.circle else ALLEY if road.alley else road.kind
     edge.set("speed", f"{(road.speed_limit_mph or SPEED_MPH[kind]) * MPS_PER_MPH:.3f}")
     edge.set("width", f"{lane_width_m(road):g}")
     edge.set("spreadType", "right")
@@ -156,8 +159,12 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
         use = BESIDE[what]
         lane = etree.SubElement(edge, "lane", index=str(index), width=f"{beside_m(road, what):g}", type=use.type)
         lane.set("allow", use.allow)
-    for index in range(len(outer), count) if "sidewalk" in outer else ():
-        etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
+    open_ = {i + len(outer) for i in open_lanes(road, direction)}
+    for index in range(len(outer), count):
+        if index not in open_:
+            etree.SubElement(edge, "lane", index=str(index), type=CLOSED.type, allow=CLOSED.allow)
+        elif "sidewalk" in outer:
+            etree.SubElement(edge, "lane", index=str(index), disallow=BESIDE["sidewalk"].allow)
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
