@@ -49,7 +49,7 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> Unfolded:
     if found is None:
         return best
     again = bool(best.scene.again)
-    for other in islice(_like(found), _MOST_AGAIN if again else _MOST):
+    for other in islice(_like(found, again), _MOST_AGAIN if again else _MOST):
         if best.missed < _TOLD_PART:
             break
         done = unfold(other, IMPACTS if again else [(best.scene.friction, best.scene.restitution)])
@@ -58,9 +58,12 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> Unfolded:
     return best
 
 
-def _like(found: Encounter) -> Iterator[Encounter]:
-    """Elsewhere along the told sides, at the given speeds and at others, the speeds in turn."""
+def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
+    """Elsewhere along the told sides, at the given speeds and at others, the speeds in turn; for two that are to meet
+    `again` at the given ones first."""
     at_speeds = [_along(found, speeds) for speeds in _SPEEDS]
+    if again:
+        yield from at_speeds.pop(0)
     for row in zip_longest(*at_speeds):
         yield from (other for other in row if other)
 

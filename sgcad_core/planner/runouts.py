@@ -28,6 +28,7 @@ _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 _DRIVES_ON_S, _DRIVES_ON_PER_M = (1.5, 4.0), 0.06
 """For so long a driver who is able to drives on before it brakes, on wheels that roll freely and in no tighter a bend:
 to the shoulder, out of the junction."""
+_BEFORE_IT_ROLLS_PER_M = 0.03
 _EACH_BEND = 3
 """Of the ways of each of two that meet again so many are looked at, for each steering."""
 _PARTED_M = 0.06
@@ -154,8 +155,8 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
 
 
 def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list[RunOut]:
-    """All ways of running out; who is not `on_wheels` slides, and steers nothing."""
-    bends = _BENDS_PER_M if on_wheels else _BENDS_PER_M[:1]
+    """All ways of running out; who does not stay `on_wheels` drives nowhere, and hardly steers before it rolls."""
+    bends = [bend for bend in _BENDS_PER_M if on_wheels or abs(bend) <= _BEFORE_IT_ROLLS_PER_M]
     ways = [
         RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)
     ]

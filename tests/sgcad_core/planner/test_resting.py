@@ -141,9 +141,10 @@ def test_who_rolls_on_comes_further_before_it_brakes() -> None:
     assert ends[1][0] - ends[0][0] == pytest.approx(9.0, abs=0.4)  # 6 m/s for 1.5 s
 
 
-def test_who_slides_on_its_roof_steers_nothing() -> None:
+def test_who_rolls_over_drives_nowhere_and_hardly_steers() -> None:
     ways = all_runs(0.0, 7.0, on_wheels=False)
-    assert {(way.bend_per_m, way.rolls_s) for way in ways} == {(0.0, 0.0)}
+    assert {way.rolls_s for way in ways} == {0.0}
+    assert max(abs(way.bend_per_m) for way in ways) < max(abs(way.bend_per_m) for way in all_runs(0.0, 7.0)) / 4
     assert any(way.rolls_s for way in all_runs(0.0, 7.0))
 
 
