@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from sgcad_core.errors import InvalidOutput, SimulationFailed
+from sgcad_core.errors import InvalidOutput, ProcessDied, SimulationFailed
 from sgcad_core.workers import Worker
 
 TARGETS = "tests.sgcad_core.worker_targets"
@@ -49,6 +49,13 @@ def test_a_death_is_simulation_failed_and_the_next_call_starts_anew(worker, how,
     for _ in range(2):
         with pytest.raises(SimulationFailed, match=message):
             die.call(how)
+
+
+@pytest.mark.parametrize(("how", "from_outside"), [("killed", True), ("signal", False), ("exit", False)])
+def test_a_kill_is_told_from_a_crash(worker, how, from_outside):
+    with pytest.raises(ProcessDied) as death:
+        worker("die").call(how)
+    assert death.value.from_outside == from_outside
 
 
 def test_a_late_answer_is_simulation_failed(worker):

@@ -11,6 +11,7 @@ from plugins.validator.opendrive import OpenDrive
 from plugins.validator.sumo_load import _WORKER, SumoLoad
 from plugins.validator.sumo_xsd import SumoXsd
 from plugins.validator.topology import Topology
+from sgcad_core.errors import ProcessDied
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records import CrashReport, Evidence, PlainXml, RoadNetwork, Scenario
@@ -149,6 +150,33 @@ def test_a_worker_that_dies_is_a_finding_and_the_next_network_loads():
     assert "SUMO died of the network" in whats(slow, compiled("stop"))[0]
     assert whats(SumoLoad(), compiled("stop")) == []
     _WORKER.close()
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_worker_killed_from_outside_says_nothing_of_the_network(monkeypatch, times):
+    calls = []
+
+    def killed(*_args, **_more):
+        calls.append(1)
+        if len(calls) <= times:
+            raise ProcessDied("start: the worker process died of SIGKILL", from_outside=True)
+        return ""
+
+    monkeypatch.setattr(_WORKER, "call", killed)
+    if times == 1:
+        assert whats(SumoLoad(), compiled("stop")) == []
+    else:  # the case fails, and is tried on the next run
+        with pytest.raises(ProcessDied, match="SIGKILL"):
+            SumoLoad().findings(compiled("stop"), EVIDENCE)
+    assert len(calls) == 2
+
+
+def test_a_worker_that_crashes_by_itself_is_a_finding_at_once(monkeypatch):
+    def crashed(*_args, **_more):
+        raise ProcessDied("start: the worker process died of SIGSEGV")
+
+    monkeypatch.setattr(_WORKER, "call", crashed)
+    assert "SIGSEGV" in whats(SumoLoad(), compiled("stop"))[0]
 
 
 # ------------------------------------------------------------------ OpenDRIVE
