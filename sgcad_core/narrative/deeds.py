@@ -18,6 +18,7 @@ _EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
+_SIDES = ("side", "side2", "side3", "side4", "side5", "side6")
 _TURNS = ("turn_left", "turn_right")
 _ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
 """Ways of moving that are no maneuver of their own, and may be waited for."""
@@ -28,13 +29,14 @@ _BEFORE = ("came_on", "moved_on")
 def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
     """Add what one segment tells; `at`: where in its sentence it begins."""
     for m in _TURNING.finditer(text):
-        side = next(
-            filter(None, (m.groupdict().get(k) for k in ("side", "side2", "side3", "side4", "side5", "side6"))), "left"
-        ).lower()
+        told = next((k for k in _SIDES if m.groupdict().get(k)), None)
+        side = m[told].lower() if told else "left"
         before = text[max(0, m.start() - 60) : m.start()]
         if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
             continue
-        later = _LATER.search(before) and not _TRY.search(before[-14:])
+        led = before + text[m.start() : m.start(told) if told else m.start()]
+        begun = _TRY.search(before[-14:]) or rule("deeds.begins").search(led)
+        later = _LATER.search(before) and not begun
         motion.deeds.append(
             Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
         )
