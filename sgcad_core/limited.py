@@ -6,6 +6,7 @@ Its input may be made to use the machine up (a road of a million lanes). Knows n
 from __future__ import annotations
 
 import resource
+import signal
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -13,6 +14,11 @@ from pathlib import Path
 
 MEMORY_MB, FILE_MB = 2_000, 200
 """Of netconvert on a report's roads: twenty times what the largest of them takes."""
+
+
+def ended_from_outside(code: int | None) -> bool:
+    """Whether an exit code of `subprocess` is that of a signal that no crash sends: somebody's kill, want of memory."""
+    return -(code or 0) in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 
 
 def run_limited(

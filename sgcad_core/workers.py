@@ -31,6 +31,7 @@ from typing import IO, Any
 
 from sgcad_core import settings
 from sgcad_core.errors import ProcessDied, SgcadError, SimulationFailed
+from sgcad_core.limited import ended_from_outside
 
 START_S = 60.0
 """Longest start: imports on a busy machine with a cold disk."""
@@ -62,7 +63,7 @@ class Worker:
                 said = f"{self.target}: {process.end(str(death))}"
                 if str(death):  # a reason is given where the time was over
                     raise SimulationFailed(said) from death
-                raise ProcessDied(said, from_outside=process.was_killed()) from death
+                raise ProcessDied(said, from_outside=ended_from_outside(process.popen.poll())) from death
         if done:
             return result
         raise result
@@ -165,10 +166,6 @@ class _Process:
         words = self.said()
         self.finalize()
         return f"the worker process {reason}" + (f"; its last words: {words}" if words else "")
-
-    def was_killed(self) -> bool:
-        """Whether a signal ended it that comes from outside."""
-        return -(self.popen.poll() or 0) in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 
     def said(self) -> str:
         self.errors.seek(0, os.SEEK_END)

@@ -49,14 +49,16 @@ class SumoLoad(Validator):
 
     def _load(self, net_xml: str) -> str:
         """SUMO's words about the network, "" where it loads; once more where somebody killed the process."""
-        for last in (False, True):
-            try:
-                said: str = _WORKER.call(net_xml, timeout_s=self.timeout_s)
-                return said
-            except ProcessDied as fault:
-                if last or not fault.from_outside:
-                    raise
-        raise AssertionError("the last try returns or raises")
+        try:
+            return self._said(net_xml)
+        except ProcessDied as fault:
+            if not fault.from_outside:
+                raise
+            return self._said(net_xml)
+
+    def _said(self, net_xml: str) -> str:
+        said: str = _WORKER.call(net_xml, timeout_s=self.timeout_s)
+        return said
 
 
 def _details(message: str) -> str:

@@ -12,7 +12,7 @@ from sgcad_core.account.made import Made
 from sgcad_core.account.records import Item
 from sgcad_core.kinds import JUNCTIONS, ROUNDABOUT
 from sgcad_core.language import of_role, rule
-from sgcad_core.narrative.roles import CRASH_ROLES, is_impact
+from sgcad_core.narrative.roles import STORY_ROLES, is_impact
 from sgcad_core.narrative.text import NUMBERS, Sentence
 from sgcad_core.roads.drawn import junctions
 
@@ -34,7 +34,7 @@ _SATISFIED_BY: dict[str, tuple[str, ...]] = {
 
 def unread_items(made: Made) -> Iterator[Item]:
     """Items of the story's sentences, each thing once."""
-    story = [s for s in made.reading.sentences if s.role in CRASH_ROLES or s.role == "other"]
+    story = [s for s in made.reading.sentences if s.role in STORY_ROLES]
     found: dict[str, Item] = {}
     for sentence in story:
         for item in _of_sentence(made, sentence):

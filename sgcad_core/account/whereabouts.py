@@ -15,7 +15,7 @@ from sgcad_core.account.records import Item
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.language import rule, values
 from sgcad_core.metrics.rest import COMPASS_DEG
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import STORY_ROLES
 from sgcad_core.narrative.text import Sentence
 from sgcad_core.roads.drawn import near
 
@@ -30,7 +30,7 @@ def whereabouts_items(made: Made) -> Iterator[Item]:
     """One item a thing told, the first time that it is told."""
     found: dict[str, Item] = {}
     for sentence in made.reading.sentences:
-        if sentence.role in CRASH_ROLES or sentence.role == "other":
+        if sentence.role in STORY_ROLES:
             for item in (*_at_sign(made, sentence), *_around(made, sentence), *_on_leg(made, sentence)):
                 found.setdefault(f"{item.field} {item.subject} {item.value}", item)
     yield from found.values()

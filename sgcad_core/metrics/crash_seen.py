@@ -108,13 +108,14 @@ class Driven:
     @cached_property
     def aside(self) -> Floats:
         """(n,) metres to the left of the lane on which it starts, and of what goes on from it, up to the contact."""
-        line = ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2]
-        return beside(prolonged(line, 200.0), self.before[:, :2])[0]
+        return self._aside_of(ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2])
 
     @cached_property
     def off_line(self) -> Floats:
         """(n,) metres to the left of the straight line on which its first lane would go on."""
-        line = self.home[1].shape if self.home else self.before[:2, :2]
+        return self._aside_of(self.home[1].shape if self.home else self.before[:2, :2])
+
+    def _aside_of(self, line: Floats) -> Floats:
         return beside(prolonged(line, 200.0), self.before[:, :2])[0]
 
     def recent(self) -> slice:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry.plane import wrap_angle
+from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.crash_seen import STEP_S, Crash, Driven
 from sgcad_core.metrics.rest import SPINS_RAD
 from sgcad_core.metrics.truth_motion import STILL_M, shown
-from sgcad_core.told_course import RestTold
+from sgcad_core.told_course import RestTold, Steering
 from sgcad_core.units import MPS_PER_MPH
 
 COURSE_FIELDS = (
@@ -133,25 +133,32 @@ def _evades(label: VehicleLabel, one: Driven) -> float:
 
 
 def _brakes(one: Driven) -> bool:
-    """Speed lost over half a second, and in all, within the time before the contact."""
-    speed = one.speed[one.recent().start : one.hit]
-    if len(speed) < 12:
+    return brakes(one.speed[one.recent().start : one.hit])
+
+
+def brakes(speed_mps: Floats) -> bool:
+    """Whether speeds at every step up to the contact show braking: lost over half a second, and in all."""
+    if len(speed_mps) < 12:
         return False
-    rate = (speed[:-10] - speed[10:]) / 0.5
-    return float(rate.max()) >= BRAKES_MPS2 and float(speed.max() - speed[-1]) >= BRAKES_MPS
+    rate = (speed_mps[:-10] - speed_mps[10:]) / 0.5
+    return float(rate.max()) >= BRAKES_MPS2 and float(speed_mps.max() - speed_mps[-1]) >= BRAKES_MPS
 
 
 def _steers(deed: str, one: Driven) -> bool:
-    """Way sideways, or a heading against the lane, to the told hand (to either where none is told)."""
-    aside = one.aside[one.recent()]
-    way = float(aside[-1] - aside[0])
-    heading = (
-        math.atan2(float(aside[-1] - aside[-2]), max(float(one.speed[-1]) * 0.05, 1e-6)) if len(aside) > 1 else 0.0
-    )
-    hand = {"steer_left": 1.0, "steer_right": -1.0}.get(deed)
-    if hand is None:
+    """To the told hand, or to either where none is told."""
+    hand: Steering = "left" if deed == "steer_left" else "right" if deed == "steer_right" else "either"
+    return steers(hand, one.aside[one.recent()], float(one.speed[-1]) * STEP_S if len(one.speed) else 0.0)
+
+
+def steers(hand: Steering, aside_m: Floats, step_m: float) -> bool:
+    """Whether (n,) metres to the left of the lane show steering to a hand: by the way, or by the heading of the last
+    step, `step_m` long."""
+    way = float(aside_m[-1] - aside_m[0])
+    heading = math.atan2(float(aside_m[-1] - aside_m[-2]), max(step_m, 1e-6)) if len(aside_m) > 1 else 0.0
+    sign = {"left": 1.0, "right": -1.0}.get(hand)
+    if sign is None:
         return abs(way) > STEERS_M or abs(heading) > STEERS_RAD
-    return way * hand > STEERS_M or heading * hand > STEERS_RAD
+    return way * sign > STEERS_M or heading * sign > STEERS_RAD
 
 
 def _does_not_evade(label: VehicleLabel, one: Driven) -> bool:

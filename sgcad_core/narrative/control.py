@@ -18,7 +18,7 @@ from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.mentions import axis_in, axis_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.road_merge import GatheredRoad
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.specs import Compass
 
 Control = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
@@ -46,7 +46,7 @@ def control_of(told: Sequence[Statement]) -> tuple[Control, Cue | None]:
     """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
     said = [t for t in told if t.role not in ("codes", "factors")]
     for story in (True, False):
-        found = _first_control([t for t in said if (t.role in CRASH_ROLES or t.role == "other") == story])
+        found = _first_control([t for t in said if (t.role in STORY_ROLES) == story])
         if found:
             return found
     return "none", None

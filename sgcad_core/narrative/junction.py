@@ -21,7 +21,7 @@ from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.places import MEDIAN_OPENING, in_gores
 from sgcad_core.narrative.road_merge import GatheredRoad
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import STORY_ROLES
 from sgcad_core.specs import Compass
 
 
@@ -63,7 +63,7 @@ def junction_of(
     told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
-    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [t for t in told if t.role in STORY_ROLES]
     kind, stated = _kind(story, told, vehicles, roads)
     if kind == "none":
         return JunctionFacts(stated=stated)

@@ -13,7 +13,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.facts import VehicleFacts
 from sgcad_core.narrative.motion import Cue
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import STORY_ROLES
 from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.specs import Compass
 
@@ -49,7 +49,7 @@ def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
     lead = leaves or next((v for v in vehicles if v.heading), None)
     if lead is None or lead.heading is None:
         return None
-    for t in (t for t in told if t.role in CRASH_ROLES or t.role == "other"):
+    for t in _story(told):
         if match := CLOSED_LANES.search(t.text):
             parts = match.groupdict()
             word = next(parts[k] for k in ("side", "ahead", "noun", "blocked", "by") if parts[k]).lower()
@@ -63,15 +63,14 @@ def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
 
 def median_opening(told: Sequence[Statement]) -> Cue | None:
     """Where a story tells of an opening in the median."""
-    story = (t for t in told if t.role in CRASH_ROLES or t.role == "other")
-    found = ((t, match) for t in story if (match := MEDIAN_OPENING.search(t.text)))
+    found = ((t, match) for t in _story(told) if (match := MEDIAN_OPENING.search(t.text)))
     return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
 
 
 def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
     """Vehicles that a story puts into a gore: who stands there, strikes something there, or crosses it, and whither."""
     found: dict[str, InGore] = {}
-    for t in (t for t in told if t.role in CRASH_ROLES or t.role == "other"):
+    for t in _story(told):
         for match in _IN_GORE.finditer(t.text):
             how, who = next((how, who) for how, who in match.groupdict().items() if who)
             away = how == "crosses" and _TO_RAMP.search(t.text[match.end() : match.end() + 60])
@@ -81,13 +80,16 @@ def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
 
 def names_closure(told: Sequence[Statement]) -> bool:
     """Whether a story tells of a closed lane at all, though perhaps not for whom."""
-    story = [t.text for t in told if t.role in CRASH_ROLES or t.role == "other"]
-    return any(CLOSED_LANES.search(text) or _CLOSURE.search(text) for text in story)
+    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(told))
 
 
 def names_gore(told: Sequence[Statement]) -> bool:
     """Whether a story names a gore at all."""
-    return any(_GORE.search(t.text) for t in told if t.role in CRASH_ROLES or t.role == "other")
+    return any(_GORE.search(t.text) for t in _story(told))
+
+
+def _story(told: Sequence[Statement]) -> list[Statement]:
+    return [t for t in told if t.role in STORY_ROLES]
 
 
 def _left_by(v: VehicleFacts) -> Side:

@@ -13,7 +13,7 @@ from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
 from sgcad_core.narrative.motion import Cue
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import STORY_ROLES
 from sgcad_core.specs import Compass
 
 MPH_PER_KMPH = 0.621371
@@ -45,7 +45,7 @@ _WAY = rule("road_details.way")
 
 def speed_limits(told: Iterable[Statement], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
     """Every posted limit in order, mph (a limit in km/h only is converted to the nearest 5 mph)."""
-    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [t for t in told if t.role in STORY_ROLES]
     return tuple(limit for t in story for limit in _limits(t, headings))
 
 
@@ -91,7 +91,7 @@ _BARE_CURVE = rule("road_details.bare_curve")
 
 def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
     """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
-    story = [t for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [t for t in told if t.role in STORY_ROLES]
     found = tuple(c for t in story for c in _curves(t, headings))
     bare = [Cue(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
     return found or tuple(Curve("left", None, cue) for cue in bare[:1])

@@ -31,7 +31,7 @@ from sgcad_core.narrative.places import (
 )
 from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Beside, Compass
@@ -104,18 +104,19 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
-    story = [t.text for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [t.text for t in told if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gores(told))
+    in_gore = in_gores(told)
+    exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gore)
     leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
     told_closed = closed_lanes(told, driven)
     closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
     opens = median_opening(told)
     opening = opens if junction.kind == "none" and not closed else None
-    gore = in_gores(told) if junction.kind == RAMP else {}
+    gore = in_gore if junction.kind == RAMP else {}
     crash = replace(crash, gore=gore)
     places = {
         WORK_ZONE: (names_closure(told), closed),
@@ -213,7 +214,7 @@ def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
 
 def _telling(told: tuple[Statement, ...]) -> list[Statement]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
-    story = [_without_circle(t) for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [_without_circle(t) for t in told if t.role in STORY_ROLES]
     return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
 
 

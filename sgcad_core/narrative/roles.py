@@ -17,6 +17,8 @@ Role = Literal[
 
 CRASH_ROLES: frozenset[Role] = frozenset({"opening", "road", "conditions", "approach", "avoidance", "impact", "rest"})
 """Roles that tell the crash itself; the others are noise, at best a second witness."""
+STORY_ROLES: frozenset[Role] = CRASH_ROLES | {"other"}
+"""Roles in which places and roads are told: those, and sentences without a word that gives them a role."""
 
 
 HIT = rule("roles.hit")

@@ -8,14 +8,14 @@ from sgcad_core.errors import Refused
 from sgcad_core.kinds import Unsupported, unsupported_kind
 from sgcad_core.language import of_role, values
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.roles import CRASH_ROLES
+from sgcad_core.narrative.roles import STORY_ROLES
 
 
 def unsupported_places(told: Iterable[Statement]) -> tuple[str, ...]:
     """Kinds of `kinds.UNSUPPORTED` at which the sentences of the story put the crash or a vehicle of it, in the order
     of the text; none for what is only mentioned."""
     meaning = values("unsupported_place")
-    story = [t.text for t in told if t.role in CRASH_ROLES or t.role == "other"]
+    story = [t.text for t in told if t.role in STORY_ROLES]
     found = [rule.search(text) for text in story for rule in of_role("unsupported")]
     return tuple(dict.fromkeys(meaning[match["place"].lower()] for match in found if match))
 

@@ -83,11 +83,12 @@ def meet(
     found = _fitting(first, second, wanted)
     if found is None:
         return None
-    (touches, sides, margins, _), good = found
+    judged, good = found
+    touches, sides, margins, _ = judged
     cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
     if any(spins) or glances:
         cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
-    return _meeting(first, second, found[0], int(np.argmin(np.where(good, cost, np.inf))), cost)
+    return _meeting(first, second, judged, int(np.argmin(np.where(good, cost, np.inf))), cost)
 
 
 def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count: int) -> list[Meeting]:

@@ -12,12 +12,12 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.crash_seen import BEFORE_S
-from sgcad_core.metrics.truth_course import BRAKES_MPS, BRAKES_MPS2, STEERS_M, STEERS_RAD
+from sgcad_core.metrics.truth_course import brakes, steers
 from sgcad_core.planner.course import Course
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.place import ACROSS_LANES, TURNING
 from sgcad_core.specs import Actor
-from sgcad_core.told_course import CourseTold, Steering
+from sgcad_core.told_course import CourseTold
 
 TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
 """A smaller change of heading is no turn to be seen, a smaller shift no change of lane."""
@@ -36,31 +36,14 @@ def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
 
 
 def not_evading(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
-    """What of its told evasion is not seen on such poses, in words."""
+    """What of its told evasion is not seen on such poses, in words; as `sgcad score` sees it."""
     recent = poses[-round(BEFORE_S / STEP_S) - 1 :]
-    if told.steers and not _steers(told.steers, course, recent):
+    steps_m = np.hypot(*np.diff(recent[:, :2], axis=0).T)
+    aside = np.array([_aside(course, pose) for pose in recent[[0, -2, -1]]]) if told.steers else np.zeros(0)
+    if told.steers and not steers(told.steers, aside, float(steps_m[-1])):
         yield f"{actor} has hardly begun to steer aside when they touch"
-    if told.brakes and not _brakes(recent):
+    if told.brakes and not brakes(steps_m / STEP_S):
         yield f"{actor} has hardly begun to brake when they touch"
-
-
-def _steers(hand: Steering, course: Course, poses: Floats) -> bool:
-    """As `sgcad score` sees it: by the way sideways, or by the heading against the lane."""
-    begin, last, end = (_aside(course, pose) for pose in (poses[0], poses[-2], poses[-1]))
-    ahead = float(np.hypot(*(poses[-1, :2] - poses[-2, :2])))
-    way, angle = end - begin, math.atan2(end - last, max(ahead, 1e-6))
-    sign = {"left": 1.0, "right": -1.0}.get(hand)
-    if sign is None:
-        return abs(way) > STEERS_M or abs(angle) > STEERS_RAD
-    return way * sign > STEERS_M or angle * sign > STEERS_RAD
-
-
-def _brakes(poses: Floats) -> bool:
-    """As `sgcad score` sees it: by the speed that is lost, in half a second and in all."""
-    speed = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
-    half = round(0.5 / STEP_S)
-    fast = len(speed) > half and float((speed[:-half] - speed[half:]).max()) / 0.5 >= BRAKES_MPS2
-    return fast and float(speed.max() - speed[-1]) >= BRAKES_MPS
 
 
 def _aside(course: Course, pose: Floats) -> float:

@@ -18,7 +18,7 @@ from sgcad_core import settings
 from sgcad_core.errors import ConfigError, InvalidOutput, SimulationFailed
 from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
-from sgcad_core.limited import run_limited
+from sgcad_core.limited import ended_from_outside, run_limited
 from sgcad_core.records import PlainXml, RoadNetwork
 from sgcad_core.scratch import scratch
 from sgcad_core.specs import RoadSpec
@@ -106,7 +106,7 @@ def _call(arguments: Sequence[str], folder: Path) -> tuple[int, str]:
 
 def _check_left_alone(code: int, folder: Path) -> None:
     """Raise SimulationFailed where netconvert was ended from outside, or had no room to write."""
-    if -code in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
+    if ended_from_outside(code):
         raise SimulationFailed(
             f"netconvert was ended by {signal.Signals(-code).name}, from outside or for want of memory: see to memory "
             "and run again"

@@ -4,17 +4,10 @@ import pytest
 from lxml import etree
 
 from flows.drawing import drawing_of
-from plugins.road_writer.template import Template
-from plugins.scenario_writer.rules import Rules
-from plugins.validator.sumo_load import SumoLoad
-from plugins.validator.topology import Topology
-from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import road_facts
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+from tests.sgcad_core.narrative.place_cases import assert_passes_what_roads_pass, written
 
 COMES_OUT = (
     "V1 was traveling east on Oak Street, a two-lane street. V2 was traveling north in an alley on the south side of "
@@ -32,12 +25,6 @@ TURNED_IN = (
     "V1 was parked facing east in the alley behind a store. V2 turned into the alley. V2 was traveling west in the "
     "alley and passing V1 when its left side struck the left side of V1."
 )
-
-
-def written(text: str) -> tuple[RoadNetwork, Scenario]:
-    context = Context(narrative=text)
-    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
-    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -60,13 +47,7 @@ def test_who_leaves_a_lot_and_who_drives_on_a_street_use_no_alley() -> None:
 @pytest.mark.parametrize("text", [COMES_OUT, BACKS_OUT, WITHIN, TURNED_IN])
 def test_alleys_pass_what_roads_pass_and_the_crash_happens(text: str) -> None:
     net, made = written(text)
-    assert net.net_xml
-    assert net.xodr
-    evidence = Evidence(report=CrashReport(case="c", narrative=""))
-    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
-    assert xodr_findings(net.xodr) == []
-    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
-    assert differences(net.net_xml, net.xodr, "sgcad") == []
+    assert_passes_what_roads_pass(net)
     assert made.oddity < 1
 
 

@@ -6,17 +6,11 @@ from lxml import etree
 from matplotlib.path import Path as Outline
 
 from flows.drawing import drawing_of
-from plugins.road_writer.template import Template
-from plugins.scenario_writer.rules import Rules
-from plugins.validator.sumo_load import SumoLoad
-from plugins.validator.topology import Topology
-from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.reading import road_facts
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+from sgcad_core.records import RoadNetwork, Scenario
 from sgcad_core.roads.gores import WIDEST_M, gores
+from tests.sgcad_core.narrative.place_cases import assert_passes_what_roads_pass, written
 
 BACK = (
     "V1 was traveling north in the right lane of a freeway with two northbound lanes. V2 was traveling north on the "
@@ -26,12 +20,6 @@ STANDS = (
     "V1 was traveling east in the right lane of a freeway with two eastbound lanes. V2 was stopped in the gore area of "
     "the exit ramp. The front of V1 struck the back of V2."
 )
-
-
-def written(text: str) -> tuple[RoadNetwork, Scenario]:
-    context = Context(narrative=text)
-    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
-    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
 
 
 def inside(net: RoadNetwork, made: Scenario, actor: str) -> np.ndarray:
@@ -55,11 +43,7 @@ def test_a_ramp_has_its_gore_and_passes_what_roads_pass(text: str) -> None:
     (painted,) = root.findall("road/objects/object[@subtype='gore']")
     assert len(painted.findall("outlines/outline/cornerLocal")) == len(gore.corners)
     assert len(drawing_of(net.net_xml).gores) == 1
-    evidence = Evidence(report=CrashReport(case="c", narrative=""))
-    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
-    assert xodr_findings(net.xodr) == []
-    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
-    assert differences(net.net_xml, net.xodr, "sgcad") == []
+    assert_passes_what_roads_pass(net)
     assert made.oddity < 1
 
 

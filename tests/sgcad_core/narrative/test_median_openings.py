@@ -4,17 +4,10 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from plugins.road_writer.template import Template
-from plugins.scenario_writer.rules import Rules
-from plugins.validator.sumo_load import SumoLoad
-from plugins.validator.topology import Topology
-from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import road_facts
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+from tests.sgcad_core.narrative.place_cases import assert_passes_what_roads_pass, written
 
 ACROSS = (
     "V1 was traveling north in the left lane of a divided highway with two lanes in each direction and a grass median. "
@@ -29,12 +22,6 @@ BARE = (
     "V2 was traveling east in the left lane of a six-lane boulevard and attempted a U-turn at the median crossover. V1 "
     "was traveling east behind V2 in the left lane. The front of V1 struck the left side of V2."
 )
-
-
-def written(text: str) -> tuple[RoadNetwork, Scenario]:
-    context = Context(narrative=text)
-    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
-    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("text", "median"), [(ACROSS, "grass"), (WAITS, "raised"), (BARE, "raised")])
@@ -65,13 +52,7 @@ def test_who_only_crosses_the_median_needs_no_opening() -> None:
 @pytest.mark.parametrize("text", [ACROSS, WAITS, BARE])
 def test_openings_pass_what_roads_pass_and_the_crash_happens(text: str) -> None:
     net, made = written(text)
-    assert net.net_xml
-    assert net.xodr
-    evidence = Evidence(report=CrashReport(case="c", narrative=""))
-    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
-    assert xodr_findings(net.xodr) == []
-    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
-    assert differences(net.net_xml, net.xodr, "sgcad") == []
+    assert_passes_what_roads_pass(net)
     assert parse_net(net.net_xml).openings == ("hub",)
     assert made.oddity < 1
 

@@ -6,18 +6,10 @@ from itertools import pairwise
 import pytest
 from lxml import etree
 
-from plugins.road_writer.template import Template
-from plugins.scenario_writer.rules import Rules
-from plugins.validator.sumo_load import SumoLoad
-from plugins.validator.topology import Topology
-from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.round_trip import differences
-from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.layout_places import parking_lot
 from sgcad_core.narrative.reading import road_facts
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+from tests.sgcad_core.narrative.place_cases import assert_passes_what_roads_pass, written
 
 PARKED = (
     "V1 was traveling north in a parking lot. V2 was parked in a parking space in the parking lot. The front of V1 "
@@ -37,12 +29,6 @@ LEAVES = (
 )
 
 
-def written(text: str) -> tuple[RoadNetwork, Scenario]:
-    context = Context(narrative=text)
-    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
-    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(("text", "legs"), [(PARKED, 2), (BACKS, 2), (CROSS, 4)])
 def test_a_crash_inside_a_parking_lot_gets_its_aisles(text: str, legs: int) -> None:
     layout = layout_of_facts(road_facts(text))
@@ -59,13 +45,7 @@ def test_who_comes_out_of_a_parking_lot_crashes_on_the_street() -> None:
 @pytest.mark.parametrize("text", [PARKED, BACKS, CROSS])
 def test_aisles_pass_what_roads_pass(text: str) -> None:
     net, _ = written(text)
-    assert net.net_xml
-    assert net.xodr
-    evidence = Evidence(report=CrashReport(case="c", narrative=""))
-    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
-    assert xodr_findings(net.xodr) == []
-    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
-    assert differences(net.net_xml, net.xodr, "sgcad") == []
+    assert_passes_what_roads_pass(net)
 
 
 def test_stalls_lie_square_to_the_aisle_and_do_not_overlap() -> None:

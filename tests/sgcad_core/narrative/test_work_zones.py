@@ -5,24 +5,17 @@ import pytest
 from lxml import etree
 
 from flows.drawing import drawing_of
-from plugins.road_writer.template import Template
-from plugins.scenario_writer.rules import Rules
-from plugins.validator.sumo_load import SumoLoad
-from plugins.validator.topology import Topology
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import road_facts
 from sgcad_core.planner.course import find_course
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
 from sgcad_core.roads.closures import cones, tapers
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Actor, Leg, RoadLayout
+from tests.sgcad_core.narrative.place_cases import assert_passes_what_roads_pass, written
 
 RIGHT = (
     "V1 was traveling north in the right lane of a divided highway with two northbound lanes. V2 was traveling north "
@@ -38,12 +31,6 @@ UNSAID = (
     "V1 was traveling east in the left lane of a four-lane divided road. V1 changed lanes to the right because of a "
     "lane closure, and its right side struck the left side of V2, which was traveling east in the right lane."
 )
-
-
-def written(text: str) -> tuple[RoadNetwork, Scenario]:
-    context = Context(narrative=text)
-    net = Template().write(context, (), (), None, 1)  # type: ignore[arg-type]
-    return net, Rules().write(context, (), (), None, 1, net)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("text", "leg", "closed"), [(RIGHT, "N", (1,)), (LEFT, "S", (2, 3)), (UNSAID, "E", (2,))])
@@ -83,13 +70,7 @@ def test_a_lane_behind_a_stalled_truck_is_not_closed() -> None:
 @pytest.mark.parametrize("text", [RIGHT, LEFT, UNSAID])
 def test_work_zones_pass_what_roads_pass_and_the_crash_happens(text: str) -> None:
     net, made = written(text)
-    assert net.net_xml
-    assert net.xodr
-    evidence = Evidence(report=CrashReport(case="c", narrative=""))
-    assert not [f.line() for v in (SumoLoad(), Topology()) for f in v.findings(net, evidence)]
-    assert xodr_findings(net.xodr) == []
-    assert network_disagreements(parse_net(net.net_xml), net.xodr) == []
-    assert differences(net.net_xml, net.xodr, "sgcad") == []
+    assert_passes_what_roads_pass(net)
     assert "is not connected" not in net.log
     assert made.oddity < 1
 
