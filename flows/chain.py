@@ -20,7 +20,7 @@ from flows.cases import Case
 from flows.leaving import leave
 from flows.sharing import Sharing
 from flows.steps import OnStep, Step, Steps, unheard
-from sgcad_core.asking.opinion import corrected, seconded
+from sgcad_core.asking.opinion import corrected, seconded, whole
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.config import Config
 from sgcad_core.edits import Edit
@@ -28,7 +28,7 @@ from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.execution.judgement import Judgement, judge
 from sgcad_core.interfaces import RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
-from sgcad_core.opinion import LEARNED
+from sgcad_core.opinion import LEARNED, WHOLE
 from sgcad_core.records import (
     Attempt,
     Context,
@@ -136,6 +136,8 @@ class CaseRun:
             return report
         if wanted == LEARNED:
             return self._single("opinion", lambda: corrected(report), report)
+        if wanted == WHOLE:
+            return self._single("opinion", lambda: whole(report, ask_of(self.config)), report)
         return self._single("opinion", lambda: seconded(report, wanted, ask_of(self.config)), report)
 
     def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:

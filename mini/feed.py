@@ -21,6 +21,7 @@ from PIL import Image
 
 from mini.generator.incidents import make_incident
 from mini.generator.report import TEXT_MODES, Report, make_report
+from mini.generator.written import shipped, some_report
 from mini.gist import gist_row, told_of
 from mini.picture import VIEWS, quarters_of, turn_points, turn_upright
 from mini.renderer.draw import Shape, draw_labeled
@@ -48,11 +49,14 @@ STAGES: dict[str, dict[str, float]] = {
     "words": WORDS,
     "all": MIXED,
     "gist": WORDS,
+    "written": MIXED,
 }
 """Weights of the modes that a stage of training shows."""
 GISTS = {"told": 0.52, "incident": 0.2, "made": 0.16}
 """Shares of the rows of the stage "gist" that ask the gist alone: of told texts, made incidents and made narratives."""
 
+WRITTEN = 0.5
+"""Share of the rows of the stage "written" that are narratives of writers; the others are made ones of every kind."""
 
 PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))
 """Shares of the budget of a run that goes through the stages by itself."""
@@ -83,13 +87,21 @@ def one_row(coder: Coder, seed: int, progress: float, stage: str = "all", told: 
         rng = Random(f"{seed} worn")
         return gist_row(coder, text, rng, WORN if rng.random() < 0.5 else (0.0, 0.0))
     rng = Random(seed)
-    length, modes = length_for(rng, stage, progress), STAGES[stage]
+    report = _report(rng, seed, progress, stage)
+    view = rng.randrange(len(VIEWS)) if rng.random() < MOVED else 0
+    worn = WORN if rng.random() < 0.5 else (0.0, 0.0)
+    return training_row(coder, report, *labeled(report), view, worn)
+
+
+def _report(rng: Random, seed: int, progress: float, stage: str) -> Report:
+    """The report of a seed: a writer's, or a made one that is not too long."""
+    length = length_for(rng, stage, progress)
+    if stage == "written" and Random(f"{seed} writer").random() < WRITTEN:
+        return some_report(shipped(), seed)
     while True:
-        report = make_report(seed, False, length, modes)
+        report = make_report(seed, False, length, STAGES[stage])
         if len(report.narrative) < MAX_TEXT * 4.6 or length < 0.05:
-            view = rng.randrange(len(VIEWS)) if rng.random() < MOVED else 0
-            worn = WORN if rng.random() < 0.5 else (0.0, 0.0)
-            return training_row(coder, report, *labeled(report), view, worn)
+            return report
         length *= 0.7
 
 

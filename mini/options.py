@@ -41,8 +41,8 @@ class Options:
     """Share of the budget with the full learning rate."""
     stage: str = "auto"
     """What is shown: "pictures" (drawings, no answers: the tower alone), "text" (narratives), "all", these in turn
-    ("auto"), "words" (everything, but mostly narratives), or "gist" (the gist of told texts, made incidents and made
-    narratives, beside a quarter of "words")."""
+    ("auto"), "words" (everything, but mostly narratives), "written" (half of it narratives of writers), or "gist" (the
+    gist of told texts, made incidents and made narratives, beside a quarter of "words")."""
     told: str = ""
     """File of texts of which a part is known (`mini.gist.load`), for the stage "gist"."""
     eyes: str = ""
@@ -57,7 +57,10 @@ class Options:
     """Weight of what the tokens of drawings show."""
 
 
-CHOICES = {"dtype": ("", "bfloat16", "float32"), "stage": ("auto", "pictures", "text", "words", "all", "gist")}
+CHOICES = {
+    "dtype": ("", "bfloat16", "float32"),
+    "stage": ("auto", "pictures", "text", "words", "written", "all", "gist"),
+}
 
 
 def parse(arguments: list[str] | None = None, description: str | None = None) -> Options:

@@ -69,9 +69,12 @@ class CrashReport(ReadOnce):
         from sgcad_core.narrative.mended import mended  # patterns of half a second, which not everybody needs
         from sgcad_core.narrative.reading import read
         from sgcad_core.narrative.traced import placed
+        from sgcad_core.narrative.whole_fusion import whole
 
         found = read(placed(self.narrative, self.places))
-        return mended(fused(found, self.opinion) if self.opinion else found, self.edits)
+        if self.opinion:
+            found = whole(found, self.opinion) if self.opinion.answered else fused(found, self.opinion)
+        return mended(found, self.edits)
 
 
 class Context(ReadOnce):

@@ -8,10 +8,14 @@ from pathlib import Path
 from pydantic import Field
 
 from sgcad_core.frozen import Record
+from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 Value = bool | str
 LEARNED = "learned"
 """In a config's `second_opinion`: the reader that learned where the rules err (`sgcad_core.narrative.learned`)."""
+WHOLE = "whole"
+"""The same reader for reports that number nobody; for the others the config's model, which is asked for road and
+behavior (`sgcad_core.narrative.whole_fusion`)."""
 WEIGHTS = Path(__file__).parent / "narrative" / "learned.npz"
 """What that reader learned."""
 
@@ -33,10 +37,21 @@ class Heard(Record):
     p: float = Field(ge=0, le=1)
 
 
+class Answered(Record):
+    """A model's answers to a whole report."""
+
+    layout: RoadLayout
+    behavior: BehaviorSpec
+    p: Mapping[str, float] = {}
+    """Probability of each value by its path ("road.legs[0].lanes_in", "crash.actors[1].maneuver"); no entry: 1."""
+
+
 class Opinion(Record):
     """What the second reader says, and how it is weighed against the rules. Fields without weights are the rules'."""
 
     heard: Mapping[str, Heard] = {}
     weights: Mapping[str, Weights] = {}
+    answered: Answered | None = None
+    """What it answers to the whole report; its weights then go by kinds of `sgcad_core.narrative.claims`."""
     takes: float = Field(0.5, ge=0, le=1)
     """Probability from which on another value than the rules' is taken."""

@@ -16,8 +16,8 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from plugins.backbone.fields import grounding, is_refusal
 from plugins.backbone.prompt import Parts
+from sgcad_core.asking.fields import grounding, is_refusal
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 from sgcad_core.records import Finding, Generation, Token
 

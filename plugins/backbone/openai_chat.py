@@ -16,9 +16,9 @@ from typing import Any, ClassVar, Literal, NoReturn
 import httpx
 from pydantic import Field
 
-from plugins.backbone.fields import is_refusal
 from plugins.backbone.prompt import parts
 from sgcad_core import settings
+from sgcad_core.asking.fields import is_refusal
 from sgcad_core.errors import ConfigError, InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Backbone, Decoder
 from sgcad_core.records import Context, Generation, Query

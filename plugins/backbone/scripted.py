@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import yaml
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError, model_validator
 
-from plugins.backbone.fields import is_refusal
+from sgcad_core.asking.fields import is_refusal
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.interfaces import Backbone, Decoder
 from sgcad_core.records import Context, Generation, Query, Stage

@@ -1,4 +1,5 @@
-"""A second opinion of a crash's gist: of a model that is asked, or of the reader that learned where the rules err.
+"""A second opinion of a crash: a model's of its gist or of all of it, or that of the reader that learned where the
+rules err.
 
 The weights of a model's answers stand beside the prompt (configs/prompts/<prompt>.json), since they are of a question
 and its model. Knows no model.
@@ -11,13 +12,18 @@ import math
 from collections.abc import Mapping, Sequence
 
 from sgcad_core import settings
+from sgcad_core.asking.fields import spans
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
 from sgcad_core.narrative import learned
+from sgcad_core.narrative.claims import KINDS
 from sgcad_core.narrative.gist import FIELDS, Gist
-from sgcad_core.opinion import Heard, Opinion, Weights
+from sgcad_core.opinion import WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records import Context, CrashReport, Query, Token
+from sgcad_core.roads.describe import road_ids
+from sgcad_core.roads.layout import road_spec
+from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 UNKNOWN_P = 0.5
 """Of a value whose model gives no probabilities, as servers do not: the weights alone then decide."""
@@ -44,38 +50,65 @@ def corrected(report: CrashReport) -> CrashReport:
     return report if said is None else report.model_copy(update={"opinion": said})
 
 
-def load_weights(prompt: str) -> Mapping[str, Weights]:
-    """configs/prompts/<prompt>.json: field of the gist -> its weights. Raises ConfigError with what to mend."""
+def whole(report: CrashReport, ask: Ask) -> CrashReport:
+    """The report with an opinion of all of it: the model's of one that numbers its vehicles or that only a drawing
+    tells, else the learned reader's. Raises ConfigError for weights that there are not."""
+    if report.narrative.strip() and report.reading.crash.unnumbered:
+        return corrected(report)
+    weights = load_weights(WHOLE, KINDS)
+    context = Context(narrative=report.narrative, diagrams=report.diagrams)
+    try:
+        answered = _answered(context, report.case, ask)
+    except (Refused, InvalidOutput) as fault:
+        return report.model_copy(update={"notes": (*report.notes, f"no second opinion: {fault}")})
+    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered)})
+
+
+def _answered(context: Context, case: str, ask: Ask) -> Answered:
+    """Both answers and the probabilities of their values. Raises Refused, InvalidOutput."""
+    query = Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout), case=case)
+    road = ask(context, query)
+    layout = parse_answer(road.text, RoadLayout)
+    ids = road_ids(road_spec(layout))
+    schema = answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids})
+    task = load_prompt("mini_scenario", roads=layout.model_dump_json())
+    crash = ask(context, Query(task=task, answer_schema=schema, case=case))
+    behavior = parse_answer(crash.text, BehaviorSpec)
+    p = {f"road.{path}": sure for path, sure in probabilities(road.tokens).items()}
+    p |= {f"crash.{path}": sure for path, sure in probabilities(crash.tokens).items()}
+    return Answered(layout=layout, behavior=behavior, p=p)
+
+
+def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:
+    """configs/prompts/<prompt>.json: field -> its weights. Raises ConfigError with what to mend."""
     file = settings.PROMPTS / f"{prompt}.json"
-    remedy = "fit them with `python -m benchmarks.opinions`"
+    remedy = f"fit them with `python -m benchmarks.{'outside' if prompt == WHOLE else 'opinions'}`"
     if not file.is_file():
         raise ConfigError(f"second_opinion {prompt!r}: its file of weights {file} is missing; {remedy}")
     try:
         found = {key: Weights(**entry) for key, entry in json.loads(file.read_text(encoding="utf-8")).items()}
     except (ValueError, AttributeError, TypeError) as fault:
-        raise ConfigError(f"{file}: is not a file of weights for the fields of a gist ({fault}); {remedy}") from fault
-    if strange := sorted(found.keys() - set(FIELDS)):
-        raise ConfigError(f"{file}: {', '.join(strange)} are not fields of a gist; use {', '.join(FIELDS)}")
+        raise ConfigError(f"{file}: is not a file of weights by fields ({fault}); {remedy}") from fault
+    if strange := sorted(found.keys() - set(fields)):
+        raise ConfigError(f"{file}: {', '.join(strange)} are not fields of it; use {', '.join(fields)}")
     return found
 
 
 def probabilities(tokens: Sequence[Token]) -> dict[str, float]:
-    """Field -> probability of its value: the product of its tokens' that were chosen; nothing without tokens."""
+    """Path -> probability of its value: the product of those of its tokens that were chosen; nothing without tokens.
+
+    A token belongs to the field that it overlaps, one over several to the first.
+    """
     text = "".join(token.text for token in tokens)
-    ends, at = [], 0
+    found: dict[str, float] = {}
+    ahead, at = list(reversed(spans(text))), 0
     for token in tokens:
-        at += len(token.text)
-        ends.append(at)
-    found = {}
-    for key in FIELDS:
-        begun = text.find(f'"{key}":')
-        if begun < 0:
-            continue
-        begun += len(key) + 3
-        over = min(at for at in (text.find(",", begun), text.find("}", begun), len(text)) if at >= 0)
-        inside = [
-            token for token, end in zip(tokens, ends, strict=True)
-            if end > begun and end - len(token.text) < over and not token.forced
-        ]  # fmt: skip
-        found[key] = min(1.0, math.exp(sum(token.logp_with_context for token in inside)))
+        end = at + len(token.text)
+        while ahead and ahead[-1].end <= at:
+            ahead.pop()
+        if ahead and ahead[-1].start < end:
+            nats = 0.0 if token.forced else token.logp_with_context
+            path = ahead[-1].path
+            found[path] = min(1.0, found.get(path, 1.0) * math.exp(nats))
+        at = end
     return found

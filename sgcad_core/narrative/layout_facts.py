@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
+from sgcad_core.narrative.answered_layout import answered_layout
 from sgcad_core.narrative.carriageway import Carriageway, Way, carriageway
 from sgcad_core.narrative.compass import OPPOSITE_HAND, between, turned
 from sgcad_core.narrative.facts import VehicleFacts
@@ -56,7 +57,8 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, self._roads_alone())))
+        roads = answered_layout(self.facts, self._roads_alone())
+        return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()

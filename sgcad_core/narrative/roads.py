@@ -34,7 +34,7 @@ from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import Roster
-from sgcad_core.specs import Beside, Compass
+from sgcad_core.specs import Beside, Compass, RoadLayout
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,9 @@ class RoadFacts:
     """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
+    answered: RoadLayout | None = None
+    """The layout that a model answered, where some of it is `taken` (fields of `sgcad_core.narrative.claims`)."""
+    taken: frozenset[str] = frozenset()
 
     @property
     def streets(self) -> tuple[RoadFact, ...]:

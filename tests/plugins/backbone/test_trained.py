@@ -12,10 +12,10 @@ from plugins.backbone.engine.check import reference
 from plugins.backbone.engine.grammar import Grammar, GrammarMaker, allowed
 from plugins.backbone.engine.loop import Engine
 from plugins.backbone.engine.records import Answer, Prompt, Request
-from plugins.backbone.fields import grounding
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
+from sgcad_core.asking.fields import grounding
 from sgcad_core.interfaces import Decoder
 from tests.plugins.backbone import tiny, trained
 

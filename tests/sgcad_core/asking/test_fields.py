@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plugins.backbone.fields import grounding, is_refusal, open_path, spans
+from sgcad_core.asking.fields import grounding, is_refusal, open_path, spans
 
 SCALARS = st.none() | st.booleans() | st.integers(-99, 99) | st.floats(-9, 9) | st.text(max_size=8)
 VALUES = st.recursive(

@@ -1,0 +1,222 @@
+"""Reports that other writers told from fact sheets: what share is read right by the rules, the model and both?
+
+    python -m benchmarks.outside [--config fused.yaml] [--answers FILE.jsonl] [--fit configs/prompts/whole.json]
+    python -m benchmarks.outside --rules [--folder mini/generator/written] [--show KIND]
+
+`benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
+nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
+only totals are. `--fit` fits the weights of the combiner on the seen half; its own row there is cross-fitted. Fields
+are those of `sgcad_core.narrative.claims`; those that the text does not tell do not count. The model's answers are kept
+in --answers. `--rules` asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.incidents import by_hash
+from benchmarks.opinions import _logistic
+from flows.chain import ask_of
+from mini.generator.report import Report
+from mini.generator.written import Written, load, report_of
+from sgcad_core.asking.opinion import load_weights, whole
+from sgcad_core.config import load as load_config
+from sgcad_core.errors import ConfigError
+from sgcad_core.narrative.claims import KINDS, Claims, kind_of, model_claims, rules_claim
+from sgcad_core.narrative.compass import COMPASS
+from sgcad_core.narrative.reading import Reading, read
+from sgcad_core.narrative.whole_fusion import same
+from sgcad_core.narrative.whole_fusion import whole as fused
+from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
+from sgcad_core.records import CrashReport
+from sgcad_core.specs import BehaviorSpec, RoadLayout
+
+FOLDER = Path(__file__).parent / "outside"
+AT_ONCE = 8
+_FACTS = {"maneuver": "man", "contact": "contact.0", "areas": "areas.0"}
+"""Kinds of fields whose facts the generator calls otherwise."""
+
+
+class Case(NamedTuple):
+    """One text: what it tells, how the rules read it, what the model answers (None: nothing)."""
+
+    id: str
+    truth: Claims
+    reading: Reading
+    answered: Answered | None
+
+    @property
+    def blind(self) -> bool:
+        """Whether only totals of it are looked at."""
+        return by_hash(self.id) % 2 == 1
+
+
+# ------------------------------------------------------------------ cases
+def truth_of(one: Written) -> Claims:
+    """What the text tells, of all that the crash has."""
+    report = report_of(one, 0)
+    answered = Answered(layout=RoadLayout(**report.road), behavior=BehaviorSpec(**(report.behavior or {})))
+    return {key: claim for key, claim in model_claims(answered).items() if _told(key, report)}
+
+
+def _told(key: str, report: Report) -> bool:
+    kind, _, of = key.partition(".")
+    if kind in ("contact", "areas", "legs", "curve", "control", "light", "weather", "surface"):
+        return _FACTS.get(kind, kind) in report.stated
+    if of in COMPASS:
+        axis = str(COMPASS.index(of) % 4)
+        turning = any(leg.turns_in for leg in report.crash.legs if leg.bearing % 4 == int(axis))
+        needed = {f"{kind}.{axis}"} | ({f"turns.{axis}"} if kind == "lanes" and turning else set())
+        return needed <= report.stated
+    return f"{_FACTS.get(kind, kind)}.{of}" in report.stated
+
+
+def cases(texts: Sequence[Written], answers: Mapping[str, Answered | None]) -> list[Case]:
+    """Texts with both readers' claims."""
+    return [Case(one.id, truth_of(one), read(one.text), answers.get(one.id)) for one in texts]
+
+
+def asked(
+    texts: Sequence[Written], config: str, overrides: Sequence[str], kept: Path | None
+) -> dict[str, Answered | None]:
+    """The model's answers by id; those in the file `kept` are not asked for again."""
+    built = load_config(config, tuple(overrides))
+    ask, known = ask_of(built), _remembered(kept)
+
+    def answer(one: Written) -> tuple[str, Answered | None]:
+        opinion = whole(CrashReport(case=one.id, narrative=one.text), ask).opinion
+        return one.id, opinion.answered if opinion else None
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for id, found in pool.map(answer, [one for one in texts if one.id not in known]):
+            known[id] = found
+            if kept is not None:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps({"id": id, "answered": found and found.model_dump(mode="json")}) + "\n")
+    return known
+
+
+def _remembered(kept: Path | None) -> dict[str, Answered | None]:
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.is_file() else []
+    rows = map(json.loads, lines)
+    return {row["id"]: Answered(**row["answered"]) if row["answered"] else None for row in rows}
+
+
+# ------------------------------------------------------------------ weights
+def fit(some: Iterable[Case]) -> dict[str, Weights]:
+    """Weights by kind of field: a logistic regression on where the readers differ and one of both is right.
+
+    Where the rules have no value the model's is held against nothing: such rows count as those where it is untold.
+    """
+    rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
+    marks: dict[str, list[float]] = defaultdict(list)
+    for case in some:
+        rules, model = rules_claim(case.reading), model_claims(case.answered) if case.answered else {}
+        for key, said in model.items():
+            want, rule = case.truth.get(key), rules.get(key)
+            if want is None or (rule is not None and same(key, rule.value, said.value)):
+                continue
+            mine, theirs = rule is not None and right(key, rule.value, want.value), right(key, said.value, want.value)
+            if rule is None or mine != theirs:
+                p = min(max(said.p, 1e-6), 1 - 1e-6)
+                rows[kind_of(key)].append((1.0, float(np.log(p / (1 - p))), float(rule is not None and rule.told)))
+                marks[kind_of(key)].append(float(theirs))
+    return {kind: _weights(rows[kind], marks[kind]) for kind in KINDS if rows[kind]}
+
+
+def _weights(rows: Sequence[tuple[float, float, float]], marks: Sequence[float]) -> Weights:
+    differ, slope, told = (round(float(x), 3) for x in _logistic(np.array(rows), np.array(marks)))
+    return Weights(differ=differ, slope=slope, told=told, agree=None)
+
+
+def right(key: str, got: object, want: object) -> bool:
+    """Whether a value is the true one."""
+    return got is not None and same(key, got, want)
+
+
+# ------------------------------------------------------------------ table
+def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -> Iterator[str]:
+    """Lines by kind of field; `weights` by id of the case."""
+    marks: dict[str, list[tuple[bool, bool, bool]]] = defaultdict(list)
+    for case in some:
+        rules, model = rules_claim(case.reading), model_claims(case.answered) if case.answered else {}
+        opinion = Opinion(weights=weights[case.id], answered=case.answered)
+        both = fused(case.reading, opinion)
+        after = rules_claim(both)
+        for key, want in case.truth.items():
+            three = tuple(right(key, c[key].value, want.value) if key in c else False for c in (rules, model, after))
+            for kind in (kind_of(key), "all"):
+                marks[kind].append(three)  # type: ignore[arg-type]
+    yield "| field | n | rules | model | fused | either |"
+    yield "|---|---|---|---|---|---|"
+    for kind in (*KINDS, "all"):
+        if found := marks[kind]:
+            shares = [sum(one[i] for one in found) / len(found) for i in range(3)]
+            either = sum(one[0] or one[1] for one in found) / len(found)
+            yield f"| {kind} | {len(found)} | " + " | ".join(f"{x:.3f}" for x in (*shares, either)) + " |"
+
+
+def rules_alone(texts: Sequence[Written], show: str | None) -> Iterator[str]:
+    """The rules' shares by kind, of both halves; or the errors of a kind in the half that may be looked at."""
+    found = cases(texts, {})
+    if show is None:
+        for name, blind in (("seen", False), ("blind", True)):
+            some = [case for case in found if case.blind == blind]
+            yield f"{name} half, {len(some)} texts"
+            yield from table(some, {case.id: {} for case in some})
+        return
+    told = {one.id: one.text for one in texts}
+    for case in found:
+        rules = rules_claim(case.reading)
+        for key, want in case.truth.items():
+            got = rules[key].value if key in rules else None
+            if kind_of(key) == show and not case.blind and not right(key, got, want.value):
+                yield f"----- {case.id}\n{told[case.id]}\n{key}: want {want.value}, got {got}\n"
+
+
+def crossed(some: Sequence[Case]) -> dict[str, dict[str, Weights]]:
+    """For each case weights that were fitted without its fold, five folds by the hash of the id."""
+    folds = {case.id: by_hash(case.id + "fold") % 5 for case in some}
+    fitted = {k: fit(case for case in some if folds[case.id] != k) for k in range(5)}
+    return {id: fitted[k] for id, k in folds.items()}
+
+
+def main() -> None:
+    """Ask, fit, print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--folder", type=Path, default=FOLDER)
+    parser.add_argument("--config", default="fused.yaml")
+    parser.add_argument("--set", action="append", default=[], dest="overrides", help="key=value, as for sgcad")
+    parser.add_argument("--answers", type=Path, help="a file that keeps the model's answers")
+    parser.add_argument("--fit", type=Path, help="write the weights here")
+    parser.add_argument("--rules", action="store_true", help="the rules alone")
+    parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
+    options = parser.parse_args()
+    try:
+        texts = load(options.folder)
+        if options.rules:
+            print("\n".join(rules_alone(texts, options.show)))  # noqa: T201 - a command prints
+            return
+        all_cases = cases(texts, asked(texts, options.config, options.overrides, options.answers))
+    except (ConfigError, ValueError) as fault:
+        raise SystemExit(str(fault)) from fault
+    seen, blind = ([case for case in all_cases if case.blind == half] for half in (False, True))
+    shipped = load_weights(WHOLE, KINDS) if options.fit is None else fit(seen)
+    lines = [f"seen half, {len(seen)} texts, weights cross-fitted", *table(seen, crossed(seen)), ""]
+    lines += [f"blind half, {len(blind)} texts", *table(blind, {case.id: shipped for case in blind})]
+    print("\n".join(lines))  # noqa: T201 - a command prints
+    if options.fit is not None:
+        weights = {kind: one.model_dump(exclude={"agree"}) for kind, one in shipped.items()}
+        options.fit.write_text(json.dumps(weights, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

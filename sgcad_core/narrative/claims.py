@@ -1,0 +1,234 @@
+"""What a reader claims of a crash, field by field, in terms that rules and model share.
+
+A claim is a value with how sure it is. Fields are named by what they are of: `heading.V1`, `maneuver.V1`, `exit.V1`,
+`kind.V1`, `lane.V1`, `speed.V1` (mph), `contact` (striker, struck), `areas` (side by id), `legs` (bearings), by axis
+`lanes.N` (bearing, in, out), `turns.N`, `median.N`, `curve.N`, `limit.N` (mph), `control`, `light`, `weather`,
+`surface`. Knows no prompt and no token.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sgcad_core.errors import Refused
+from sgcad_core.kinds import JOINING
+from sgcad_core.narrative.behavior import behavior_of_facts
+from sgcad_core.narrative.compass import COMPASS, turned
+from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.roads.layout import road_spec
+from sgcad_core.specs import Compass, Leg
+
+if TYPE_CHECKING:
+    from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
+    from sgcad_core.narrative.reading import Reading
+    from sgcad_core.narrative.roads import RoadFact, RoadFacts
+    from sgcad_core.opinion import Answered
+    from sgcad_core.specs import Actor, BehaviorSpec
+
+_THROUGH = {"through_right": "through", "left_through": "through"}
+"""Readers differ in whether they say that one may also turn from a through lane."""
+
+KINDS = (
+    "kind", "heading", "maneuver", "exit", "lane", "speed", "contact", "areas", "legs", "lanes", "turns", "median",
+    "curve", "limit", "control", "light", "weather", "surface",
+)  # fmt: skip
+"""Kinds of fields, for which a combiner has weights."""
+
+
+class Claim(NamedTuple):
+    """A value; whether the text tells it outright; its probability, where the reader gives one."""
+
+    value: Any
+    told: bool = True
+    p: float = 1.0
+
+
+Claims = dict[str, Claim]
+
+
+def kind_of(field: str) -> str:
+    """ "heading" of "heading.V1"."""
+    return field.partition(".")[0]
+
+
+# ------------------------------------------------------------------ the rules'
+def rules_claim(reading: Reading) -> Claims:
+    """What the rules make of a text: every value that they have, and whether the text tells it."""
+    crash, roads = reading.crash, reading.roads
+    found = {key: Claim(*said) for v in crash.vehicles for key, said in _vehicle(v)}
+    found |= _ways(reading)
+    first = crash.contacts[0] if crash.contacts and not crash.gap else None
+    if first is not None:
+        found["contact"] = Claim((first.striker, first.struck), first.stated)
+        sides = {first.striker: first.striker_area, first.struck: first.struck_area}
+        found["areas"] = Claim(_sorted(sides), first.areas_stated)
+    for key in ("light", "weather", "surface"):
+        if (value := getattr(crash, key)) is not None:
+            found[key] = Claim(value)
+    return found | dict(_roads(roads))
+
+
+def _vehicle(v: VehicleFacts) -> Iterator[tuple[str, tuple[Any, bool]]]:
+    yield f"kind.{v.id}", (v.kind, v.make is None)
+    if v.heading is not None:
+        yield f"heading.{v.id}", (v.heading, v.heading_stated)
+    yield f"maneuver.{v.id}", (v.maneuver, v.maneuver_stated)
+    if v.speed_mph is not None:
+        yield f"speed.{v.id}", (v.speed_mph, True)
+
+
+def _ways(reading: Reading) -> Claims:
+    """Lane and way out of everybody as they are drawn: a lane may be told by a word, a way out follows from a turn."""
+    told = {v.id: v for v in reading.crash.vehicles}
+    try:
+        behavior = behavior_of_facts(reading.crash, road_spec(layout_of_facts(reading.roads)))
+    except Refused:
+        return {}
+    found: Claims = {}
+    for actor in behavior.actors:
+        v = told.get(actor.id)
+        if v is None:
+            continue
+        if actor.lane is not None:
+            found[f"lane.{v.id}"] = Claim(actor.lane, v.lane is not None or v.lane_word is not None)
+        if actor.exit_road in COMPASS:
+            found[f"exit.{v.id}"] = Claim(actor.exit_road, v.exit_heading is not None or v.maneuver_stated)
+    return found
+
+
+def _roads(facts: RoadFacts) -> Iterator[tuple[str, Claim]]:
+    legs, junction = layout_of_facts(facts).legs, facts.junction
+    bearings = tuple(sorted(leg.bearing for leg in legs))
+    yield "legs", Claim(bearings, junction.stated and (junction.stem is None or junction.stem_stated))
+    roads = {road.axis: road for road in facts.streets if road.axis}
+    for axis, some in by_axis(legs):
+        road = roads.get(axis)
+        yield f"lanes.{axis}", Claim(lanes_of(some), road is not None and _counted(road))
+        if turns := turns_of(some):
+            yield f"turns.{axis}", Claim(turns)
+        told = road is not None and (road.lanes.median is not None or road.lanes.divided is not None)
+        yield f"median.{axis}", Claim(some[0].median, told)
+        yield f"curve.{axis}", Claim(curves_of(some), bool(road and road.curve))
+        if road is not None and road.speed_limit_mph is not None:
+            yield f"limit.{axis}", Claim(road.speed_limit_mph)
+    yield "control", Claim(control_of(legs), junction.control != "none")
+
+
+def _counted(road: RoadFact) -> bool:
+    lanes = road.lanes
+    return bool(lanes.total or lanes.each_way or lanes.toward or lanes.own)
+
+
+# ------------------------------------------------------------------ a model's
+def model_claims(said: Answered) -> Claims:
+    """What a model's answers say, each value with its probability. What is null in them is no claim."""
+    p = said.p
+    found: Claims = {}
+    for i, actor in enumerate(said.behavior.actors):
+        at = f"crash.actors[{i}]"
+        found |= {key: Claim(value, p=_p(p, f"{at}.{name}")) for key, name, value in _actor(actor)}
+    found |= dict(_met(said.behavior, p))
+    for key in ("light", "weather", "surface"):
+        if (value := getattr(said.behavior, key)) is not None:
+            found[key] = Claim(value, p=_p(p, f"crash.{key}"))
+    return found | dict(_answered_roads(said))
+
+
+def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
+    yield f"kind.{actor.id}", "kind", actor.kind
+    if not actor.id.startswith("V"):
+        return
+    if heading := _heading(actor.road):
+        yield f"heading.{actor.id}", "road", heading
+    yield f"maneuver.{actor.id}", "maneuver", actor.maneuver
+    if actor.exit_road in COMPASS:
+        yield f"exit.{actor.id}", "exit_road", actor.exit_road
+    if actor.lane is not None:
+        yield f"lane.{actor.id}", "lane", actor.lane
+    if actor.speed_mph:
+        yield f"speed.{actor.id}", "speed_mph", actor.speed_mph
+
+
+def _heading(road: str) -> Compass | None:
+    """Where one drives who comes in on a leg ("N") or on its outer piece ("N_outer")."""
+    bearing = road.removesuffix("_outer")
+    return turned(bearing, 180) if bearing in COMPASS else None  # type: ignore[arg-type]
+
+
+def _met(behavior: BehaviorSpec, p: Mapping[str, float]) -> Iterator[tuple[str, Claim]]:
+    if not behavior.contacts:
+        return
+    first = behavior.contacts[0]
+    sure = [_p(p, f"crash.contacts[0].{key}") for key in ("striker", "struck", "striker_area", "struck_area")]
+    yield "contact", Claim((first.striker, first.struck), p=sure[0] * sure[1])
+    sides = {first.striker: first.striker_area, first.struck: first.struck_area}
+    yield "areas", Claim(_sorted(sides), p=sure[2] * sure[3])
+
+
+def _answered_roads(said: Answered) -> Iterator[tuple[str, Claim]]:
+    legs, p = said.layout.legs, said.p
+    at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
+
+    def sure(some: Iterable[Leg], *names: str) -> float:
+        return min((_p(p, f"{at[leg.bearing]}.{name}") for leg in some for name in names), default=1.0)
+
+    yield "legs", Claim(tuple(sorted(at)), p=min(sure(legs, "bearing"), _p(p, "road.legs[]")))
+    for axis, some in by_axis(legs):
+        yield f"lanes.{axis}", Claim(lanes_of(some), p=sure(some, "lanes_in", "lanes_out"))
+        if turns := turns_of(some):
+            yield f"turns.{axis}", Claim(turns, p=_turns_p(some, at, p))
+        yield f"median.{axis}", Claim(some[0].median, p=sure(some, "median"))
+        yield f"curve.{axis}", Claim(curves_of(some), p=sure(some, "curve"))
+        if (limit := some[0].speed_limit_mph) is not None:
+            yield f"limit.{axis}", Claim(limit, p=sure(some[:1], "speed_limit_mph"))
+    yield "control", Claim(control_of(legs), p=sure(legs, "control"))
+
+
+def _turns_p(some: Iterable[Leg], at: Mapping[str, str], p: Mapping[str, float]) -> float:
+    names = [f"{at[leg.bearing]}.turns_in[{k}]" for leg in some for k in range(len(leg.turns_in))]
+    return min((_p(p, name) for name in names), default=1.0)
+
+
+def _p(p: Mapping[str, float], path: str) -> float:
+    """1 where the grammar left no choice."""
+    return p.get(path, 1.0)
+
+
+# ------------------------------------------------------------------ shared terms
+def by_axis(legs: Iterable[Leg]) -> list[tuple[Compass, tuple[Leg, ...]]]:
+    """The streets of a layout by the axis on which they lie, legs in the order of their bearings."""
+    streets = sorted((leg for leg in legs if leg.kind not in JOINING), key=lambda leg: leg.bearing)
+    axes = dict.fromkeys(axis_of(leg.bearing) for leg in streets)
+    return [(axis, tuple(leg for leg in streets if axis_of(leg.bearing) == axis)) for axis in axes]
+
+
+def lanes_of(some: Iterable[Leg]) -> tuple[tuple[str, int, int], ...]:
+    """Bearing, lanes in and lanes out of every leg of a road."""
+    return tuple((leg.bearing, leg.lanes_in, leg.lanes_out) for leg in some)
+
+
+def turns_of(some: Iterable[Leg]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Uses of the lanes of every leg that has turn lanes, from the right curb."""
+    uses = ((leg.bearing, tuple(_THROUGH.get(turn, turn) for turn in leg.turns_in)) for leg in some)
+    return tuple((bearing, turns) for bearing, turns in uses if {"left", "right"} & {*turns})
+
+
+def curves_of(some: Iterable[Leg]) -> tuple[tuple[str, str], ...]:
+    """Bends by bearing."""
+    return tuple((leg.bearing, leg.curve) for leg in some if leg.curve != "none")
+
+
+def control_of(legs: Iterable[Leg]) -> tuple[tuple[str, str], ...]:
+    """What controls each leg that is controlled."""
+    return tuple(sorted((leg.bearing, leg.control) for leg in legs if leg.control != "none"))
+
+
+def _sorted(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    return tuple(sorted(sides.items()))
+
+
+def vehicles_of(crash: CrashFacts) -> frozenset[str]:
+    """Everybody whom the rules know by an id."""
+    return frozenset([*(v.id for v in crash.vehicles), *(o.id for o in crash.others)])

@@ -1,0 +1,231 @@
+"""A reading of a numbered report with what a model's answer to the whole report knows better, field by field.
+
+Rules and model make different errors: the rules miss wordings, the model's values are sometimes those of another
+sentence. Where both agree that is the value. Where they differ, or the rules have none, `fusion.model_right` says how
+likely the model is right, from the model's probability and from whether the text tells the rules' value outright; its
+figures are fitted on reports that are not scored (`python -m benchmarks.outside --fit`). A road is then laid out with
+the model's legs or lanes only if everybody can drive on it as read. Every value that is taken is a fact of the basis
+"model".
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+from sgcad_core.facts import Fact
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
+from sgcad_core.narrative.claims import Claim, Claims, kind_of, model_claims, rules_claim, vehicles_of
+from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.fusion import FILLS, model_right
+from sgcad_core.narrative.lanes import LaneFacts
+from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.specs import Area, Compass, RoadLayout
+
+if TYPE_CHECKING:
+    from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
+    from sgcad_core.narrative.reading import Reading
+    from sgcad_core.opinion import Answered, Opinion, Weights
+
+_ROAD = ("legs", "lanes", "turns", "curve")
+"""Fields that a layout carries and no fact of a road holds."""
+_TURNS = ("turn_left", "turn_right", "u_turn")
+_LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
+"""Kinds of junctions whose layouts the embedded model has learned."""
+
+
+class Taken(NamedTuple):
+    """A value of the model's that is taken, and how likely it is right."""
+
+    value: Any
+    p: float
+
+
+def whole(reading: Reading, opinion: Opinion) -> Reading:
+    """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
+    if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
+        return reading
+    taken = decided(rules_claim(reading), model_claims(opinion.answered), opinion.weights, opinion.takes)
+    crash, used = _crash(reading.crash, taken)
+    roads, laid = _roads(replace(reading.roads, crash=crash), taken, opinion.answered)
+    if not (used | laid):
+        return reading
+    facts = [_fact(key, taken[key]) for key in taken if key in used | laid]
+    names = {fact.field for fact in facts}
+    kept = tuple(fact for fact in reading.facts if fact.field not in names)
+    return replace(reading, crash=crash, roads=replace(roads, crash=crash), facts=(*kept, *facts))
+
+
+def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes: float) -> dict[str, Taken]:
+    """The model's values that are taken: not those that both have, and none of a kind without weights."""
+    found = {}
+    for key, said in model.items():
+        weight, rule = weights.get(kind_of(key)), rules.get(key)
+        if weight is None or (rule is not None and same(key, rule.value, said.value)):
+            continue
+        p = model_right(weight, said.p, told=rule is not None and rule.told)
+        if p >= (takes if rule is not None else FILLS):
+            found[key] = Taken(said.value, p)
+    return found
+
+
+def same(key: str, one: Any, other: Any) -> bool:
+    """Whether two values of a field are the same; a speed to one mph, since it is told in ranges and in km/h."""
+    return abs(one - other) <= 1 if kind_of(key) == "speed" else bool(one == other)
+
+
+def _fact(key: str, one: Taken) -> Fact:
+    name, _, of = key.partition(".")
+    field = f"vehicles.{of}.{_NAMES.get(name, name)}" if name in _VEHICLE else f"answered.{key}"
+    value = one.value if isinstance(one.value, str | int | bool) else str(one.value)
+    return Fact(
+        field=field, value=value, basis="model", status="inferred", rule="second opinion", confidence=round(one.p, 3)
+    )
+
+
+_NAMES = {"exit": "exit_heading", "speed": "speed_mph"}
+
+
+# ------------------------------------------------------------------ who moved how, who met whom
+def _crash(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[CrashFacts, set[str]]:
+    """The crash with the values that fit into it, and their fields."""
+    used: set[str] = set()
+    vehicles = []
+    for v in crash.vehicles:
+        for name, change in _VEHICLE.items():
+            if (one := taken.get(f"{name}.{v.id}")) is not None:
+                v = change(v, one.value)
+                used.add(f"{name}.{v.id}")
+        vehicles.append(v)
+    oriented = crash.oriented or any(kind_of(key) == "heading" for key in used)
+    crash = replace(crash, vehicles=tuple(vehicles), oriented=oriented)
+    for key in ("light", "weather", "surface"):
+        if key in taken:
+            crash = replace(crash, **{key: taken[key].value})
+            used.add(key)
+    met = _met(crash, taken)
+    return (crash, used) if met is None else (replace(crash, contacts=met[0]), used | met[1])
+
+
+def _met(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[tuple[ContactFacts, ...], set[str]] | None:
+    """The contacts with another first one, or with other sides of it."""
+    if not crash.contacts or crash.gap:
+        return None
+    first, rest = crash.contacts[0], crash.contacts[1:]
+    used = {key for key in ("contact", "areas") if key in taken}
+    if "contact" in taken:
+        pair = taken["contact"].value
+        if not {*pair} <= vehicles_of(crash) or ("areas" not in taken and {*pair} != {first.striker, first.struck}):
+            return None
+        rest = tuple(c for c in crash.contacts if {c.striker, c.struck} != {*pair})
+        sides = {first.striker: first.striker_area, first.struck: first.struck_area}
+        first = replace(first, striker=pair[0], struck=pair[1], stated=True)
+        if {*pair} == {*sides}:
+            first = replace(first, striker_area=sides[pair[0]], struck_area=sides[pair[1]])
+    if "areas" in taken:
+        sides = cast("dict[str, Area]", dict(taken["areas"].value))
+        if {*sides} != {first.striker, first.struck}:
+            return None
+        mine, theirs = sides[first.striker], sides[first.struck]
+        first = replace(
+            first, striker_area=mine, struck_area=theirs, areas_stated=True, striker_may=(mine,), struck_may=(theirs,)
+        )
+    return ((first, *rest), used) if used else None
+
+
+def _moved(v: VehicleFacts, maneuver: Any) -> VehicleFacts:
+    """With another maneuver; where it was to turn to belongs to the maneuver before."""
+    gone = {} if maneuver in _TURNS else {"exit_heading": None, "meant": None}
+    return replace(v, maneuver=maneuver, maneuver_stated=True, from_stop=False, **gone)
+
+
+_VEHICLE: Mapping[str, Callable[[VehicleFacts, Any], VehicleFacts]] = {
+    "kind": lambda v, kind: replace(v, kind=kind),
+    "maneuver": _moved,
+    "heading": lambda v, way: replace(v, heading=way, heading_stated=True),
+    "exit": lambda v, way: replace(v, exit_heading=way),
+    "lane": lambda v, lane: replace(v, lane=lane, lane_word=None),
+    "speed": lambda v, mph: replace(v, speed_mph=mph),
+}
+
+
+# ------------------------------------------------------------------ roads
+def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tuple[RoadFacts, set[str]]:
+    """The roads with the values that fit, and their fields."""
+    if facts.junction.kind not in _LEARNED or facts.closed or facts.opening or facts.crash.gore:
+        return facts, set()
+    used = {key for key in taken if kind_of(key) in _ROAD}
+    if used and not _carries(said.layout, facts.crash):
+        used = set()
+    if "legs" in used:
+        facts = replace(facts, junction=_junction(facts, said.layout))
+    if "control" in taken:
+        facts = replace(facts, junction=replace(facts.junction, **_controlled(taken["control"].value)))
+        used.add("control")
+    for key in taken:
+        name, _, axis = key.partition(".")
+        if name in ("median", "limit", "lanes"):
+            facts = _with_road(facts, cast("Compass", axis), _CHANGES[name], taken[key].value)
+            used |= {key} if name != "lanes" else set()
+    if not used & {key for key in taken if kind_of(key) in _ROAD}:
+        return facts, used
+    return replace(facts, answered=said.layout, taken=frozenset(key for key in used if kind_of(key) in _ROAD)), used
+
+
+def _carries(layout: RoadLayout, crash: CrashFacts) -> bool:
+    """Whether everybody who moves can come in as they head, and go out where they turn to."""
+    ways_in = {leg.bearing for leg in layout.legs if leg.lanes_in}
+    ways_out = {leg.bearing for leg in layout.legs if leg.lanes_out}
+    comes = {turned(v.heading, 180) for v in crash.vehicles if v.heading and v.maneuver != "backing"}
+    goes = {v.exit_heading for v in crash.vehicles if v.exit_heading}
+    both = ways_in | ways_out  # who is on the wrong side comes in where others go out
+    return comes <= both and goes <= both
+
+
+def _junction(facts: RoadFacts, layout: RoadLayout) -> Any:
+    """The junction of a layout's legs."""
+    kinds = Counter(leg.kind for leg in layout.legs)
+    joining = next((leg for leg in layout.legs if leg.kind in (DRIVEWAY, RAMP)), None)
+    count = len(layout.legs)
+    kind: JunctionKind = "none" if count < 3 else FOUR_LEG if count > 3 else T
+    if joining is not None and count == 3 and kinds[joining.kind] == 1:
+        kind = cast("JunctionKind", joining.kind)
+    axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
+    alone = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
+    return replace(facts.junction, kind=kind, stem=alone if count == 3 else None, stated=False, stem_stated=False)
+
+
+def _controlled(value: Any) -> dict[str, Any]:
+    """A junction's control and the legs that it stops."""
+    controls = dict(value)
+    if not controls:
+        return {"control": "none", "stopped": ()}
+    kind = Counter(controls.values()).most_common(1)[0][0]
+    return {"control": kind, "stopped": tuple(controls) if kind in ("stop", "yield") else ()}
+
+
+def _with_road(facts: RoadFacts, axis: Compass, change: Callable[[RoadFact, Any], RoadFact], value: Any) -> RoadFacts:
+    """The facts with a change of the street on an axis; where none is told on it, with one."""
+    known = any(road.axis == axis for road in facts.streets)
+    roads = facts.roads if known else (*facts.roads, RoadFact(axis, "road", LaneFacts(), ()))
+    streets = [road for road in roads if road.axis == axis and road in facts.streets] or [roads[-1]]
+    return replace(facts, roads=tuple(change(road, value) if road is streets[0] else road for road in roads))
+
+
+def _uncounted(road: RoadFact, _: Any) -> RoadFact:
+    """What the text seemed to count is not held against the network."""
+    return replace(road, lanes=replace(road.lanes, total=None, each_way=None, toward={}, turns={}, own=None))
+
+
+_CHANGES: Mapping[str, Callable[[RoadFact, Any], RoadFact]] = {
+    "lanes": _uncounted,
+    "median": lambda road, kind: replace(
+        road, lanes=replace(road.lanes, median=None if kind == "none" else kind, divided=kind != "none")
+    ),
+    "limit": lambda road, mph: replace(road, speed_limit_mph=mph),
+}
+
+__all__ = ["Claim", "Taken", "decided", "same", "whole"]
