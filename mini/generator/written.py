@@ -97,7 +97,7 @@ def _turned_fact(fact: str, by: int) -> str:
 def _turned_word(found: re.Match[str], quarters: int) -> str:
     """A compass word turned; a single letter only where it stands for a direction of travel ("N/B")."""
     if long := found["long"]:
-        if found["end"] not in ("", "bound", "ern", "erly", "ward", "wards", "ernmost", "er"):
+        if found["end"].lower() not in ("", "bound", "ern", "erly", "ward", "wards", "ernmost", "er"):
             return found[0]
         return _like(long, _moved(long.lower(), quarters)) + found["end"]
     short = found["short"]
