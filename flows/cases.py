@@ -20,7 +20,7 @@ from sgcad_core import settings
 from sgcad_core.config import Config
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.interfaces import Plugin
-from sgcad_core.opinion import LEARNED, WEIGHTS, WHOLE
+from sgcad_core.opinion import LEARNED, WEIGHTS
 from sgcad_core.report_files import MAX_FILE_BYTES, facts_file, files_below, is_regular
 from sgcad_core.strangers import code_of
 
@@ -136,7 +136,7 @@ def config_digest(config: Config) -> str:
 
 def opinion_digests(config: Config) -> list[str]:
     """Of the weights of the learned second reader, where a config wants it."""
-    return [_files_digest([WEIGHTS], WEIGHTS.parent)] if config.second_opinion in (LEARNED, WHOLE) else []
+    return [_files_digest([WEIGHTS], WEIGHTS.parent)] if config.second_opinion == LEARNED else []
 
 
 def _plugins(config: Config) -> Iterator[Plugin]:

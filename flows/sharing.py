@@ -72,8 +72,7 @@ def _opinion(config: Config) -> dict[str, Any]:
     if config.second_opinion == opinion.LEARNED:
         return _about([], asks_model=False) | {"weights": cases.opinion_digests(config)}
     asked = [p for p in (config.backbone, config.decoder) if p is not None]
-    weights = cases.opinion_digests(config)
-    return _about(asked, asks_model=True) | {"prompt": config.second_opinion, "seed": config.seed, "weights": weights}
+    return _about(asked, asks_model=True) | {"prompt": config.second_opinion, "seed": config.seed}
 
 
 def _stage(config: Config, writer: Any, stage: str) -> str:

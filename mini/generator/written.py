@@ -69,9 +69,11 @@ def _of_file(file: Path) -> Iterator[Written]:
 
 def crash_of(given: dict[str, Any]) -> Crash:
     """A crash from its fields as JSON."""
-    parts = {"legs": Leg, "actors": Actor, "contacts": Contact, "accesses": Access}
-    rest = {key: value for key, value in given.items() if key not in parts}
-    return Crash(**rest, **{key: [kind(**one) for one in given[key]] for key, kind in parts.items()})
+    parts: dict[str, Any] = {
+        key: [kind(**one) for one in given[key]]
+        for key, kind in (("legs", Leg), ("actors", Actor), ("contacts", Contact), ("accesses", Access))
+    }
+    return Crash(**(given | parts))
 
 
 # ------------------------------------------------------------------ other ways to see it

@@ -84,5 +84,5 @@ def thin(text: str) -> Gap:
     to invent it."""
     if not rule("gaps.crash_word").search(text):
         return _NO_CRASH
-    return Gap("the narrative tells neither who struck whom nor how anybody traveled",
-               ("who struck whom, and with which sides", "in which direction each vehicle traveled"), unread=True)  # fmt: skip
+    reason = "the narrative tells neither who struck whom nor how anybody traveled"
+    return Gap(reason, ("who struck whom, and with which sides", "in which direction each traveled"), unread=True)
