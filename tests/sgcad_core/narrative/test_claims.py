@@ -7,8 +7,8 @@ from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 
 TEXT = (
     "The crash occurred at a four-leg intersection controlled by a traffic signal. The north/south road has two lanes "
-    "in each direction and a posted speed limit of 35 mph. V1, a 2004 Honda Civic, was traveling north in the left lane. "
-    "V2 was traveling south and turned left. The front of V1 struck the right side of V2. It was dark."
+    "in each direction and a posted speed limit of 35 mph. V1, a 2004 Honda Civic, was traveling north in the left "
+    "lane. V2 was traveling south and turned left. The front of V1 struck the right side of V2. It was dark."
 )
 LAYOUT = RoadLayout(
     legs=(
