@@ -199,4 +199,5 @@ def _roads(roads: RoadFacts, given: Given) -> RoadFacts:
         update |= {"stem": given["junction.stem"], "stem_stated": True}
     if "junction.control" in given:
         update |= {"control": given["junction.control"]}
-    return replace(roads, junction=replace(junction, **update)) if update else roads
+    taken = roads.taken - {"legs"} if {"junction.kind", "junction.stem"} & given.keys() else roads.taken
+    return replace(roads, junction=replace(junction, **update), taken=taken) if update else roads

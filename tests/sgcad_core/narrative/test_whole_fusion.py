@@ -171,6 +171,21 @@ def test_a_report_is_read_with_its_opinion() -> None:
     assert one.kind == "bus"
 
 
+def test_a_person_wins_over_the_model() -> None:
+    from sgcad_core.edits import Edit
+    from sgcad_core.narrative.mended import mended
+
+    tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1))
+    found = told(TEXT, answered(tee, kind="bus"))
+    assert found.roads.junction.kind == "t"
+    said = [Edit(field="junction.kind", value="none"), Edit(field="vehicles.V1.kind", value="van")]
+    mine = mended(found, said)
+    one = mine.crash.vehicle("V1")
+    assert one is not None
+    assert one.kind == "van"
+    assert len(layout_of_facts(mine.roads).legs) == 2
+
+
 @given(st.integers(0, 60), st.integers(0, 60))
 def test_speeds_are_the_same_to_one_mph(one: int, other: int) -> None:
     assert same("speed.V1", one, other) is (abs(one - other) <= 1)
