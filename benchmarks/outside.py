@@ -6,8 +6,10 @@
 `benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
 nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
 only totals are. `--fit` fits the weights of the combiner on the seen half; its own row there is cross-fitted. Fields
-are those of `sgcad_core.narrative.claims`; those that the text does not tell do not count. The model's answers are kept
-in --answers. `--rules` asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
+are those of `sgcad_core.narrative.claims`; those that the text does not tell do not count. "fused, p": how many the
+combiner has right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected
+calibration error of the combiner where both have a value, in ten bins. The model's answers are kept in --answers.
+`--rules` asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
 """
 
 from __future__ import annotations
@@ -17,21 +19,23 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from math import comb
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from benchmarks.incidents import by_hash
-from benchmarks.opinions import _logistic
+from benchmarks.opinions import _logistic, calibration_error
 from flows.chain import ask_of
 from mini.generator.report import Report
 from mini.generator.written import Written, load, report_of
 from sgcad_core.asking.opinion import load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
-from sgcad_core.narrative.claims import KINDS, Claims, kind_of, model_claims, rules_claim
+from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, model_claims, rules_claim
 from sgcad_core.narrative.compass import COMPASS
+from sgcad_core.narrative.fusion import model_right
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import same
 from sgcad_core.narrative.whole_fusion import whole as fused
@@ -52,6 +56,11 @@ class Case(NamedTuple):
     truth: Claims
     reading: Reading
     answered: Answered | None
+
+    @property
+    def claims(self) -> tuple[Claims, Claims]:
+        """Those of the rules and of the model."""
+        return rules_claim(self.reading), model_claims(self.answered) if self.answered else {}
 
     @property
     def blind(self) -> bool:
@@ -118,23 +127,28 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
     """
     rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
     marks: dict[str, list[float]] = defaultdict(list)
+    agreed: dict[str, list[bool]] = defaultdict(list)
     for case in some:
-        rules, model = rules_claim(case.reading), model_claims(case.answered) if case.answered else {}
+        rules, model = case.claims
         for key, said in model.items():
             want, rule = case.truth.get(key), rules.get(key)
-            if want is None or (rule is not None and same(key, rule.value, said.value)):
+            if want is None:
+                continue
+            if rule is not None and same(key, rule.value, said.value):
+                agreed[kind_of(key)].append(right(key, said.value, want.value))
                 continue
             mine, theirs = rule is not None and right(key, rule.value, want.value), right(key, said.value, want.value)
             if rule is None or mine != theirs:
                 p = min(max(said.p, 1e-6), 1 - 1e-6)
                 rows[kind_of(key)].append((1.0, float(np.log(p / (1 - p))), float(rule is not None and rule.told)))
                 marks[kind_of(key)].append(float(theirs))
-    return {kind: _weights(rows[kind], marks[kind]) for kind in KINDS if rows[kind]}
+    return {kind: _weights(rows[kind], marks[kind], agreed[kind]) for kind in KINDS if rows[kind]}
 
 
-def _weights(rows: Sequence[tuple[float, float, float]], marks: Sequence[float]) -> Weights:
+def _weights(rows: Sequence[tuple[float, float, float]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
     differ, slope, told = (round(float(x), 3) for x in _logistic(np.array(rows), np.array(marks)))
-    return Weights(differ=differ, slope=slope, told=told, agree=None)
+    agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
+    return Weights(differ=differ, slope=slope, told=told, agree=round(agree, 3))
 
 
 def right(key: str, got: object, want: object) -> bool:
@@ -146,8 +160,9 @@ def right(key: str, got: object, want: object) -> bool:
 def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -> Iterator[str]:
     """Lines by kind of field; `weights` by id of the case."""
     marks: dict[str, list[tuple[bool, bool, bool]]] = defaultdict(list)
+    sure: dict[str, list[tuple[float, bool]]] = defaultdict(list)
     for case in some:
-        rules, model = rules_claim(case.reading), model_claims(case.answered) if case.answered else {}
+        rules, model = case.claims
         opinion = Opinion(weights=weights[case.id], answered=case.answered)
         both = fused(case.reading, opinion)
         after = rules_claim(both)
@@ -155,13 +170,42 @@ def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) ->
             three = tuple(right(key, c[key].value, want.value) if key in c else False for c in (rules, model, after))
             for kind in (kind_of(key), "all"):
                 marks[kind].append(three)  # type: ignore[arg-type]
-    yield "| field | n | rules | model | fused | either |"
-    yield "|---|---|---|---|---|---|"
+            p = confidence(key, rules.get(key), model.get(key), opinion)
+            if p is not None:
+                sure[kind_of(key)].append((p, three[2]))
+    yield "| field | n | rules | model | fused | either | fused, p | calibration error |"
+    yield "|---|---|---|---|---|---|---|---|"
     for kind in (*KINDS, "all"):
         if found := marks[kind]:
             shares = [sum(one[i] for one in found) / len(found) for i in range(3)]
             either = sum(one[0] or one[1] for one in found) / len(found)
-            yield f"| {kind} | {len(found)} | " + " | ".join(f"{x:.3f}" for x in (*shares, either)) + " |"
+            told = " | ".join(f"{x:.3f}" for x in (*shares, either))
+            error = f"{calibration_error(sure[kind]):.3f}" if sure[kind] else ""
+            yield f"| {kind} | {len(found)} | {told} | {versus([(one[0], one[2]) for one in found])} | {error} |"
+
+
+def versus(pairs: Sequence[tuple[bool, bool]]) -> str:
+    """How many the second has right and the first wrong, the other way round, and the exact McNemar test's p."""
+    better = sum(b and not a for a, b in pairs)
+    worse = sum(a and not b for a, b in pairs)
+    return f"+{better} -{worse}, {_sign_test(better, worse):.3f}"
+
+
+def _sign_test(better: int, worse: int) -> float:
+    """Two-sided probability of so uneven a split of fair coins."""
+    n, least = better + worse, min(better, worse)
+    return min(1.0, 2 * sum(comb(n, k) for k in range(least + 1)) / 2**n) if n else 1.0
+
+
+def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinion) -> float | None:
+    """How sure the combiner is of what it takes; None where one of both has no value."""
+    weights = opinion.weights.get(kind_of(key))
+    if weights is None or rule is None or said is None:
+        return None
+    if same(key, rule.value, said.value):
+        return weights.agree
+    p = model_right(weights, said.p, rule.told)
+    return p if p >= opinion.takes else 1 - p
 
 
 def rules_alone(texts: Sequence[Written], show: str | None) -> Iterator[str]:
@@ -214,7 +258,7 @@ def main() -> None:
     lines += [f"blind half, {len(blind)} texts", *table(blind, {case.id: shipped for case in blind})]
     print("\n".join(lines))  # noqa: T201 - a command prints
     if options.fit is not None:
-        weights = {kind: one.model_dump(exclude={"agree"}) for kind, one in shipped.items()}
+        weights = {kind: one.model_dump() for kind, one in shipped.items()}
         options.fit.write_text(json.dumps(weights, indent=1) + "\n", encoding="utf-8")
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from benchmarks import outside
-from benchmarks.outside import Case, cases, crossed, fit, right, rules_alone, table, truth_of
+from benchmarks.outside import Case, cases, confidence, crossed, fit, right, rules_alone, table, truth_of, versus
 from mini.generator.written import Written, load, report_of, shipped
-from sgcad_core.narrative.claims import kind_of, model_claims
-from sgcad_core.opinion import Answered
+from sgcad_core.narrative.claims import Claim, kind_of, model_claims
+from sgcad_core.opinion import Answered, Opinion, Weights
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 TEXTS = load(outside.FOLDER)[::12]
@@ -28,7 +28,7 @@ PERFECT = {one.id: answer(one) for one in TEXTS}
 
 def rows(lines: list[str]) -> Mapping[str, list[float]]:
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
-    return {cell[0]: [float(x) for x in cell[1:]] for cell in cells if cell[0] != "field"}
+    return {cell[0]: [float(x) for x in cell[1:6]] for cell in cells if cell[0] != "field"}
 
 
 def test_measured_narratives_are_others_than_those_that_train() -> None:
@@ -76,6 +76,21 @@ def test_a_speed_is_right_to_one_mph(key: str, got: object, want: object, same: 
     assert right(key, got, want) is same
 
 
+def test_the_test_of_a_split_is_exact() -> None:
+    assert versus([(False, True)] * 6).endswith("0.031")
+    assert versus([(True, False), (False, True)]) == "+1 -1, 1.000"
+    assert versus([]) == "+0 -0, 1.000"
+
+
+def test_confidence_is_of_what_is_taken() -> None:
+    weights = {"kind": Weights(differ=-2.0, slope=0.0, agree=0.97)}
+    opinion = Opinion(weights=weights)
+    assert confidence("kind.V1", Claim("car"), Claim("car"), opinion) == 0.97
+    assert confidence("kind.V1", Claim("car"), Claim("bus"), opinion) == pytest.approx(0.881, abs=1e-3)
+    assert confidence("kind.V1", None, Claim("bus"), opinion) is None
+    assert confidence("lane.V1", Claim(1), Claim(2), opinion) is None
+
+
 def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkeypatch, capsys) -> None:
     folder = tmp_path / "texts"
     folder.mkdir()
@@ -85,8 +100,6 @@ def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkey
     asked: list[str] = []
 
     def whole(report, ask):
-        from sgcad_core.opinion import Opinion
-
         asked.append(report.case)
         return report.model_copy(update={"opinion": Opinion(answered=answer(some[report.narrative]))})
 
