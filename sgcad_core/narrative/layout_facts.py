@@ -21,6 +21,7 @@ from sgcad_core.narrative.layout_places import (
     offset,
     parking_lot,
     skewed,
+    with_approaches,
     with_closed,
     with_edges,
     with_opening,
@@ -57,7 +58,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        roads = answered_layout(self.facts, self._roads_alone())
+        roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 
     def _roads_alone(self) -> RoadLayout:

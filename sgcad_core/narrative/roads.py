@@ -12,6 +12,7 @@ from typing import Literal
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.approaches import Approaches, approaches_of
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
@@ -84,6 +85,8 @@ class RoadFacts:
     """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
+    approaches: Approaches = field(default_factory=Approaches)
+    """Lanes of single approaches, where they are listed."""
     answered: RoadLayout | None = None
     """The layout that a model answered, where some of it is `taken` (fields of `sgcad_core.narrative.claims`)."""
     taken: frozenset[str] = frozenset()
@@ -129,7 +132,8 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves)
+    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves,
+                     approaches_of(told))
 
 
 def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:

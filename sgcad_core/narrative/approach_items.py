@@ -1,0 +1,123 @@
+"""The parts of a sentence that lists lanes of approaches: whose lanes, how many, for what, in or out.
+
+Marks of legs ("from the north", "southbound drivers", "every leg"), counts of lanes with their uses, and signs of the
+direction. Which leg gets what is decided in `sgcad_core.narrative.approaches`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
+
+from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.text import NUMBERS
+from sgcad_core.specs import Turn
+
+Use = Literal["R", "T", "L"]
+Uses = frozenset[str]
+
+_TURNS: dict[Uses, Turn] = {
+    frozenset("R"): "right", frozenset("RT"): "through_right", frozenset("T"): "through",
+    frozenset("LT"): "left_through", frozenset("L"): "left", frozenset("LR"): "left_right", frozenset("LRT"): "any",
+}  # fmt: skip
+_FROM_CURB: tuple[Turn, ...] = ("right", "through_right", "left_right", "any", "through", "left_through", "left")
+
+
+class Token(NamedTuple):
+    """A part of a sentence, by the rule that reads it."""
+
+    kind: str
+    start: int
+    end: int
+    match: re.Match[str]
+    use: str = ""
+
+
+def tokens(text: str) -> list[Token]:
+    """Parts in order, none within another; of two that begin at one place the longer, else the one of lower weight."""
+    found = [
+        (m.start(), -m.end(), place, Token(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
+        for place, by in enumerate(of_role("approach_token"))
+        for m in by.finditer(text)
+        if m.end() > m.start()
+    ]
+    kept: list[Token] = []
+    for _, _, _, token in sorted(found, key=lambda one: one[:3]):
+        if not kept or token.start >= kept[-1].end:
+            kept.append(token)
+    return kept
+
+
+@dataclass
+class Item:
+    """Some lanes: how many, the uses of each as far as told (`soft`: joined by "and" to the item before)."""
+
+    count: int
+    uses: list[str] = field(default_factory=list)
+    way: Literal["", "in", "out", "both"] = ""
+    toward: str = ""
+    """The direction of travel that its words name, "northbound"."""
+    bare: bool = False
+    soft: bool = False
+    which: bool = False
+    start: int = 0
+    end: int = 0
+    after: str = ""
+    """What stands between it and the next item."""
+
+
+def count_of(word: str | None) -> int:
+    """3 of "3", "three" and "only three"; 1 of "a", "another", None."""
+    last = (word or "one").lower().split()[-1]
+    return int(last) if last.isdigit() else NUMBERS.get(last, 1)
+
+
+# ------------------------------------------------------------------ uses of the lanes of one approach
+def lane_uses(items: list[Item], text: str) -> tuple[int, tuple[Turn, ...]]:
+    """Lanes towards the junction and, where turn lanes are told, the use of each from the right curb."""
+    total, rest = _total(items, text)
+    elements = _elements(rest, total)
+    told = sum(n for _, n in elements)
+    if total is None:
+        total = told
+    elif told < total:
+        elements = [*elements, (frozenset("T"), total - told)]
+    elif told > total:
+        total = told
+    uses = [_TURNS[used or frozenset("T")] for used, n in elements for _ in range(n)]
+    turning = any(use in ("right", "left", "left_right") for use in uses)
+    shared = any(use != "through" for use in uses)
+    return total, tuple(sorted(uses, key=_FROM_CURB.index)) if turning or (shared and total > 1) else ()
+
+
+def _total(items: list[Item], text: str) -> tuple[int | None, list[Item]]:
+    """The number of all lanes where one comes before the list of what they are for, and the list."""
+    first, *rest = items
+    if first.uses or first.bare or first.which or not rest:
+        return None, items
+    if rule("approaches.adding").search(first.after) and not _fits(first.count, rest):
+        return None, items
+    if any(item.uses for item in rest):
+        return first.count, rest
+    return None, items
+
+
+def _fits(total: int, items: list[Item]) -> bool:
+    return sum(item.count for item in items) == total and total > 1
+
+
+def _elements(items: list[Item], total: int | None) -> list[tuple[Uses, int]]:
+    """Uses and number of each kind of lane; "and" joins uses of one lane or two lanes, as the total needs."""
+    split = [(frozenset(item.uses), item.count) for item in items]
+    joined: list[tuple[Uses, int]] = []
+    for item in items:
+        if item.soft and item.bare and joined:
+            used, n = joined[-1]
+            joined[-1] = (used | frozenset(item.uses), n)
+        else:
+            joined.append((frozenset(item.uses), item.count))
+    if total is not None and sum(n for _, n in split) == total:
+        return split
+    return joined
