@@ -64,6 +64,18 @@ class Approaches:
         """Bearings of the legs of which lanes that come in or go out are told, each by its name."""
         return tuple(b for b in COMPASS if b in self.legs)
 
+    @property
+    def crossing(self) -> bool:
+        """Whether both legs of two roads are told."""
+        whole = {axis_of(b) for b in self.legs if turned(b, 180) in self.legs} | {*self.axes}
+        return len(whole) > 1
+
+    @property
+    def alone(self) -> Compass | None:
+        """The leg of a T that has none across, where both legs of the other road are told too."""
+        sides = [b for b in self.legs if turned(b, 180) not in self.legs and axis_of(b) not in self.axes]
+        return sides[0] if len(sides) == 1 and len(self.legs) == 3 else None
+
 
 @dataclass
 class _Mark:
