@@ -67,6 +67,40 @@ class Item:
     after: str = ""
     """What stands between it and the next item."""
 
+    @property
+    def plain(self) -> bool:
+        """Whether only a number is told."""
+        return not (self.uses or self.way or self.bare or self.which)
+
+
+def items_of(part: Token, text: str, listing: bool) -> list[Item]:
+    """The lanes of a count: "two through lanes"; "right-turn and left-turn lanes" are one each. Nothing of "the lane".
+
+    `listing`: within a list, where "right lane" is one too.
+    """
+    words = part.match.groupdict()
+    if part.kind == "which":
+        number = 2 if words["which"].endswith(("two", "others")) else 1
+        return [Item(number, which=True, start=part.start, end=part.end)]
+    if part.kind == "number" and rule("approaches.numbered").search(text[: part.start]):
+        return []
+    mods = (words.get("mods") or "").lower()
+    toward = next((m["way"] for m in rule("control.way").finditer(mods)), "")
+    inner = tokens(mods)
+    uses, out = [u for t in inner if t.kind == "use" for u in t.use], any(t.kind == "out" for t in inner)
+    count = (words.get("count") or "").lower()
+    if part.kind == "lanes" and (count in ("the", "both") or (not count and not _names_use(mods, listing))):
+        return []
+    way: Literal["", "out"] = "out" if out else ""
+    single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
+    if part.kind == "lanes" and len(uses) > 1 and not single and (not count or count_of(count) in (1, len(uses))):
+        return [Item(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
+    return [Item(count_of(count), uses, way, toward, start=part.start, end=part.end)]
+
+
+def _names_use(mods: str, listing: bool) -> bool:
+    return bool(rule("approaches.turning" if not listing else "approaches.any_use").search(mods))
+
 
 def count_of(word: str | None) -> int:
     """3 of "3", "three" and "only three"; 1 of "a", "another", None."""
@@ -109,15 +143,14 @@ def _fits(total: int, items: list[Item]) -> bool:
 
 
 def _elements(items: list[Item], total: int | None) -> list[tuple[Uses, int]]:
-    """Uses and number of each kind of lane; "and" joins uses of one lane or two lanes, as the total needs."""
+    """Uses and number of each kind of lane; "straight and right" are uses of one lane unless the total needs two."""
     split = [(frozenset(item.uses), item.count) for item in items]
-    joined: list[tuple[Uses, int]] = []
-    for item in items:
-        if item.soft and item.bare and joined:
-            used, n = joined[-1]
-            joined[-1] = (used | frozenset(item.uses), n)
-        else:
-            joined.append((frozenset(item.uses), item.count))
     if total is not None and sum(n for _, n in split) == total:
         return split
+    joined: list[tuple[Uses, int]] = []
+    for item in items:
+        if item.soft and item.bare and joined and joined[-1][0] == {"T"} and item.uses == ["R"]:
+            joined[-1] = (frozenset("RT"), joined[-1][1])
+        else:
+            joined.append((frozenset(item.uses), item.count))
     return joined

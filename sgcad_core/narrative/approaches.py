@@ -7,15 +7,14 @@ a road by directions of travel are read in `sgcad_core.narrative.lanes`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.approach_items import Item, Token, count_of, lane_uses, tokens
+from sgcad_core.narrative.approach_items import Item, Token, items_of, lane_uses, tokens
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.compass import COMPASS, WORDS, compass_of, turned
+from sgcad_core.narrative.compass import COMPASS, compass_of, turned
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.specs import Compass, Turn
 
@@ -113,8 +112,6 @@ class _Reader:
         self.mark = _Mark()
         self.scope: Compass | None = None
         self.last: Approach = Approach()
-        self.heading: Literal["", "in", "out"] = ""
-        """What a list stands under: "Lanes out:"."""
 
     def result(self) -> Approaches:
         """All that was found."""
@@ -134,58 +131,18 @@ class _Reader:
     def sentence(self, text: str) -> None:
         """Take what a sentence tells."""
         parts = tokens(text)
-        if not any(p.kind in ("lanes", "number", "same") for p in parts):
+        if any(p.kind in ("lanes", "which", "use", "same") for p in parts):
+            for clause in _Clauses(self, text).read(parts):
+                self._take(clause, text)
+        else:
             self._scopes(parts)
-            return
-        clauses = list(self._clauses(parts, text))
-        for mark, items, same in clauses:
-            self._take(mark, items, same, text)
 
     def _scopes(self, parts: Sequence[Token]) -> None:
         for part in parts:
-            if part.kind == "axis":
-                self.scope = self._axis(part)
+            if part.kind in ("axis", "legs"):
+                self.mark_of(part)
 
-    def _axis(self, part: Token) -> Compass | None:
-        one, two = compass_of(part.match["one"]), compass_of(part.match["two"])
-        return axis_of(one) if one and two and axis_of(one) == axis_of(two) and one != two else None
-
-    def _clauses(self, parts: Sequence[Token], text: str) -> Iterator[tuple[_Mark, list[Item], bool]]:
-        """Stretches of lanes of the same legs."""
-        mark, items, same, driven = _Mark(self.mark.keys, self.mark.toward), list[Item](), False, False
-        previous: Token | None = None
-        self.heading = ""
-        for part in parts:
-            gap = text[previous.end : part.start] if previous else text[: part.start]
-            if part.kind == "vehicle":
-                driven = True
-            elif part.kind == "sep":
-                if part.match[0] in ";.":
-                    driven = False
-                continue
-            elif part.kind in ("legs", "ways", "axis", "every", "each", "stem", "place"):
-                found = self._mark_of(part)
-                if found is None:
-                    continue
-                if part.kind == "place" or _trails(part, parts, items, text):
-                    if items and items[-1].way in ("out", "both") and _near(items[-1], part, text):
-                        yield mark, items[:-1], same
-                        yield found, items[-1:], False
-                        items, same = [], False
-                        self.mark = mark
-                        previous = part
-                        continue
-                if items or same:
-                    yield mark, items, same
-                    items, same = [], False
-                mark = self.mark = found
-            elif not driven:
-                same = self._lane_part(part, items, gap, text) or same
-            previous = part
-        if items or same:
-            yield mark, items, same
-
-    def _mark_of(self, part: Token) -> _Mark | None:
+    def mark_of(self, part: Token) -> _Mark | None:
         """Whose lanes a mark tells."""
         words = part.match.groupdict()
         if part.kind in ("legs", "place"):
@@ -195,7 +152,7 @@ class _Reader:
             keys = tuple(turned(w, 180) for w in _points(words["list"] or words["list2"]))
             mark = _Mark(keys, toward=True)
         elif part.kind == "axis":
-            axis = self._axis(part)
+            axis = _axis(part)
             if axis is None:
                 return None
             mark = _Mark((f"axis {axis}",))
@@ -208,45 +165,9 @@ class _Reader:
         self.scope = mark.axis or self.scope
         return mark
 
-    def _lane_part(self, part: Token, items: list[Item], gap: str, text: str) -> bool:
-        """Add a part to the items; whether it says that all is as before."""
-        last = items[-1] if items else None
-        if part.kind in ("lanes", "number", "which"):
-            _close(last, part, text)
-            items.extend(replace(item, way=item.way or self.heading) for item in _items(part, text))
-        elif part.kind == "use":
-            self._use(part, items, gap)
-        elif part.kind in ("out", "in"):
-            if not items and text[part.end :].startswith(":"):
-                self.heading = "out" if part.kind == "out" else "in"
-            _direct(part, items, text)
-        elif part.kind == "each_way" and last is not None:
-            last.way, last.end = "both", part.end
-        elif part.kind == "same":
-            return True
-        return False
-
-    def _use(self, part: Token, items: list[Item], gap: str) -> None:
-        if not items:
-            return
-        last = items[-1]
-        shares = bool(rule("approaches.sharing").search(gap)) and bool(last.uses)
-        if not last.uses and not last.bare and (last.count == 1 or last.which or not rule("approaches.lists").search(gap)):
-            last.uses.append(part.use)
-            last.end = part.end
-        elif shares and not gap.strip() == "and":
-            last.uses.append(part.use)
-            last.end = part.end
-        elif shares and not last.bare:
-            last.uses.append(part.use)
-            last.end = part.end
-        else:
-            soft = gap.strip() == "and"
-            last.after = last.after or gap
-            items.append(Item(1, [part.use], bare=True, soft=soft, start=part.start, end=part.end))
-
     # -------------------------------------------------------------- what it means
-    def _take(self, mark: _Mark, items: list[Item], same: bool, text: str) -> None:
+    def _take(self, clause: _Clause, text: str) -> None:
+        mark, items, same = clause
         told: dict[str, Approach] = {}
         groups: dict[str, list[Item]] = {}
         for item in items:
@@ -279,6 +200,162 @@ class _Reader:
             self.named.add(key)
 
 
+class _Clause(NamedTuple):
+    """Lanes of the same legs; `same`: they are as those told before."""
+
+    mark: _Mark
+    items: list[Item]
+    same: bool
+
+
+@dataclass
+class _Clauses:
+    """Cuts a sentence into stretches of lanes of the same legs."""
+
+    reader: _Reader
+    text: str
+    items: list[Item] = field(default_factory=list)
+    same: bool = False
+    driven: bool = False
+    """Whether a vehicle was named: the lanes behind it are where it drives."""
+    heading: Literal["", "in", "out"] = ""
+    """What a list stands under: "Lanes out:"."""
+    last: Token | None = None
+    marked: Token | None = None
+    """The last mark, while no lanes follow it."""
+
+    def read(self, parts: Sequence[Token]) -> Iterator[_Clause]:
+        """The stretches in order."""
+        for part in parts:
+            if part.kind == "sep":
+                self.driven = self.driven and part.match[0] not in ";."
+                continue
+            if part.kind in _MARKS or (part.kind == "each_way" and self.items and self.items[-1].way == "out"):
+                yield from self._marked(part)
+            elif part.kind == "vehicle":
+                self.driven = True
+            elif not self.driven:
+                self._lanes(part)
+            self.last = part
+        yield from self._flush()
+
+    def _flush(self) -> Iterator[_Clause]:
+        if self.items or self.same:
+            yield _Clause(self.reader.mark, self.items, self.same and self.marked is not None)
+        self.items, self.same = [], False
+
+    # -------------------------------------------------------------- whose lanes
+    def _marked(self, part: Token) -> Iterator[_Clause]:
+        before = self.reader.mark
+        found = self.reader.mark_of(part)
+        if found is None:
+            return
+        gap = self._gap(part)
+        if self.marked and not self.items and rule("approaches.joint").fullmatch(gap):
+            found = _Mark((*before.keys, *found.keys), found.toward)
+        elif self.items and self._of_last(part, found, before, gap):
+            self.reader.mark = before
+            return
+        elif self.items and self._behind(part, before):
+            yield from self._trailing(part, found, before)
+            return
+        elif self.items:
+            self.reader.mark = before
+            yield from self._flush()
+        self.reader.mark, self.marked = found, part
+
+    def _gap(self, part: Token) -> str:
+        return self.text[self.last.end : part.start] if self.last else self.text[: part.start]
+
+    def _of_last(self, part: Token, found: _Mark, before: _Mark, gap: str) -> bool:
+        """ "two lanes westbound" on a leg that is named: which way these lanes lead."""
+        last = self.items[-1]
+        if part.kind != "ways" or not rule("approaches.beside").fullmatch(gap) or last.toward:
+            return False
+        if before.axis is None or before.axis != found.axis or len(before.keys) > 1 or before.keys[0] not in COMPASS:
+            return False
+        last.toward, last.end = part.match["list"] or part.match["list2"], part.end
+        return True
+
+    def _behind(self, part: Token, before: _Mark) -> bool:
+        """Whether a mark stands behind the lanes of which it tells."""
+        between = self.text[self.items[-1].end : part.start]
+        if rule("approaches.cut").search(between):
+            return False
+        single = all(key in COMPASS for key in before.keys) and before.keys != ()
+        if part.kind in ("every", "each", "each_way"):
+            return True
+        if part.kind == "ways":
+            return bool(rule("approaches.beside").fullmatch(between))
+        return (not single and part.kind in ("place", "legs")) or (part.kind == "place" and self.items[-1].way == "out")
+
+    def _trailing(self, part: Token, found: _Mark, before: _Mark) -> Iterator[_Clause]:
+        """The lanes before the mark are those of its legs; of others before them, if the last go out."""
+        last = self.items[-1]
+        only_last = len(self.items) > 1 and (last.way == "out" or part.kind == "ways")
+        if only_last:
+            self.items, rest = [last], self.items[:-1]
+            yield _Clause(before, rest, self.same)
+        self.same = False
+        self.reader.mark, self.marked = found, None
+        if part.kind in ("place", "legs") or last.way == "out":
+            yield from self._flush()
+            self.reader.mark = before if part.kind in ("place", "legs") else found
+
+    # -------------------------------------------------------------- lanes
+    def _lanes(self, part: Token) -> None:
+        """Add a part to the lanes of this stretch."""
+        last = self.items[-1] if self.items else None
+        if part.kind in ("lanes", "number", "which"):
+            if last is not None and not last.after:
+                last.after = self.text[last.end : part.start]
+            new = items_of(part, self.text, bool(self.items))
+            self.items.extend(replace(item, way=item.way or self.heading) for item in new)
+        elif part.kind == "use":
+            self._use(part)
+        elif part.kind in ("out", "in"):
+            self._directed(part)
+        elif part.kind == "each_way" and last is not None:
+            last.way, last.end = "both", part.end
+            if len(self.items) > 1 and last.count * 2 == self.items[-2].count and self.items[-2].plain:
+                del self.items[-2]  # "two lanes, one each way"
+        elif part.kind == "same":
+            self.same = True
+
+    def _directed(self, part: Token) -> None:
+        """A sign of the direction: of the lanes right before it, or of all that come in the list under it."""
+        way: Literal["in", "out"] = "out" if part.kind == "out" else "in"
+        if not self.items:
+            self.heading = way if self.text[part.end :].startswith(":") else self.heading
+        elif not self.items[-1].way and not rule("approaches.cut").search(self.text[self.items[-1].end : part.start]):
+            self.items[-1].way = way
+
+    def _use(self, part: Token) -> None:
+        gap = self._gap(part)
+        if not self.items:
+            if self.marked and rule("approaches.bare").fullmatch(gap) and "lane" in self.text.lower():
+                self.items.append(Item(1, [*part.use], bare=True, start=part.start, end=part.end))
+            return
+        last = self.items[-1]
+        shares = bool(last.uses) and bool(rule("approaches.sharing").fullmatch(gap))
+        soft = gap.strip() == "and"
+        first = not last.uses and not last.bare and (last.count == 1 or last.which or not rule("approaches.lists").search(gap))
+        if first or (shares and not (soft and last.bare)):
+            last.uses.extend(part.use)
+            last.end = part.end
+            return
+        last.after = last.after or gap
+        self.items.append(Item(1, [*part.use], bare=True, soft=soft, start=part.start, end=part.end))
+
+
+_MARKS = ("legs", "ways", "axis", "every", "each", "stem", "place")
+
+
+def _axis(part: Token) -> Compass | None:
+    one, two = compass_of(part.match["one"]), compass_of(part.match["two"])
+    return axis_of(one) if one and two and axis_of(one) == axis_of(two) and one != two else None
+
+
 def _points(words: str) -> list[Compass]:
     return [way for m in rule("control.way").finditer(words) if (way := compass_of(m["way"]))]
 
@@ -290,64 +367,10 @@ def _whose(mark: _Mark, item: Item) -> Iterator[tuple[str, Literal["in", "out", 
         yield from ((key, item.way or "in") for key in mark.keys)
         return
     near = [key for key in mark.keys if key in COMPASS and axis_of(_bearing(key)) == axis_of(way)]
-    if near and not mark.toward:
+    if near and (not mark.toward or (len(near) == 1 and not item.uses)):
         yield from ((key, "out" if key == way else "in") for key in near)
-    else:
-        yield turned(way, 180), item.way or "in"
+    elif mark.toward or not near:
+        yield (way, "out") if item.way == "out" else (turned(way, 180), "in")
 
 
-def _items(part: Token, text: str) -> list[Item]:
-    """The lanes of a count: "two through lanes"; "right-turn and left-turn lanes" are one each."""
-    words = part.match.groupdict()
-    mods = (words.get("mods") or "").lower()
-    toward = next((m["way"] for m in rule("control.way").finditer(mods)), "") if mods else ""
-    uses = [t.use for t in tokens(mods) if t.kind == "use"] if mods else []
-    count = words.get("count")
-    way: Literal["", "in", "out"] = "out" if any(t.kind == "out" for t in tokens(mods)) else ""
-    one = dict(way=way, toward=toward, start=part.start, end=part.end)
-    if part.kind == "lanes" and words.get("noun") == "lanes" and count is None and len(uses) > 1:
-        return [Item(1, [use], **one) for use in uses]
-    if part.kind == "which":
-        number = 2 if words["which"].endswith(("two", "others")) else 1
-        return [Item(number, which=True, **one)]
-    if part.kind == "lanes" and (count or "").lower() in ("", "the", "both"):
-        return []
-    return [Item(count_of(count), uses, **one)]
-
-
-def _close(last: Item | None, part: Token, text: str) -> None:
-    if last is not None and not last.after:
-        last.after = text[last.end : part.start]
-
-
-def _direct(part: Token, items: list[Item], text: str) -> None:
-    """A sign of the direction: of the lanes right before it."""
-    way: Literal["in", "out"] = "out" if part.kind == "out" else "in"
-    for item in reversed(items):
-        between = text[item.end : part.start]
-        if not item.way and not re.search(r"[;.]", between):
-            item.way = way
-        break
-    if way == "in":
-        return
-
-
-def _near(item: Item, part: Token, text: str) -> bool:
-    return len(text[item.end : part.start]) < 30
-
-
-def _trails(part: Token, parts: Sequence[Token], items: list[Item], text: str) -> bool:
-    """Whether a mark stands behind its lanes: no lanes come between it and the next mark or the end of the clause."""
-    if not items or part.kind not in ("every", "each"):
-        return False
-    for after in parts:
-        if after.start < part.end:
-            continue
-        if after.kind == "sep" and after.match[0] in ";.,":
-            return True
-        if after.kind in ("lanes", "number", "legs", "ways"):
-            return False
-    return True
-
-
-__all__ = ["Approach", "Approaches", "approaches_of", "WORDS"]
+__all__ = ["Approach", "Approaches", "approaches_of"]
