@@ -35,13 +35,21 @@ class Token(NamedTuple):
     use: str = ""
 
 
-def tokens(text: str) -> list[Token]:
-    """Parts in order, none within another; of two that begin at one place the longer, else the one of lower weight."""
+def tokens(text: str, names: tuple[str, ...] = ()) -> list[Token]:
+    """Parts in order, none within another; of two that begin at one place the longer, else the one of lower weight.
+
+    `names`: of roads.
+    """
     found = [
         (m.start(), -m.end(), place, Token(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
         for place, by in enumerate(of_role("approach_token"))
         for m in by.finditer(text)
         if m.end() > m.start()
+    ]
+    found += [
+        (m.start(), -m.end(), 99, Token("named", m.start(), m.end(), m))
+        for name in names
+        for m in rule("approaches.named").given(name=name).finditer(text)
     ]
     kept: list[Token] = []
     for _, _, _, token in sorted(found, key=lambda one: one[:3]):
@@ -82,7 +90,8 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if part.kind == "which":
         number = 2 if words["which"].endswith(("two", "others")) else 1
         return [Item(number, which=True, start=part.start, end=part.end)]
-    if part.kind == "number" and rule("approaches.numbered").search(text[: part.start]):
+    aside = rule("approaches.pronoun" if words.get("count") == "one" else "approaches.numbered")
+    if part.kind == "number" and aside.search(text[: part.start]):
         return []
     mods = (words.get("mods") or "").lower()
     toward = next((m["way"] for m in rule("control.way").finditer(mods)), "")
@@ -109,9 +118,9 @@ def count_of(word: str | None) -> int:
 
 
 # ------------------------------------------------------------------ uses of the lanes of one approach
-def lane_uses(items: list[Item], text: str) -> tuple[int, tuple[Turn, ...]]:
+def lane_uses(items: list[Item]) -> tuple[int, tuple[Turn, ...]]:
     """Lanes towards the junction and, where turn lanes are told, the use of each from the right curb."""
-    total, rest = _total(items, text)
+    total, rest = _total(items)
     elements = _elements(rest, total)
     told = sum(n for _, n in elements)
     if total is None:
@@ -126,7 +135,7 @@ def lane_uses(items: list[Item], text: str) -> tuple[int, tuple[Turn, ...]]:
     return total, tuple(sorted(uses, key=_FROM_CURB.index)) if turning or (shared and total > 1) else ()
 
 
-def _total(items: list[Item], text: str) -> tuple[int | None, list[Item]]:
+def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
     """The number of all lanes where one comes before the list of what they are for, and the list."""
     first, *rest = items
     if first.uses or first.bare or first.which or not rest:

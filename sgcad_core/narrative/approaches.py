@@ -93,9 +93,23 @@ def _bearing(key: str) -> Compass:
     return next(c for c in COMPASS if c == key.removeprefix("axis "))
 
 
+def road_names(texts: Sequence[str]) -> dict[str, Compass]:
+    """Names of roads with the axis on which they lie; of two roads the other lies square to the one that is told."""
+    found: dict[str, Compass] = {}
+    for text in texts:
+        for m in rule("approaches.name").finditer(text):
+            words = {key.rstrip("234"): value for key, value in m.groupdict().items() if value}
+            way = _points(words["way"])
+            for name in {words["name"], words["name"].split()[0]}:
+                if way and rule("approaches.own_name").search(name):
+                    found.setdefault(name, axis_of(way[0]))
+    return found
+
+
 def approaches_of(told: Iterable[Statement]) -> Approaches:
     """What the text lists of its approaches; nothing where it lists none."""
-    reader = _Reader()
+    told = [*told]
+    reader = _Reader(road_names([t.text for t in told]))
     for t in told:
         if t.role not in _NO_CLAUSE:
             reader.sentence(t.text)
@@ -103,7 +117,8 @@ def approaches_of(told: Iterable[Statement]) -> Approaches:
 
 
 class _Reader:
-    def __init__(self) -> None:
+    def __init__(self, names: Mapping[str, Compass]) -> None:
+        self.names = names
         self.found: dict[str, Approach] = {}
         self.listed: set[str] = set()
         """Keys of which a list is told, not just a number of lanes; without one nothing counts."""
@@ -118,9 +133,11 @@ class _Reader:
         if not self.listed:
             return Approaches()
         axes_listed = {axis_of(_bearing(k)) for k in self.listed if k not in (_ALL, _STEM)}
+        both = {axis_of(_bearing(k)) for k in self.listed if k.startswith("axis ")}
         sure = {
             k: a for k, a in self.found.items()
-            if k in self.listed or k in self.named or k in (_ALL, _STEM) or axis_of(_bearing(k)) in axes_listed
+            if k in self.listed or k in self.named or k in (_ALL, _STEM)
+            or (axis_of(_bearing(k)) in axes_listed and not (k in COMPASS and axis_of(_bearing(k)) in both))
         }
         legs = {_bearing(k): a for k, a in sure.items() if k in COMPASS}
         axes = {_bearing(k): a for k, a in sure.items() if k.startswith("axis ")}
@@ -130,16 +147,16 @@ class _Reader:
     # -------------------------------------------------------------- one sentence
     def sentence(self, text: str) -> None:
         """Take what a sentence tells."""
-        parts = tokens(text)
+        parts = tokens(text, tuple(self.names))
         if any(p.kind in ("lanes", "which", "use", "same") for p in parts):
             for clause in _Clauses(self, text).read(parts):
-                self._take(clause, text)
+                self._take(clause)
         else:
             self._scopes(parts)
 
     def _scopes(self, parts: Sequence[Token]) -> None:
         for part in parts:
-            if part.kind in ("axis", "legs"):
+            if part.kind in ("axis", "legs", "named"):
                 self.mark_of(part)
 
     def mark_of(self, part: Token) -> _Mark | None:
@@ -156,6 +173,8 @@ class _Reader:
             if axis is None:
                 return None
             mark = _Mark((f"axis {axis}",))
+        elif part.kind == "named":
+            mark = _Mark((f"axis {self.names[part.match[0]]}",))
         elif part.kind == "stem":
             mark = _Mark((_STEM,))
         elif part.kind == "each" and (axis := self.mark.axis or self.scope):
@@ -165,8 +184,16 @@ class _Reader:
         self.scope = mark.axis or self.scope
         return mark
 
+    def copy(self, to: _Mark, source: _Mark) -> None:
+        """What comes in on the legs of one mark comes in on those of another."""
+        known = next((self.found[key] for key in source.keys if key in self.found), None)
+        if known is not None:
+            for key in to.keys:
+                self.found[key] = self.found.get(key, Approach()).over(replace(known, lanes_out=None))
+                self.listed.add(key)
+
     # -------------------------------------------------------------- what it means
-    def _take(self, clause: _Clause, text: str) -> None:
+    def _take(self, clause: _Clause) -> None:
         mark, items, same = clause
         told: dict[str, Approach] = {}
         groups: dict[str, list[Item]] = {}
@@ -177,9 +204,11 @@ class _Reader:
                 if way in ("in", "both"):
                     groups.setdefault(key, []).append(item)
         for key, some in groups.items():
-            count, uses = lane_uses(some, text)
+            count, uses = lane_uses(some)
             told[key] = Approach(min(count, MOST), None, uses if count <= MOST else ()).over(told.get(key, Approach()))
-        if same and not groups:
+        plain = all(item.plain and item.count == self.last.lanes_in for some in groups.values() for item in some)
+        if same and plain and not any(item.way == "out" for item in items):
+            told.clear()
             for key in mark.keys:
                 told[key] = replace(self.last, lanes_out=None).over(told.get(key, Approach()))
         for key, approach in told.items():
@@ -234,6 +263,10 @@ class _Clauses:
                 yield from self._marked(part)
             elif part.kind == "vehicle":
                 self.driven = True
+            elif part.kind == "leading":
+                if self.items and not self.driven:
+                    self.items[-1].way, self.items[-1].toward = "out", part.match["way"]
+                    self.items[-1].end = part.end
             elif not self.driven:
                 self._lanes(part)
             self.last = part
@@ -251,8 +284,12 @@ class _Clauses:
         if found is None:
             return
         gap = self._gap(part)
-        if self.marked and not self.items and rule("approaches.joint").fullmatch(gap):
-            found = _Mark((*before.keys, *found.keys), found.toward)
+        if self.same and not self.items and self.marked and part.kind == "legs":
+            self.reader.mark, self.same = before, False
+            self.reader.copy(before, found)
+            return
+        if self.marked and not self.items and _alike(self.marked, part) and rule("approaches.joint").fullmatch(gap):
+            found = _Mark(tuple(dict.fromkeys((*before.keys, *found.keys))), found.toward)
         elif self.items and self._of_last(part, found, before, gap):
             self.reader.mark = before
             return
@@ -272,7 +309,7 @@ class _Clauses:
         last = self.items[-1]
         if part.kind != "ways" or not rule("approaches.beside").fullmatch(gap) or last.toward:
             return False
-        if before.axis is None or before.axis != found.axis or len(before.keys) > 1 or before.keys[0] not in COMPASS:
+        if before.toward or before.axis is None or before.axis != found.axis or len(before.keys) > 1 or before.keys[0] not in COMPASS:
             return False
         last.toward, last.end = part.match["list"] or part.match["list2"], part.end
         return True
@@ -348,7 +385,12 @@ class _Clauses:
         self.items.append(Item(1, [*part.use], bare=True, soft=soft, start=part.start, end=part.end))
 
 
-_MARKS = ("legs", "ways", "axis", "every", "each", "stem", "place")
+def _alike(first: Token, second: Token) -> bool:
+    """Whether two marks may be joined: both legs, or both directions of travel."""
+    return first.kind == second.kind or {first.kind, second.kind} == {"legs", "place"}
+
+
+_MARKS = ("legs", "named", "ways", "axis", "every", "each", "stem", "place")
 
 
 def _axis(part: Token) -> Compass | None:
