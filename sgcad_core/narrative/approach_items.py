@@ -78,7 +78,7 @@ class Item:
     @property
     def plain(self) -> bool:
         """Whether only a number is told."""
-        return not (self.uses or self.way or self.bare or self.which)
+        return not (self.uses or self.way == "out" or self.bare or self.which)
 
 
 def items_of(part: Token, text: str, listing: bool) -> list[Item]:
@@ -90,13 +90,14 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if part.kind == "which":
         number = 2 if words["which"].endswith(("two", "others")) else 1
         return [Item(number, which=True, start=part.start, end=part.end)]
-    aside = rule("approaches.pronoun" if words.get("count") == "one" else "approaches.numbered")
-    if part.kind == "number" and aside.search(text[: part.start]):
+    if part.kind == "number" and _no_count(words["count"], text[: part.start]):
         return []
     mods = (words.get("mods") or "").lower()
     toward = next((m["way"] for m in rule("control.way").finditer(mods)), "")
     inner = tokens(mods)
     uses, out = [u for t in inner if t.kind == "use" for u in t.use], any(t.kind == "out" for t in inner)
+    if uses and "turn" not in mods and rule("approaches.position").match(text[part.end :]):
+        uses = [] if not {"T"} & {*uses} else uses
     count = (words.get("count") or "").lower()
     if part.kind == "lanes" and (count in ("the", "both") or (not count and not _names_use(mods, listing))):
         return []
@@ -105,6 +106,13 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if part.kind == "lanes" and len(uses) > 1 and not single and (not count or count_of(count) in (1, len(uses))):
         return [Item(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
     return [Item(count_of(count), uses, way, toward, start=part.start, end=part.end)]
+
+
+def _no_count(count: str, before: str) -> bool:
+    """Whether a number counts no lanes: "Route 9", "a divided one", a paragraph's "3."."""
+    if count == "one":
+        return not rule("approaches.one").search(before)
+    return bool(rule("approaches.numbered").search(before)) or (not before and count.isdigit())
 
 
 def _names_use(mods: str, listing: bool) -> bool:

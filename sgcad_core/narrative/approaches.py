@@ -20,7 +20,9 @@ from sgcad_core.specs import Compass, Turn
 
 MOST = 7
 """Lanes of one approach; more is a misreading."""
-_ALL, _STEM = "all", "stem"
+_ALL, _STEM, _MAIN = "all", "stem", "main"
+_APART = (_ALL, _STEM, _MAIN)
+"""Keys that name no bearing."""
 _NO_CLAUSE = ("codes", "factors")
 
 
@@ -35,20 +37,23 @@ class Approach:
     def over(self, other: Approach) -> Approach:
         """This, and what only the other tells."""
         own = self.lanes_in is not None
+        alike = self.lanes_in == other.lanes_in
         return Approach(
             self.lanes_in if own else other.lanes_in,
             self.lanes_out if self.lanes_out is not None else other.lanes_out,
-            self.turns_in if own else other.turns_in,
+            self.turns_in or (other.turns_in if alike or not own else ()),
         )
 
 
 @dataclass(frozen=True)
 class Approaches:
-    """What is told of single legs, of both legs of an axis, of the leg that ends at a T, and of all legs."""
+    """What is told of single legs, of both legs of an axis, of the leg that ends at a T, of the road that goes on there, and of
+    all legs."""
 
     legs: Mapping[Compass, Approach] = field(default_factory=dict)
     axes: Mapping[Compass, Approach] = field(default_factory=dict)
     stem: Approach = Approach()
+    main: Approach = Approach()
     all: Approach = Approach()
 
     def of(self, bearing: Compass, stem: Compass | None) -> Approach:
@@ -56,7 +61,10 @@ class Approaches:
         told = self.legs.get(bearing, Approach())
         if bearing == stem:
             told = told.over(self.stem)
-        return told.over(self.axes.get(axis_of(bearing), Approach())).over(self.all)
+        told = told.over(self.axes.get(axis_of(bearing), Approach()))
+        if stem and axis_of(bearing) != axis_of(stem):
+            told = told.over(self.main)
+        return told.over(self.all)
 
     @property
     def named(self) -> tuple[Compass, ...]:
@@ -85,7 +93,7 @@ class _Mark:
 
     @property
     def axis(self) -> Compass | None:
-        axes = {axis_of(_bearing(key)) for key in self.keys if key not in (_ALL, _STEM)}
+        axes = {axis_of(_bearing(key)) for key in self.keys if key not in _APART}
         return next(iter(axes)) if len(axes) == 1 else None
 
 
@@ -98,12 +106,23 @@ def road_names(texts: Sequence[str]) -> dict[str, Compass]:
     found: dict[str, Compass] = {}
     for text in texts:
         for m in rule("approaches.name").finditer(text):
-            words = {key.rstrip("234"): value for key, value in m.groupdict().items() if value}
-            way = _points(words["way"])
-            for name in {words["name"], words["name"].split()[0]}:
-                if way and rule("approaches.own_name").search(name):
+            words = {key.rstrip("2345"): value for key, value in m.groupdict().items() if value}
+            way = _points(words["way"]) if "way" in words else [_bearing(words["letters"].split("-")[0])]
+            for name in _forms(words["name"]):
+                if way:
                     found.setdefault(name, axis_of(way[0]))
+    axes = {*found.values()}
+    if len(axes) == 1:
+        across = axis_of(turned(next(iter(axes)), 90))
+        others = {m[0] for text in texts for m in rule("approaches.all_names").finditer(text)}
+        if len({name.split()[0] for name in others} - {*found}) == 1:
+            found |= {form: across for name in others for form in _forms(name) if form not in found}
     return found
+
+
+def _forms(name: str) -> set[str]:
+    """A name in full and its first word, where that is one of its own."""
+    return {form for form in (name, name.split()[0]) if rule("approaches.own_name").search(form)}
 
 
 def approaches_of(told: Iterable[Statement]) -> Approaches:
@@ -132,17 +151,17 @@ class _Reader:
         """All that was found."""
         if not self.listed:
             return Approaches()
-        axes_listed = {axis_of(_bearing(k)) for k in self.listed if k not in (_ALL, _STEM)}
+        axes_listed = {axis_of(_bearing(k)) for k in self.listed if k not in _APART}
         both = {axis_of(_bearing(k)) for k in self.listed if k.startswith("axis ")}
         sure = {
             k: a for k, a in self.found.items()
-            if k in self.listed or k in self.named or k in (_ALL, _STEM)
+            if k in self.listed or k in self.named or k in _APART or (k.startswith("axis ") and a.lanes_out)
             or (axis_of(_bearing(k)) in axes_listed and not (k in COMPASS and axis_of(_bearing(k)) in both))
         }
         legs = {_bearing(k): a for k, a in sure.items() if k in COMPASS}
         axes = {_bearing(k): a for k, a in sure.items() if k.startswith("axis ")}
         stem, every = sure.get(_STEM, Approach()), sure.get(_ALL, Approach())
-        return Approaches(legs, axes, stem, every)
+        return Approaches(legs, axes, stem, sure.get(_MAIN, Approach()), every)
 
     # -------------------------------------------------------------- one sentence
     def sentence(self, text: str) -> None:
@@ -156,8 +175,8 @@ class _Reader:
 
     def _scopes(self, parts: Sequence[Token]) -> None:
         for part in parts:
-            if part.kind in ("axis", "legs", "named"):
-                self.mark_of(part)
+            if part.kind in ("axis", "legs", "named", "other", "main", "stem"):
+                self.mark = self.mark_of(part) or self.mark
 
     def mark_of(self, part: Token) -> _Mark | None:
         """Whose lanes a mark tells."""
@@ -177,12 +196,25 @@ class _Reader:
             mark = _Mark((f"axis {self.names[part.match[0]]}",))
         elif part.kind == "stem":
             mark = _Mark((_STEM,))
+        elif part.kind == "main":
+            mark = _Mark((_MAIN,))
+        elif part.kind == "other":
+            if self.scope is None:
+                return None
+            mark = _Mark((f"axis {axis_of(turned(self.scope, 90))}",))
+        elif part.kind == "each" and (name := self._known(words.get("of")) or self._known(words.get("name"))):
+            mark = _Mark((f"axis {self.names[name]}",))
+        elif part.kind == "each" and self.mark.keys == (_MAIN,):
+            mark = _Mark((_MAIN,))
         elif part.kind == "each" and (axis := self.mark.axis or self.scope):
             mark = _Mark((f"axis {axis}",))
         else:
             mark = _Mark((_ALL,))
         self.scope = mark.axis or self.scope
         return mark
+
+    def _known(self, words: str | None) -> str | None:
+        return next((name for name in _forms(words) if name in self.names), None) if words else None
 
     def copy(self, to: _Mark, source: _Mark) -> None:
         """What comes in on the legs of one mark comes in on those of another."""
@@ -249,6 +281,8 @@ class _Clauses:
     """Whether a vehicle was named: the lanes behind it are where it drives."""
     heading: Literal["", "in", "out"] = ""
     """What a list stands under: "Lanes out:"."""
+    next: Literal["", "in", "out"] = ""
+    """Which way the next lanes lead: "leaves with one"."""
     last: Token | None = None
     marked: Token | None = None
     """The last mark, while no lanes follow it."""
@@ -258,6 +292,8 @@ class _Clauses:
         for part in parts:
             if part.kind == "sep":
                 self.driven = self.driven and part.match[0] not in ";."
+                continue
+            if part.kind in ("named", "other", "main") and rule("approaches.located").search(self.text[: part.start]):
                 continue
             if part.kind in _MARKS or (part.kind == "each_way" and self.items and self.items[-1].way == "out"):
                 yield from self._marked(part)
@@ -281,6 +317,7 @@ class _Clauses:
     def _marked(self, part: Token) -> Iterator[_Clause]:
         before = self.reader.mark
         found = self.reader.mark_of(part)
+        self.driven = self.driven and not rule("approaches.drivers").search(self.text[: part.start])
         if found is None:
             return
         gap = self._gap(part)
@@ -290,6 +327,8 @@ class _Clauses:
             return
         if self.marked and not self.items and _alike(self.marked, part) and rule("approaches.joint").fullmatch(gap):
             found = _Mark(tuple(dict.fromkeys((*before.keys, *found.keys))), found.toward)
+        elif self.marked and not self.items and part.kind in ("named", "main", "other") and gap.strip() in ("on", "on the"):
+            return
         elif self.items and self._of_last(part, found, before, gap):
             self.reader.mark = before
             return
@@ -309,7 +348,9 @@ class _Clauses:
         last = self.items[-1]
         if part.kind != "ways" or not rule("approaches.beside").fullmatch(gap) or last.toward:
             return False
-        if before.toward or before.axis is None or before.axis != found.axis or len(before.keys) > 1 or before.keys[0] not in COMPASS:
+        if before.toward and not (last.plain and before.axis == found.axis and before.keys != found.keys):
+            return False
+        if before.axis is None or before.axis != found.axis or len(before.keys) > 1 or before.keys[0] not in COMPASS:
             return False
         last.toward, last.end = part.match["list"] or part.match["list2"], part.end
         return True
@@ -329,7 +370,7 @@ class _Clauses:
     def _trailing(self, part: Token, found: _Mark, before: _Mark) -> Iterator[_Clause]:
         """The lanes before the mark are those of its legs; of others before them, if the last go out."""
         last = self.items[-1]
-        only_last = len(self.items) > 1 and (last.way == "out" or part.kind == "ways")
+        only_last = len(self.items) > 1 and (last.way == "out" or (part.kind == "ways" and last.plain))
         if only_last:
             self.items, rest = [last], self.items[:-1]
             yield _Clause(before, rest, self.same)
@@ -347,7 +388,8 @@ class _Clauses:
             if last is not None and not last.after:
                 last.after = self.text[last.end : part.start]
             new = items_of(part, self.text, bool(self.items))
-            self.items.extend(replace(item, way=item.way or self.heading) for item in new)
+            self.items.extend(replace(item, way=item.way or self.next or self.heading) for item in new)
+            self.next = ""
         elif part.kind == "use":
             self._use(part)
         elif part.kind in ("out", "in"):
@@ -363,19 +405,22 @@ class _Clauses:
         """A sign of the direction: of the lanes right before it, or of all that come in the list under it."""
         way: Literal["in", "out"] = "out" if part.kind == "out" else "in"
         if not self.items:
-            self.heading = way if self.text[part.end :].startswith(":") else self.heading
+            self.heading = way if self.text[part.end :].startswith((":", ",")) else self.heading
+        elif way == "out" and rule("approaches.ahead").match(self.text[part.end :]):
+            self.next = way
         elif not self.items[-1].way and not rule("approaches.cut").search(self.text[self.items[-1].end : part.start]):
             self.items[-1].way = way
 
     def _use(self, part: Token) -> None:
         gap = self._gap(part)
         if not self.items:
-            if self.marked and rule("approaches.bare").fullmatch(gap) and "lane" in self.text.lower():
+            listing = "lane" in self.text.lower() or bool(self.reader.found)
+            if self.marked and listing and rule("approaches.bare").fullmatch(gap):
                 self.items.append(Item(1, [*part.use], bare=True, start=part.start, end=part.end))
             return
         last = self.items[-1]
         shares = bool(last.uses) and bool(rule("approaches.sharing").fullmatch(gap))
-        soft = gap.strip() == "and"
+        soft = bool(rule("approaches.soft").search(gap))
         first = not last.uses and not last.bare and (last.count == 1 or last.which or not rule("approaches.lists").search(gap))
         if first or (shares and not (soft and last.bare)):
             last.uses.extend(part.use)
@@ -390,7 +435,7 @@ def _alike(first: Token, second: Token) -> bool:
     return first.kind == second.kind or {first.kind, second.kind} == {"legs", "place"}
 
 
-_MARKS = ("legs", "named", "ways", "axis", "every", "each", "stem", "place")
+_MARKS = ("legs", "named", "other", "main", "ways", "axis", "every", "each", "stem", "place")
 
 
 def _axis(part: Token) -> Compass | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, junction_kind
 from sgcad_core.narrative.approaches import Approach
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.mentions import axis_of
@@ -36,7 +36,7 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
 
 def with_approaches(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
     """The layout with the lanes that the story lists of single approaches to its junction."""
-    if len(layout.legs) < 3:
+    if len(layout.legs) < 3 or facts.junction.kind not in (T, FOUR_LEG):
         return layout
     axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
     stem = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
