@@ -80,6 +80,9 @@ class Approaches:
     @property
     def alone(self) -> Compass | None:
         """The leg of a T that has none across, where both legs of the other road are told too."""
+        ending = [b for b, a in self.legs.items() if {*a.turns_in} == {"left", "right"}]
+        if len(ending) == 1:
+            return ending[0]
         sides = [b for b in self.legs if turned(b, 180) not in self.legs and axis_of(b) not in self.axes]
         return sides[0] if len(sides) == 1 and len(self.legs) == 3 else None
 

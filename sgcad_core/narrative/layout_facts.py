@@ -196,7 +196,7 @@ class _Builder:
             center_turn_lane=_center(lanes, lanes_in, lanes_out),
             median=_median(road, lanes_in, lanes_out), kind=_kind(road), alley=road.kind == ALLEY,
             curve=_curve(road, inward),
-            control=self._leg_control(bearing) if at_junction else "none",
+            control=self._leg_control(bearing) if at_junction and lanes_in else "none",
             speed_limit_mph=road.speed_limit_mph or _usual_limit(road) or self.defaults.speed_limit_mph,
         )  # fmt: skip
 
