@@ -134,13 +134,23 @@ def lane_uses(items: list[Item]) -> tuple[int, tuple[Turn, ...]]:
     if total is None:
         total = told
     elif told < total:
-        elements = [*elements, (frozenset("T"), total - told)]
+        elements = [*elements, *_rest(elements, total - told)]
     elif told > total:
         total = told
     uses = [_TURNS[used or frozenset("T")] for used, n in elements for _ in range(n)]
     turning = any(use in ("right", "left", "left_right") for use in uses)
     shared = any(use != "through" for use in uses)
     return total, tuple(sorted(uses, key=_FROM_CURB.index)) if turning or (shared and total > 1) else ()
+
+
+def _rest(elements: list[tuple[Uses, int]], spare: int) -> list[tuple[Uses, int]]:
+    """Lanes of a number of which nothing more is told: they go on, the outer ones also to a side that no lane serves."""
+    rest = ["T"] * spare
+    if not any("R" in used for used, _ in elements):
+        rest[0] += "R"
+    if not any("L" in used for used, _ in elements):
+        rest[-1] += "L"
+    return [(frozenset(used), 1) for used in rest]
 
 
 def _total(items: list[Item]) -> tuple[int | None, list[Item]]:

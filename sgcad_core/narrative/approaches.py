@@ -72,10 +72,10 @@ class Approaches:
         return tuple(b for b in COMPASS if b in self.legs)
 
     @property
-    def crossing(self) -> bool:
-        """Whether both legs of two roads are told."""
+    def crossing(self) -> tuple[Compass, ...]:
+        """The axes of two roads of which both legs are told; none where it are fewer."""
         whole = {axis_of(b) for b in self.legs if turned(b, 180) in self.legs} | {*self.axes}
-        return len(whole) > 1
+        return tuple(sorted(whole)) if len(whole) == 2 else ()
 
     @property
     def alone(self) -> Compass | None:
@@ -379,7 +379,7 @@ class _Clauses:
             yield _Clause(before, rest, self.same)
         self.same = False
         self.reader.mark, self.marked = found, None
-        if part.kind in ("place", "legs") or last.way == "out":
+        if part.kind in ("place", "legs") or last.way == "out" or (part.kind == "ways" and not last.plain):
             yield from self._flush()
             self.reader.mark = before if part.kind in ("place", "legs") else found
 

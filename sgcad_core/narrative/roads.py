@@ -109,7 +109,7 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     junction = junction_of(told, driven, gathered, approaches)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
-    roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
+    roads = _placed(tuple(_center_lane_elsewhere(r, roads) for r in roads), approaches)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
     story = [t.text for t in told if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
@@ -180,6 +180,19 @@ def _rural(told: tuple[Statement, ...]) -> Cue | None:
 
 def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
+
+
+def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFact, ...]:
+    """The roads, streets on other axes than those of the two roads whose approaches are listed put there."""
+    axes = approaches.crossing
+    streets = [r for r in roads if r.kind not in JOINING and r.axis]
+    if len(axes) != 2 or {r.axis for r in streets} <= {*axes}:
+        return roads
+    free = [axis for axis in axes if axis not in {r.axis for r in streets}]
+    astray = [r for r in streets if r.axis not in axes]
+    moved = dict(zip(map(id, astray), free, strict=False))
+    kept = (r for r in roads if id(r) in moved or r not in astray)
+    return tuple(replace(r, axis=moved.get(id(r), r.axis)) for r in kept)
 
 
 def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
