@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 from sgcad_core.language import of_role, rule
@@ -99,7 +99,7 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if uses and "turn" not in mods and rule("approaches.position").match(text[part.end :]):
         uses = [] if not {"T"} & {*uses} else uses
     count = (words.get("count") or "").lower()
-    if part.kind == "lanes" and (count in ("the", "both") or (not count and not _names_use(mods, listing))):
+    if part.kind == "lanes" and ((count in ("the", "both") and not (uses and listing)) or (not count and not _names_use(mods, listing))):
         return []
     way: Literal["", "out"] = "out" if out else ""
     single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
@@ -156,6 +156,8 @@ def _rest(elements: list[tuple[Uses, int]], spare: int) -> list[tuple[Uses, int]
 def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
     """The number of all lanes where one comes before the list of what they are for, and the list."""
     first, *rest = items
+    if len(first.uses) == 1 and first.count > 1 and rest and all(i.bare for i in rest) and first.count == 1 + len(rest):
+        return first.count, [replace(first, count=1), *rest]  # "three lanes for right, through and left"
     if first.uses or first.bare or first.which or not rest:
         return None, items
     if rule("approaches.adding").search(first.after) and not _fits(first.count, rest):

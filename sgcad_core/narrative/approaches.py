@@ -152,7 +152,8 @@ class _Reader:
 
     def result(self) -> Approaches:
         """All that was found."""
-        if not self.listed:
+        told_axes = [k for k, a in self.found.items() if k.startswith("axis ") and a.lanes_in and a.lanes_out]
+        if not self.listed and len(told_axes) < 2:
             return Approaches()
         axes_listed = {axis_of(_bearing(k)) for k in self.listed if k not in _APART}
         both = {axis_of(_bearing(k)) for k in self.listed if k.startswith("axis ")}
@@ -170,7 +171,9 @@ class _Reader:
     def sentence(self, text: str) -> None:
         """Take what a sentence tells."""
         parts = tokens(text, tuple(self.names))
-        if any(p.kind in ("lanes", "which", "use", "same") for p in parts):
+        kinds = {p.kind for p in parts}
+        others = "lanes" not in kinds and rule("approaches.signs").search(text)
+        if kinds & {"lanes", "which", "use", "same"} and not others:
             for clause in _Clauses(self, text).read(parts):
                 self._take(clause)
         else:
@@ -197,6 +200,10 @@ class _Reader:
             mark = _Mark((f"axis {axis}",))
         elif part.kind == "named":
             mark = _Mark((f"axis {self.names[part.match[0]]}",))
+        elif part.kind == "leading":
+            mark = _Mark(tuple(turned(w, 180) for w in _points(words["way"])), toward=True)
+        elif part.kind == "unknown":
+            mark = _Mark()
         elif part.kind == "stem":
             mark = _Mark((_STEM,))
         elif part.kind == "main":
@@ -286,6 +293,8 @@ class _Clauses:
     """What a list stands under: "Lanes out:"."""
     next: Literal["", "in", "out"] = ""
     """Which way the next lanes lead: "leaves with one"."""
+    before: Literal["", "out"] = ""
+    """Whether the lanes told last lead out."""
     last: Token | None = None
     marked: Token | None = None
     """The last mark, while no lanes follow it."""
@@ -302,6 +311,8 @@ class _Clauses:
                 yield from self._marked(part)
             elif part.kind == "vehicle":
                 self.driven = True
+            elif part.kind == "leading" and not self.items and not self.last:
+                yield from self._marked(part)
             elif part.kind == "leading":
                 if self.items and not self.driven:
                     self.items[-1].way, self.items[-1].toward = "out", part.match["way"]
@@ -314,6 +325,7 @@ class _Clauses:
     def _flush(self) -> Iterator[_Clause]:
         if self.items or self.same:
             yield _Clause(self.reader.mark, self.items, self.same and self.marked is not None)
+        self.before = "out" if self.items and self.items[-1].way == "out" else ""
         self.items, self.same = [], False
 
     # -------------------------------------------------------------- whose lanes
@@ -328,9 +340,12 @@ class _Clauses:
             self.reader.mark, self.same = before, False
             self.reader.copy(before, found)
             return
+        if part.kind == "every" and self.marked and not self.items and self.marked.kind in ("axis", "named", "other", "main"):
+            self.reader.mark = before
+            return
         if self.marked and not self.items and _alike(self.marked, part) and rule("approaches.joint").fullmatch(gap):
             found = _Mark(tuple(dict.fromkeys((*before.keys, *found.keys))), found.toward)
-        elif self.marked and not self.items and part.kind in ("named", "main", "other") and gap.strip() in ("on", "on the"):
+        elif self.marked and not self.items and part.kind in ("named", "main", "other") and gap.strip() in ("on", "on the", "of"):
             return
         elif self.items and self._of_last(part, found, before, gap):
             self.reader.mark = before
@@ -390,8 +405,10 @@ class _Clauses:
         if part.kind in ("lanes", "number", "which"):
             if last is not None and not last.after:
                 last.after = self.text[last.end : part.start]
-            new = items_of(part, self.text, bool(self.items))
-            self.items.extend(replace(item, way=item.way or self.next or self.heading) for item in new)
+            opening = self.marked is not None and self._gap(part).strip() == ":"
+            new = items_of(part, self.text, bool(self.items) or opening)
+            way = self.next or self.heading or (self.before if self._again(part) else "")
+            self.items.extend(replace(item, way=item.way or way) for item in new)
             self.next = ""
         elif part.kind == "use":
             self._use(part)
@@ -403,6 +420,10 @@ class _Clauses:
                 del self.items[-2]  # "two lanes, one each way"
         elif part.kind == "same":
             self.same = True
+
+    def _again(self, part: Token) -> bool:
+        """Whether a bare number counts what was counted before: "two go out to the east and two to the west"."""
+        return part.kind == "number" and not self.items and bool(rule("approaches.ended").match(self.text[part.end :]))
 
     def _directed(self, part: Token) -> None:
         """A sign of the direction: of the lanes right before it, or of all that come in the list under it."""
@@ -438,7 +459,7 @@ def _alike(first: Token, second: Token) -> bool:
     return first.kind == second.kind or {first.kind, second.kind} == {"legs", "place"}
 
 
-_MARKS = ("legs", "named", "other", "main", "ways", "axis", "every", "each", "stem", "place")
+_MARKS = ("legs", "unknown", "named", "other", "main", "ways", "axis", "every", "each", "stem", "place")
 
 
 def _axis(part: Token) -> Compass | None:

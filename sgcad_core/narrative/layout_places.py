@@ -47,8 +47,8 @@ def with_approaches(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
 def _listed(leg: Leg, told: Approach) -> Leg:
     if leg.kind != "road":
         return leg
-    update = {"lanes_in": told.lanes_in, "turns_in": told.turns_in} if told.lanes_in and leg.lanes_in else {}
-    update |= {"lanes_out": told.lanes_out} if told.lanes_out and leg.lanes_out else {}
+    update = {"lanes_in": told.lanes_in, "turns_in": told.turns_in} if told.lanes_in and (leg.lanes_in or told.turns_in) else {}
+    update |= {"lanes_out": told.lanes_out} if told.lanes_out and (leg.lanes_out or told.turns_in) else {}
     return leg.model_copy(update=update)
 
 
