@@ -99,7 +99,7 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if uses and "turn" not in mods and rule("approaches.position").match(text[part.end :]):
         uses = [] if not {"T"} & {*uses} else uses
     count = (words.get("count") or "").lower()
-    if part.kind == "lanes" and ((count in ("the", "both") and not (uses and listing)) or (not count and not _names_use(mods, listing))):
+    if part.kind == "lanes" and ((count in ("the", "both") and not (uses and listing)) or (not count and not (uses if listing else rule("approaches.turning").search(mods)))):
         return []
     way: Literal["", "out"] = "out" if out else ""
     single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
@@ -113,10 +113,6 @@ def _no_count(count: str, before: str) -> bool:
     if count == "one":
         return not rule("approaches.one").search(before)
     return bool(rule("approaches.numbered").search(before)) or (not before and count.isdigit())
-
-
-def _names_use(mods: str, listing: bool) -> bool:
-    return bool(rule("approaches.turning" if not listing else "approaches.any_use").search(mods))
 
 
 def count_of(word: str | None) -> int:

@@ -91,6 +91,10 @@ class RoadFacts:
     """The layout that a model answered, where some of it is `taken` (fields of `sgcad_core.narrative.claims`)."""
     taken: frozenset[str] = frozenset()
 
+    def lists(self, axis: Compass) -> bool:
+        """Whether the story tells every lane of both legs on an axis, leg by leg."""
+        return _listed(self.approaches, self.junction, axis)
+
     @property
     def streets(self) -> tuple[RoadFact, ...]:
         """Roads that are neither driveway nor ramp."""
@@ -130,6 +134,7 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
         MEDIAN_OPENING: (opens, opening),
         GORE: (names_gore(told), gore),
     }
+    roads = tuple(_uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
@@ -180,6 +185,21 @@ def _rural(told: tuple[Statement, ...]) -> Cue | None:
 
 def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
+
+
+def _listed(approaches: Approaches, junction: JunctionFacts, axis: Compass) -> bool:
+    if junction.kind not in (T, FOUR_LEG):
+        return False
+    stem = junction.stem
+    legs = (stem,) if stem and axis_of(stem) == axis else (axis, turned(axis, 180))
+    told = [approaches.of(leg, stem) for leg in legs]
+    plain = not any(one.turns_in for one in told) and told[0].lanes_in == told[-1].lanes_out
+    return not plain and all(one.lanes_in and one.lanes_out for one in told)
+
+
+def _uncounted(road: RoadFact) -> RoadFact:
+    """The road without the lanes that were counted for all of it, where those of each leg are told."""
+    return replace(road, lanes=replace(road.lanes, total=None, each_way=None, toward={}, turns={}, own=None))
 
 
 def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFact, ...]:
