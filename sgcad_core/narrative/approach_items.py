@@ -7,7 +7,6 @@ direction. Which leg gets what is decided in `sgcad_core.narrative.approaches`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
@@ -99,7 +98,8 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     if uses and "turn" not in mods and rule("approaches.position").match(text[part.end :]):
         uses = [] if not {"T"} & {*uses} else uses
     count = (words.get("count") or "").lower()
-    if part.kind == "lanes" and ((count in ("the", "both") and not (uses and listing)) or (not count and not (uses if listing else rule("approaches.turning").search(mods)))):
+    named = bool(uses) if listing else not count and bool(rule("approaches.turning").search(mods))
+    if part.kind == "lanes" and count in ("", "the", "both") and not named:
         return []
     way: Literal["", "out"] = "out" if out else ""
     single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
@@ -140,7 +140,7 @@ def lane_uses(items: list[Item]) -> tuple[int, tuple[Turn, ...]]:
 
 
 def _rest(elements: list[tuple[Uses, int]], spare: int) -> list[tuple[Uses, int]]:
-    """Lanes of a number of which nothing more is told: they go on, the outer ones also to a side that no lane serves."""
+    """Lanes of which nothing more is told: they go on, the outer ones also to a side that no other serves."""
     rest = ["T"] * spare
     if not any("R" in used for used, _ in elements):
         rest[0] += "R"

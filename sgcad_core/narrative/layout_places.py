@@ -6,6 +6,7 @@ Knows no geometry and no file format.
 from __future__ import annotations
 
 from collections import Counter
+from typing import Any
 
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, junction_kind
 from sgcad_core.narrative.approaches import Approach
@@ -47,8 +48,11 @@ def with_approaches(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
 def _listed(leg: Leg, told: Approach) -> Leg:
     if leg.kind != "road":
         return leg
-    update = {"lanes_in": told.lanes_in, "turns_in": told.turns_in} if told.lanes_in and (leg.lanes_in or told.turns_in) else {}
-    update |= {"lanes_out": told.lanes_out} if told.lanes_out and (leg.lanes_out or told.turns_in) else {}
+    update: dict[str, Any] = {}
+    if told.lanes_in and (leg.lanes_in or told.turns_in):
+        update = {"lanes_in": told.lanes_in, "turns_in": told.turns_in}
+    if told.lanes_out and (leg.lanes_out or told.turns_in):
+        update["lanes_out"] = told.lanes_out
     return leg.model_copy(update=update)
 
 

@@ -92,7 +92,7 @@ class RoadFacts:
     taken: frozenset[str] = frozenset()
 
     def lists(self, axis: Compass) -> bool:
-        """Whether the story tells every lane of both legs on an axis, leg by leg."""
+        """Whether the story tells every lane of both legs on an axis, leg by leg, and turn lanes among them."""
         return _listed(self.approaches, self.junction, axis)
 
     @property
@@ -138,7 +138,8 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves, approaches)
+    told_places = (merge_lane, beside, walked, urban, closed, opening, leaves)
+    return RoadFacts(roads, junction, crash, notes, *told_places, approaches)
 
 
 def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
@@ -193,8 +194,7 @@ def _listed(approaches: Approaches, junction: JunctionFacts, axis: Compass) -> b
     stem = junction.stem
     legs = (stem,) if stem and axis_of(stem) == axis else (axis, turned(axis, 180))
     told = [approaches.of(leg, stem) for leg in legs]
-    plain = not any(one.turns_in for one in told) and told[0].lanes_in == told[-1].lanes_out
-    return not plain and all(one.lanes_in and one.lanes_out for one in told)
+    return any(one.turns_in for one in told) and all(one.lanes_in and one.lanes_out for one in told)
 
 
 def _uncounted(road: RoadFact) -> RoadFact:
