@@ -37,8 +37,6 @@ class Clauses:
     """What a list stands under: "Lanes out:"."""
     next: Literal["", "in", "out"] = ""
     """Which way the next lanes lead: "leaves with one"."""
-    before: Literal["", "out"] = ""
-    """Whether the lanes told last lead out."""
     last: Token | None = None
     marked: Token | None = None
     """The last mark, while no lanes follow it."""
@@ -69,7 +67,6 @@ class Clauses:
     def _flush(self) -> Iterator[Clause]:
         if self.items or self.same:
             yield Clause(self.marks.mark, self.items, self.same and self.marked is not None)
-        self.before = "out" if self.items and self.items[-1].way == "out" else ""
         self.items, self.same = [], False
 
     # -------------------------------------------------------------- whose lanes
@@ -151,7 +148,7 @@ class Clauses:
                 last.after = self.text[last.end : part.start]
             opening = self.marked is not None and self._gap(part).strip() == ":"
             new = items_of(part, self.text, bool(self.items) or opening)
-            way = self.next or self.heading or (self.before if self._again(part) else "")
+            way = self.next or self.heading
             self.items.extend(replace(item, way=item.way or way) for item in new)
             self.next = ""
         elif part.kind == "use":
@@ -164,10 +161,6 @@ class Clauses:
                 del self.items[-2]  # "two lanes, one each way"
         elif part.kind == "same":
             self.same = True
-
-    def _again(self, part: Token) -> bool:
-        """Whether a bare number counts what was counted before: "two go out to the east and two to the west"."""
-        return part.kind == "number" and not self.items and bool(rule("approaches.ended").match(self.text[part.end :]))
 
     def _directed(self, part: Token) -> None:
         """A sign of the direction: of the lanes right before it, or of all that come in the list under it."""

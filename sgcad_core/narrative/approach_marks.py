@@ -100,7 +100,7 @@ def _axis(part: Token) -> Compass | None:
 
 def points(words: str) -> list[Compass]:
     """The compass points that words name, in their order."""
-    return [way for m in rule("control.way").finditer(words) if (way := compass_of(m["way"]))]
+    return [way for m in rule("approaches.point").finditer(words) if (way := compass_of(m["way"]))]
 
 
 def road_names(texts: Sequence[str]) -> dict[str, Compass]:

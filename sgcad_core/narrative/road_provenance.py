@@ -77,7 +77,12 @@ def _approaches(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
 def _lies(facts: RoadFacts, leg: Compass) -> bool:
     """Whether a leg lies on one of the roads, or is told by itself."""
     axes = {road.axis for road in facts.streets}
-    return axis_of(leg) in axes or leg in facts.approaches.legs or axis_of(leg) in facts.approaches.axes
+    return (
+        leg == facts.junction.stem
+        or axis_of(leg) in axes
+        or leg in facts.approaches.legs
+        or axis_of(leg) in facts.approaches.axes
+    )
 
 
 def _road(telling: Telling, at: str, road: RoadFact) -> Iterator[Fact]:
