@@ -108,7 +108,7 @@ def _roads(facts: RoadFacts) -> Iterator[tuple[str, Claim]]:
     roads = {road.axis: road for road in facts.streets if road.axis}
     for axis, some in by_axis(legs):
         road = roads.get(axis)
-        yield f"lanes.{axis}", Claim(lanes_of(some), road is not None and _counted(road))
+        yield f"lanes.{axis}", Claim(lanes_of(some), facts.lists(axis) or (road is not None and _counted(road)))
         if turns := turns_of(some):
             yield f"turns.{axis}", Claim(turns)
         told = road is not None and (road.lanes.median is not None or road.lanes.divided is not None)

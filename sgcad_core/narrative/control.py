@@ -120,7 +120,7 @@ def _legs_of_sign(
     """ "stop sign for northbound traffic", "on the side street", else who or what is named last before the sign."""
     whom = _FOR.match(behind)
     if whom:
-        return _legs_of_words(whom["whom"])
+        return _legs_of_words(whom[0])
     if _ON_SIDE_ROAD.match(behind):
         across = [] if _SIDE_ROAD.search(before) else _crossing_legs(before, told, vehicles)
         return across or _side_legs(roads)
@@ -155,10 +155,13 @@ def _only_direction(clause: str, subject: re.Match[str]) -> bool:
 
 
 _ROAD_HAS = rule("control.road_has")
+_LEG = rule("control.leg")
 
 
 def _legs_of_words(words: str) -> list[Compass]:
     axis = axis_in(words)
     if axis:
         return [axis, turned(axis, 180)]
+    if leg := _LEG.search(words):
+        return [way for m in _WAY.finditer(leg["from"] or leg["noun"]) if (way := compass_of(m["way"]))]
     return [turned(way, 180) for m in _WAY.finditer(words) if (way := compass_of(m["way"]))]

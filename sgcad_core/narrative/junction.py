@@ -12,6 +12,7 @@ from typing import Literal
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
 from sgcad_core.language import rule
+from sgcad_core.narrative.approaches import Approaches
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
@@ -60,11 +61,16 @@ _CIRCLE_LANE = rule("junction.roundabout_lane")
 
 
 def junction_of(
-    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+    told: Sequence[Statement],
+    vehicles: Sequence[VehicleFacts],
+    roads: Sequence[GatheredRoad],
+    approaches: Approaches | None = None,
 ) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
+    listed = approaches or Approaches()
     story = [t for t in told if t.role in STORY_ROLES]
     kind, stated = _kind(story, told, vehicles, roads)
+    kind = _kind_listed(kind, stated, listed)
     if kind == "none":
         return JunctionFacts(stated=stated)
     control, control_at = control_of(told)
@@ -82,6 +88,7 @@ def junction_of(
     lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
     said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
     said = None if said and _contradicted(said, vehicles) else said
+    said = said or (listed.alone if kind == T else None)
     stem = said or _stem(kind, story, vehicles, roads, halted, lead)
     where |= _where(stem=stem_at if said else None)
     halted = (stem,) if stem and signed else ()
@@ -112,11 +119,24 @@ def _kind(
         return _access_kind(vehicles), True
     if named == "some" or controlled(story):
         return (T, False) if _one_sided(story, roads) else (FOUR_LEG, False)
+    if any(_RAMP_JOINS.search(t.text) for t in story) and _merging(story, roads):
+        return RAMP, True
+    if any(_DRIVE_NAMED.search(t.text) for t in story) and not _crossing(vehicles):
+        return DRIVEWAY, True
     if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
         return T, False
     if _crossing(vehicles) or _turning(vehicles):
         return (T, False) if _one_sided(story, roads) or not _crossing(vehicles) else (FOUR_LEG, False)
     return "none", False
+
+
+def _kind_listed(kind: JunctionKind, stated: bool, listed: Approaches) -> JunctionKind:
+    """The kind that the legs need of which lanes are listed; a kind that is named stays."""
+    if kind == "none" or (kind in (T, FOUR_LEG) and not stated):
+        if listed.crossing:
+            return FOUR_LEG
+        return T if listed.alone and kind != FOUR_LEG else kind
+    return kind
 
 
 def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
@@ -165,6 +185,7 @@ def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
 
 
 _SIDE_ROAD = rule("junction.side_road")
+_RAMP_JOINS, _DRIVE_NAMED = rule("junction.ramp_joins"), rule("junction.drive_named")
 _SIDE_STREET = rule("junction.side_street")
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
 _ENDS = rule("junction.ends")

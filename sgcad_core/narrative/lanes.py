@@ -114,7 +114,7 @@ def lane_facts(text: str) -> LaneFacts:
     total = _total(_EACH.sub("EACH", marked), counted, items, known, alone)
     divided, median = divided_and_median(text)
     return LaneFacts(
-        total=total, each_way=number(each[1] or each[2]) if each else None, toward=toward, turns=turns,
+        total=total, each_way=number(next(filter(None, each.groups()))) if each else None, toward=toward, turns=turns,
         one_way=one_way if one_way != two_way else None,
         one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,

@@ -21,6 +21,7 @@ from sgcad_core.narrative.layout_places import (
     offset,
     parking_lot,
     skewed,
+    with_approaches,
     with_closed,
     with_edges,
     with_opening,
@@ -57,7 +58,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
-        roads = answered_layout(self.facts, self._roads_alone())
+        roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 
     def _roads_alone(self) -> RoadLayout:
@@ -195,7 +196,7 @@ class _Builder:
             center_turn_lane=_center(lanes, lanes_in, lanes_out),
             median=_median(road, lanes_in, lanes_out), kind=_kind(road), alley=road.kind == ALLEY,
             curve=_curve(road, inward),
-            control=self._leg_control(bearing) if at_junction else "none",
+            control=self._leg_control(bearing) if at_junction and lanes_in else "none",
             speed_limit_mph=road.speed_limit_mph or _usual_limit(road) or self.defaults.speed_limit_mph,
         )  # fmt: skip
 

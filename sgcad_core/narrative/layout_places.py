@@ -5,7 +5,11 @@ Knows no geometry and no file format.
 
 from __future__ import annotations
 
-from sgcad_core.kinds import DRIVEWAY, RAMP, junction_kind
+from collections import Counter
+from typing import Any
+
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, junction_kind
+from sgcad_core.narrative.approaches import Approach
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.roads import RoadFacts
@@ -29,6 +33,27 @@ def _edged(facts: RoadFacts, leg: Leg, legs: tuple[Leg, ...]) -> Leg:
     walked = facts.crosswalk and (len(legs) > 2 or leg is legs[0])
     sides = (*facts.beside, "sidewalk") if facts.crosswalk else facts.beside
     return leg.model_copy(update={"beside": tuple(dict.fromkeys(sides)), "crosswalk": walked})
+
+
+def with_approaches(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
+    """The layout with the lanes that the story lists of single approaches to its junction."""
+    if len(layout.legs) < 3 or facts.junction.kind not in (T, FOUR_LEG):
+        return layout
+    axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
+    stem = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
+    legs = tuple(_listed(leg, facts.approaches.of(leg.bearing, stem)) for leg in layout.legs)
+    return layout.model_copy(update={"legs": legs})
+
+
+def _listed(leg: Leg, told: Approach) -> Leg:
+    if leg.kind != "road":
+        return leg
+    update: dict[str, Any] = {}
+    if told.lanes_in and (leg.lanes_in or told.turns_in):
+        update = {"lanes_in": told.lanes_in, "turns_in": told.turns_in}
+    if told.lanes_out and (leg.lanes_out or told.turns_in):
+        update["lanes_out"] = told.lanes_out
+    return leg.model_copy(update=update)
 
 
 def with_closed(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:

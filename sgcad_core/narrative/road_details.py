@@ -98,12 +98,27 @@ def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[
 
 
 def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:
+    if by_way := list(_curves_by_way(told)):
+        yield from by_way
+        return
     for m in _CURVE.finditer(told.text):
         side = next(filter(None, m.groups())).lower()
         if _NEARBY.search(told.text[: m.start()]):
             continue
         cue = Cue(told.number, m[0], _CURVE.id)
         yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
+
+
+def _curves_by_way(told: Statement) -> Iterator[Curve]:
+    """The sides that a curve has for directions of travel that are named with them."""
+    if not rule("road_details.curve_word").search(told.text):
+        return
+    for by in (rule("road_details.curve_for"), rule("road_details.curve_as")):
+        found = [(m, way) for m in by.finditer(told.text) if (way := compass_of(m["way"]))]
+        for m, way in found:
+            yield Curve("left" if m["hand"].lower() == "left" else "right", way, Cue(told.number, m[0], by.id))
+        if found:
+            return
 
 
 def _driven(told: Statement, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:

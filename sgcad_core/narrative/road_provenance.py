@@ -8,10 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sgcad_core.facts import Fact
-from sgcad_core.narrative.compass import COMPASS
+from sgcad_core.kinds import FOUR_LEG, T
+from sgcad_core.narrative.compass import COMPASS, NAMES, turned
 from sgcad_core.narrative.lane_sources import stated
+from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.provenance import Telling
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.specs import Compass
 
 _WAYS = {
     "N": "northbound", "NE": "northeastbound", "E": "eastbound", "SE": "southeastbound",
@@ -43,6 +46,7 @@ def road_provenance(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
     for name, road in zip(road_names(facts), facts.roads, strict=True):
         yield from _road(telling, f"roads.{name}", road)
     yield from _junction(telling, facts)
+    yield from _approaches(telling, facts)
     if facts.opening:
         yield telling.stated("place.median_opening", True, facts.opening)
     if closed := facts.closed:
@@ -53,6 +57,32 @@ def road_provenance(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
             if said
             else telling.inferred(field, closed.side, "places.who leaves it", closed.where)
         )
+
+
+def _approaches(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
+    """Lanes of the legs of a junction as the story lists them, leg by leg."""
+    if facts.junction.kind not in (T, FOUR_LEG):
+        return
+    stem = facts.junction.stem
+    for leg in COMPASS:
+        told = facts.approaches.of(leg, stem)
+        if told.cue is None or (stem and leg == turned(stem, 180)) or not _lies(facts, leg):
+            continue
+        at = f"approaches.{NAMES[leg]}"
+        for name in ("lanes_in", "turns_in", "lanes_out"):
+            if value := getattr(told, name):
+                yield telling.stated(f"{at}.{name}", value, told.cue)
+
+
+def _lies(facts: RoadFacts, leg: Compass) -> bool:
+    """Whether a leg lies on one of the roads, or is told by itself."""
+    axes = {road.axis for road in facts.streets}
+    return (
+        leg == facts.junction.stem
+        or axis_of(leg) in axes
+        or leg in facts.approaches.legs
+        or axis_of(leg) in facts.approaches.axes
+    )
 
 
 def _road(telling: Telling, at: str, road: RoadFact) -> Iterator[Fact]:

@@ -12,6 +12,7 @@ from typing import Literal
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.approaches import Approaches, approaches_of
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
@@ -84,9 +85,15 @@ class RoadFacts:
     """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
+    approaches: Approaches = field(default_factory=Approaches)
+    """Lanes of single approaches, where they are listed."""
     answered: RoadLayout | None = None
     """The layout that a model answered, where some of it is `taken` (fields of `sgcad_core.narrative.claims`)."""
     taken: frozenset[str] = frozenset()
+
+    def lists(self, axis: Compass) -> bool:
+        """Whether the story tells every lane of both legs on an axis, leg by leg, and turn lanes among them."""
+        return _listed(self.approaches, self.junction, axis)
 
     @property
     def streets(self) -> tuple[RoadFact, ...]:
@@ -102,10 +109,11 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
     gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
-    junction = junction_of(told, driven, gathered)
+    approaches = approaches_of(told)
+    junction = junction_of(told, driven, gathered, approaches)
     rural = _rural(told)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
-    roads = tuple(_center_lane_elsewhere(r, roads) for r in roads)
+    roads = _placed(tuple(_center_lane_elsewhere(r, roads) for r in roads), approaches)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
     story = [t.text for t in told if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
@@ -126,10 +134,12 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
         MEDIAN_OPENING: (opens, opening),
         GORE: (names_gore(told), gore),
     }
+    roads = tuple(_uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
-    return RoadFacts(roads, junction, crash, notes, merge_lane, beside, walked, urban, closed, opening, leaves)
+    told_places = (merge_lane, beside, walked, urban, closed, opening, leaves)
+    return RoadFacts(roads, junction, crash, notes, *told_places, approaches)
 
 
 def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
@@ -176,6 +186,33 @@ def _rural(told: tuple[Statement, ...]) -> Cue | None:
 
 def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
+
+
+def _listed(approaches: Approaches, junction: JunctionFacts, axis: Compass) -> bool:
+    if junction.kind not in (T, FOUR_LEG):
+        return False
+    stem = junction.stem
+    legs = (stem,) if stem and axis_of(stem) == axis else (axis, turned(axis, 180))
+    told = [approaches.of(leg, stem) for leg in legs]
+    return any(one.turns_in for one in told) and all(one.lanes_in and one.lanes_out for one in told)
+
+
+def _uncounted(road: RoadFact) -> RoadFact:
+    """The road without the lanes that were counted for all of it, where those of each leg are told."""
+    return replace(road, lanes=replace(road.lanes, total=None, each_way=None, toward={}, turns={}, own=None))
+
+
+def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFact, ...]:
+    """The roads, streets on other axes than those of the two roads whose approaches are listed put there."""
+    axes = approaches.crossing
+    streets = [r for r in roads if r.kind not in JOINING and r.axis]
+    if len(axes) != 2 or {r.axis for r in streets} <= {*axes}:
+        return roads
+    free = [axis for axis in axes if axis not in {r.axis for r in streets}]
+    astray = [r for r in streets if r.axis not in axes]
+    moved = dict(zip(map(id, astray), free, strict=False))
+    kept = (r for r in roads if id(r) in moved or r not in astray)
+    return tuple(replace(r, axis=moved.get(id(r), r.axis)) for r in kept)
 
 
 def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
