@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.designations import designations
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
@@ -100,6 +101,9 @@ class Roster:
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
+        if self._named_in_full:
+            text = self._named_in_full.sub(self._number, text)
+            text = rule("vehicles.repeated_number").sub(self._once, text)
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
@@ -112,6 +116,14 @@ class Roster:
         if not self.aliases:
             return None
         return rule("vehicles.alias").given(names=tuple(sorted(self.aliases, key=len, reverse=True)))
+
+    @cached_property
+    def _named_in_full(self) -> re.Pattern[str] | None:
+        """Makes with models, wherever no description of a number holds them."""
+        models = {v.model.lower() for v in self.vehicles if v.model and self.aliases.get(v.model.lower()) == v.id}
+        if self.counted or not models:
+            return None
+        return rule("vehicles.alias_full").given(names=tuple(sorted(models, key=len, reverse=True)))
 
     def _number(self, match: re.Match[str]) -> str:
         return match.group(2) or self.aliases[match.group(1).lower()]
@@ -129,7 +141,8 @@ def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
+    named = {} if counted else designations(told)
+    found = tuple(_identity(vehicle, told, counted, named.get(vehicle, ())) for vehicle in _numbers(told))
     found = tuple(_marked(v) if any(_BESIDE.search(c.words) for c in v.described) else v for v in found)
     return Roster(found, _aliases(found))
 
@@ -159,9 +172,11 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
+def _identity(vehicle: str, told: list[str], counted: bool, named: tuple[Cue, ...]) -> Identity:
     found = introductions if counted else descriptions
     described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
+    if not any(rule("vehicles.make").search(cue.words) for cue in described):
+        described = (*described, *named)
     words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
@@ -281,9 +296,8 @@ def _names(v: Identity) -> set[str]:
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
-    if v.kind_stated and not v.counted:
-        names |= {
-            word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
-        }
+    if not v.counted:
+        plain = () if v.kind_stated else ("car", "cab")
+        names |= {w for w, kind in BODY_WORDS.items() if kind == v.kind and w not in ("vehicle", "truck", *plain)}
         names |= {"truck"} if v.kind in ("truck", "pickup") else set()
     return names
