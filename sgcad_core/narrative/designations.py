@@ -12,7 +12,7 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.makes import BODY_WORDS
 from sgcad_core.narrative.motion import Cue
 
-_WHOLE = (rule("designations.before"), rule("designations.apposed"))
+_WHOLE = (rule("designations.before"), rule("designations.apposed"), rule("designations.late"))
 _SHORT = (rule("designations.short_before"), rule("designations.short_after"))
 
 

@@ -101,9 +101,7 @@ class Roster:
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
-        if self._named_in_full:
-            text = self._named_in_full.sub(self._number, text)
-            text = rule("vehicles.repeated_number").sub(self._once, text)
+        text = self._by_models(text)
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
@@ -117,13 +115,15 @@ class Roster:
             return None
         return rule("vehicles.alias").given(names=tuple(sorted(self.aliases, key=len, reverse=True)))
 
-    @cached_property
-    def _named_in_full(self) -> re.Pattern[str] | None:
-        """Makes with models, wherever no description of a number holds them."""
+    def _by_models(self, text: str) -> str:
+        """With models replaced, wherever no description of a number holds them: "a Ford Focus", "Focus's front"."""
         models = {v.model.lower() for v in self.vehicles if v.model and self.aliases.get(v.model.lower()) == v.id}
         if self.counted or not models:
-            return None
-        return rule("vehicles.alias_full").given(names=tuple(sorted(models, key=len, reverse=True)))
+            return text
+        names = tuple(sorted(models, key=len, reverse=True))
+        text = rule("vehicles.alias_full").given(names=names).sub(self._number, text)
+        text = rule("vehicles.alias_bare").given(names=names).sub(lambda m: self.aliases[m.group().lower()], text)
+        return rule("vehicles.repeated_number").sub(self._once, text)
 
     def _number(self, match: re.Match[str]) -> str:
         return match.group(2) or self.aliases[match.group(1).lower()]
@@ -181,13 +181,18 @@ def _identity(vehicle: str, told: list[str], counted: bool, named: tuple[Cue, ..
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
-    model = _model(words, make.end()) if make else None
+    model = _model(words, make.end()) if make else _known_model(named)
     kind, stated = kind_of(words, model)
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
         color.group().lower() if color else None, kind, stated, trailer, is_animal(words), counted, described,
     )  # fmt: skip
+
+
+def _known_model(named: tuple[Cue, ...]) -> str | None:
+    """The model by which a report names a vehicle without a make."""
+    return next((cue.words for cue in named if cue.words.lower() not in BODY_WORDS), None)
 
 
 def _model(words: str, start: int) -> str | None:
