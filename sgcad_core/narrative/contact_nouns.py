@@ -48,7 +48,9 @@ def touches(text: str) -> Iterator[Touch]:
     for m in _RECEIVED.finditer(text):
         yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
     for m in _TOOK.finditer(text):
-        yield Touch(m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True)
+        yield Touch(
+            m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True
+        )
 
 
 def together(text: str) -> Iterator[Touch]:

@@ -1,7 +1,7 @@
 """By which words a report that numbers its vehicles names them: "a Geo Metro, V2", "the Jimmy is V1".
 
-A short name ("the Jimmy") brings the whole phrase with it that holds it anywhere in the text ("a GMC Jimmy"), as long as
-it is the only one. Knows no motion and no contact.
+A short name ("the Jimmy") brings the whole phrase with it that holds it anywhere in the text ("a GMC Jimmy"), as long
+as it is the only one. Knows no motion and no contact.
 """
 
 from __future__ import annotations

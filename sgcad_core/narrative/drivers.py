@@ -15,8 +15,8 @@ from sgcad_core.language import rule, words
 from sgcad_core.narrative.vehicles import Roster
 
 _PARTIES = words("party")
-_AGAINST = (("plaintiff", "defendant"), ("claimant", "respondent"), ("claimant", "insured"), ("petitioner", "respondent"),
-            ("claimant", "defendant"))  # fmt: skip
+_AGAINST = (("plaintiff", "defendant"), ("claimant", "respondent"), ("claimant", "insured"),
+            ("petitioner", "respondent"), ("claimant", "defendant"))  # fmt: skip
 """Who stand against each other."""
 _DROVE = rule("drivers.drove")
 _CALLED = rule("drivers.called")

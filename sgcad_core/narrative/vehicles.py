@@ -96,7 +96,7 @@ class Roster:
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
         text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids, self.counted), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
@@ -134,8 +134,14 @@ _BRACKETED = rule("vehicles.bracketed")
 _INTRODUCED = rule("references.introduced")
 
 
-def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
-    return match.group(2) if match.group(2) in ids else match.group(0)
+def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
+    """The number in place of its description; what that tells of its way ("a westbound van (V1)") stays before it."""
+    if match.group(2) not in ids:
+        return match.group(0)
+    told = None if counted else rule("vehicles.way_or_state").search(match.group(1))
+    if not told:
+        return match.group(2)
+    return f"{told['way']} {match.group(2)}" if told["way"] else f"{match.group(2)}, which was {told['state'].lower()},"
 
 
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
