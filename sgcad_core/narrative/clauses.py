@@ -14,7 +14,7 @@ from typing import NamedTuple
 from sgcad_core.language import rule
 from sgcad_core.narrative.drivers import NOBODY, drivers
 from sgcad_core.narrative.roles import role_of
-from sgcad_core.narrative.text import Role, Sentence
+from sgcad_core.narrative.text import NUMBERS, Role, Sentence
 from sgcad_core.narrative.vehicles import MENTION, Roster
 
 
@@ -72,10 +72,17 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
         if who.counted and (early or (role == "other" and _SUBJECT.search(text))):
             role = "approach"
+        elif role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told):
+            role = "approach"
         earlier, current = current, _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several, earlier))
         several = _of_several(text, several)
     return tuple(told)
+
+
+def _begins_with_somebody(text: str) -> bool:
+    """Whether a vehicle or a pronoun is what a sentence is about."""
+    return bool(_PRONOUN.match(text) or _SUBJECT.match(text))
 
 
 def _of_several(text: str, before: bool) -> bool:
@@ -201,7 +208,8 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
     if match.group("stranger"):
         return ()
     if match.group("both"):
-        return who.ids if len(who.ids) > 1 else ()
+        told = None if who.counted else rule("clauses.how_many").match(match.group())
+        return who.ids if len(who.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(who.ids)) else ()
     return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
 
 

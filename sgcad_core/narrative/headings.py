@@ -33,7 +33,7 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
     for m in _CAME_WAY.finditer(text):
         if not _TURN_BEFORE.search(text[: m.start()]) and not rule("headings.came_way_not").search(text[: m.start()]):
             _note_heading(motion, m.group("dir"), weight, _CAME_WAY.id)
-    for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
+    for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING, rule("headings.on_course")):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)
     for m in _FROM.finditer(text):
