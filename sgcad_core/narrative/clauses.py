@@ -70,7 +70,8 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
         # one account in order: nobody is at rest for good before the blow, or asked of his health
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
-        if (who.counted and (early or (role == "other" and _SUBJECT.search(text)))) or (role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)):
+        before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
+        if before or (who.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
         earlier, current = current, _main_subject(text, current, role, who)
         told.append(Statement(text, role, s.number, current, several, earlier))

@@ -55,12 +55,12 @@ def touches(text: str) -> Iterator[Touch]:
 
 def together(text: str) -> Iterator[Touch]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
-    for m in rule("contact_nouns.into").finditer(text):
-        if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
     for m in _TOGETHER.finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
+    for m in rule("contact_nouns.into").finditer(text):
+        if not _NOTHING.search(text[: m.start()]):
+            yield Touch(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
 
 
 def involved(text: str) -> Iterator[Touch]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.makes import BODY_WORDS
+from sgcad_core.narrative.makes import BODY_WORDS, is_model
 from sgcad_core.narrative.motion import Cue
 
 _WHOLE = (rule("designations.before"), rule("designations.apposed"), rule("designations.late"))
@@ -43,4 +43,4 @@ def _meant(short: str, phrases: Sequence[str]) -> str | None:
     holding = {p.lower(): p for p in phrases if rule("makes.whole_word").given(word=name).search(p.lower())}
     if len(holding) == 1:
         return next(iter(holding.values()))
-    return short if name in BODY_WORDS and not holding else None
+    return short if not holding and (name in BODY_WORDS or is_model(name)) else None

@@ -304,6 +304,7 @@ def _names(v: Identity) -> set[str]:
     names: set[str] = set()
     if v.make:
         names |= {word for word, make in MAKES.items() if make == v.make}
+        names |= set(rule("vehicles.short_make").findall(v.make.lower())) if not v.counted else set()
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
