@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.drivers import NOBODY, drivers
 from sgcad_core.narrative.roles import role_of
-from sgcad_core.narrative.text import Role, Sentence
+from sgcad_core.narrative.text import NUMBERS, Role, Sentence
 from sgcad_core.narrative.vehicles import MENTION, Roster
 
 
@@ -38,6 +39,8 @@ class Statement(NamedTuple):
     subject: str | None
     several: bool = False
     """Whether "they" at its start means all vehicles, not the driver of one."""
+    earlier: str | None = None
+    """The vehicle that the sentence before is about."""
 
 
 _SUBJECT = rule("clauses.subject")
@@ -58,18 +61,27 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
     told: list[Statement] = []
     current: str | None = None
     several = True
-    for s in sentences:
-        text = who.resolve(s.text)
+    sentences = tuple(sentences)
+    resolved = [who.resolve(s.text) for s in sentences]
+    called = NOBODY if who.counted else drivers(resolved, who)
+    for s, text in zip(sentences, resolved, strict=True):
+        text = text if who.counted else called.resolve(text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
         # one account in order: nobody is at rest for good before the blow, or asked of his health
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
-        if who.counted and (early or (role == "other" and _SUBJECT.search(text))):
+        before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
+        if before or (who.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
-        current = _main_subject(text, current, role, who)
-        told.append(Statement(text, role, s.number, current, several))
+        earlier, current = current, _main_subject(text, current, role, who)
+        told.append(Statement(text, role, s.number, current, several, earlier))
         several = _of_several(text, several)
     return tuple(told)
+
+
+def _begins_with_somebody(text: str) -> bool:
+    """Whether a vehicle or a pronoun is what a sentence is about."""
+    return bool(_PRONOUN.match(text) or _SUBJECT.match(text))
 
 
 def _of_several(text: str, before: bool) -> bool:
@@ -195,7 +207,8 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
     if match.group("stranger"):
         return ()
     if match.group("both"):
-        return who.ids if len(who.ids) > 1 else ()
+        told = None if who.counted else rule("clauses.how_many").match(match.group())
+        return who.ids if len(who.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(who.ids)) else ()
     return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from sgcad_core.kinds import RAMP
 from sgcad_core.language import rule
 from sgcad_core.narrative.motion import Deed, Motion
 from sgcad_core.specs import Area, Maneuver
@@ -234,8 +235,18 @@ def _over_the_line(motion: Motion, deed: Deed) -> Decision:
     return Decision("crossing_centerline" if left else "departing_road_right", deed=deed)
 
 
+def _before_the_rest(motion: Motion, acts: list[Deed]) -> Deed | None:
+    """Passing that is told before the way over the middle of the road that it took; a merge of one from a ramp."""
+    passing, over = motion.deed("overtaking", 3), next((d for d in acts if d.kind == "crossing_centerline"), None)
+    if passing and over and passing.when < over.when:
+        return passing
+    return motion.deed("merge", 3) if motion.origin == RAMP else None
+
+
 def _moving(motion: Motion, least: int) -> Decision:
     acts = _within_road(motion.deeds)
+    if first := _before_the_rest(motion, acts):
+        return Decision(first.kind, deed=first)  # type: ignore[arg-type]
     for kind in _PLAIN:
         if any(d.kind == kind for d in acts) and (deed := motion.deed(kind, 3)):
             return Decision(kind, deed=deed)

@@ -57,7 +57,16 @@ def motions(
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))
         if t.role in ("codes", "factors"):
             read_code(found, t, who)
+    for motion in found.values():
+        _hear_interview(motion)
     return found
+
+
+def _hear_interview(motion: Motion) -> None:
+    """Of whom nothing else tells what he did: what an interview tells, as if the report told it."""
+    if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.deeds):
+        return
+    motion.deeds = [d._replace(weight=3) for d in motion.deeds]
 
 
 def _behind(blow: Statement, segment: Segment) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.designations import designations
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
@@ -95,11 +96,12 @@ class Roster:
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
         text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids, self.counted), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
+        text = self._by_models(text)
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
@@ -113,6 +115,16 @@ class Roster:
             return None
         return rule("vehicles.alias").given(names=tuple(sorted(self.aliases, key=len, reverse=True)))
 
+    def _by_models(self, text: str) -> str:
+        """With models replaced, wherever no description of a number holds them: "a Ford Focus", "Focus's front"."""
+        models = {v.model.lower() for v in self.vehicles if v.model and self.aliases.get(v.model.lower()) == v.id}
+        if self.counted or not models:
+            return text
+        names = tuple(sorted(models, key=len, reverse=True))
+        text = rule("vehicles.alias_full").given(names=names).sub(self._number, text)
+        text = rule("vehicles.alias_bare").given(names=names).sub(lambda m: self.aliases[m.group().lower()], text)
+        return rule("vehicles.repeated_number").sub(self._once, text)
+
     def _number(self, match: re.Match[str]) -> str:
         return match.group(2) or self.aliases[match.group(1).lower()]
 
@@ -122,14 +134,21 @@ _BRACKETED = rule("vehicles.bracketed")
 _INTRODUCED = rule("references.introduced")
 
 
-def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
-    return match.group(2) if match.group(2) in ids else match.group(0)
+def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
+    """The number in place of its description; what that tells of its way ("a westbound van (V1)") stays before it."""
+    if match.group(2) not in ids:
+        return match.group(0)
+    told = None if counted else rule("vehicles.way_or_state").search(match.group(1))
+    if not told:
+        return match.group(2)
+    return f"{told['way']} {match.group(2)}" if told["way"] else f"{match.group(2)}, which was {told['state'].lower()},"
 
 
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
+    named = {} if counted else designations(told)
+    found = tuple(_identity(vehicle, told, counted, named.get(vehicle, ())) for vehicle in _numbers(told))
     found = tuple(_marked(v) if any(_BESIDE.search(c.words) for c in v.described) else v for v in found)
     return Roster(found, _aliases(found))
 
@@ -159,20 +178,27 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
+def _identity(vehicle: str, told: list[str], counted: bool, named: tuple[Cue, ...]) -> Identity:
     found = introductions if counted else descriptions
     described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
+    if not any(rule("vehicles.make").search(cue.words) for cue in described):
+        described = (*described, *named)
     words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
-    model = _model(words, make.end()) if make else None
+    model = _model(words, make.end()) if make else _known_model(named)
     kind, stated = kind_of(words, model)
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
         color.group().lower() if color else None, kind, stated, trailer, is_animal(words), counted, described,
     )  # fmt: skip
+
+
+def _known_model(named: tuple[Cue, ...]) -> str | None:
+    """The model by which a report names a vehicle without a make."""
+    return next((cue.words for cue in named if cue.words.lower() not in BODY_WORDS), None)
 
 
 def _model(words: str, start: int) -> str | None:
@@ -278,12 +304,12 @@ def _names(v: Identity) -> set[str]:
     names: set[str] = set()
     if v.make:
         names |= {word for word, make in MAKES.items() if make == v.make}
+        names |= set(rule("vehicles.short_make").findall(v.make.lower())) if not v.counted else set()
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
-    if v.kind_stated and not v.counted:
-        names |= {
-            word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
-        }
+    if not v.counted:
+        plain = () if v.kind_stated else ("car", "cab")
+        names |= {w for w, kind in BODY_WORDS.items() if kind == v.kind and w not in ("vehicle", "truck", *plain)}
         names |= {"truck"} if v.kind in ("truck", "pickup") else set()
     return names
