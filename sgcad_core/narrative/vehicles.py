@@ -351,9 +351,8 @@ def _names(v: Identity) -> set[str]:
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
     if (full := _full_name(v)) and not v.counted:
         names.add(full)
-    if v.kind_stated and not v.counted:
-        names |= {
-            word for word, kind in BODY_WORDS.items() if kind == v.kind and word not in ("car", "vehicle", "truck")
-        }
+    if not v.counted:
+        plain = () if v.kind_stated else ("car", "cab")
+        names |= {w for w, kind in BODY_WORDS.items() if kind == v.kind and w not in ("vehicle", "truck", *plain)}
         names |= {"truck"} if v.kind in ("truck", "pickup") else set()
     return names
