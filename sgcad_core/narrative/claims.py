@@ -30,6 +30,17 @@ if TYPE_CHECKING:
 _THROUGH = {"through_right": "through", "left_through": "through"}
 """Readers differ in whether they say that one may also turn from a through lane."""
 
+_ONWARD = (
+    "straight",
+    "slowing",
+    "stopped",
+    "overtaking",
+    "lane_change_left",
+    "lane_change_right",
+    "crossing_centerline",
+)
+"""Maneuvers of those who go on the way that they head."""
+
 KINDS = (
     "kind", "heading", "maneuver", "exit", "lane", "speed", "contact", "areas", "legs", "lanes", "turns", "median",
     "curve", "limit", "control", "light", "weather", "surface",
@@ -94,9 +105,18 @@ def _ways(reading: Reading) -> Claims:
             continue
         if actor.lane is not None:
             found[f"lane.{v.id}"] = Claim(actor.lane, v.lane is not None or v.lane_word is not None)
-        if actor.exit_road in COMPASS:
-            found[f"exit.{v.id}"] = Claim(actor.exit_road, v.exit_heading is not None or v.maneuver_stated)
+        if way := _way_out(v) or (actor.exit_road if actor.exit_road in COMPASS else None):
+            found[f"exit.{v.id}"] = Claim(way, v.exit_heading is not None or v.maneuver_stated)
     return found
+
+
+def _way_out(v: VehicleFacts) -> Compass | None:
+    """The way on as far as it is told: that of a turn made or meant, or straight on."""
+    if v.exit_heading:
+        return v.exit_heading
+    if not v.heading_stated or v.heading is None or v.meant or v.faces:
+        return None
+    return {"u_turn": turned(v.heading, 180), **dict.fromkeys(_ONWARD, v.heading)}.get(v.maneuver)
 
 
 def _roads(facts: RoadFacts) -> Iterator[tuple[str, Claim]]:

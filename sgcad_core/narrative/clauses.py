@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.drivers import NOBODY, drivers
 from sgcad_core.narrative.roles import role_of
 from sgcad_core.narrative.text import Role, Sentence
 from sgcad_core.narrative.vehicles import MENTION, Roster
@@ -38,6 +39,8 @@ class Statement(NamedTuple):
     subject: str | None
     several: bool = False
     """Whether "they" at its start means all vehicles, not the driver of one."""
+    earlier: str | None = None
+    """The vehicle that the sentence before is about."""
 
 
 _SUBJECT = rule("clauses.subject")
@@ -58,16 +61,19 @@ def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
     told: list[Statement] = []
     current: str | None = None
     several = True
-    for s in sentences:
-        text = who.resolve(s.text)
+    sentences = tuple(sentences)
+    resolved = [who.resolve(s.text) for s in sentences]
+    called = NOBODY if who.counted else drivers(resolved, who)
+    for s, text in zip(sentences, resolved, strict=True):
+        text = text if who.counted else called.resolve(text)
         text = _others(text, who, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
         # one account in order: nobody is at rest for good before the blow, or asked of his health
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
         if who.counted and (early or (role == "other" and _SUBJECT.search(text))):
             role = "approach"
-        current = _main_subject(text, current, role, who)
-        told.append(Statement(text, role, s.number, current, several))
+        earlier, current = current, _main_subject(text, current, role, who)
+        told.append(Statement(text, role, s.number, current, several, earlier))
         several = _of_several(text, several)
     return tuple(told)
 

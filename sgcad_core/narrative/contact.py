@@ -85,9 +85,27 @@ def _sentence(told: Statement, who: Roster) -> list[Blow]:
         if blow:
             found.append(blow)
     found += [_touch(t, told) for t in touches(text)]
+    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, who)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
     found += [_touch(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
     return [b for b in found if b.actor in who.ids and b.actor != b.other]
+
+
+def _with_striker(blow: Blow, text: str) -> Blow:
+    """A collision of both with the striker first, where the sentence tells who struck."""
+    said = rule("contact_nouns.striker").search(text) if blow.mutual or blow.noun else None
+    if not said or said["v"] != blow.other:
+        return blow
+    return replace(blow, actor=blow.other, other=blow.actor, actor_area=blow.other_area, other_area=blow.actor_area)
+
+
+def _unnamed_pair(told: Statement, text: str, who: Roster) -> list[Blow]:
+    """ "Front met front.", where there are but two."""
+    pair = rule("contact_nouns.bare_pair").search(text) if len(who.ids) == 2 and not MENTION.search(text) else None
+    if not pair or who.counted:
+        return []
+    areas = area_of(pair["a1"]), area_of(pair["a2"])
+    return [Blow(*who.ids, *areas, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
 
 
 def _touch(t: Touch, told: Statement) -> Blow:
@@ -101,6 +119,7 @@ def _blow(
 ) -> Blow | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
+    passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
     befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
     if not befell and (says.NEAR_MISS.search(before) or _is_noun(before, m.group(), behind)):
         return None
@@ -117,6 +136,8 @@ def _blow(
     if len(subjects) > 1:
         return _mutual(told, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], _subject_area(before, subjects[0])
+    if actor not in MENTION.findall(before):
+        actor = _meant_by_pronoun(told, actor, scope, who)
     other = None if passive or not who.counted else who.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
@@ -125,6 +146,12 @@ def _blow(
         if passive
         else _active(told, actor, actor_area, scope, m.group(), who)
     )
+
+
+def _meant_by_pronoun(told: Statement, actor: str, scope: str, who: Roster) -> str:
+    """Whom "it" means that struck or was struck: not whom the sentence itself names behind the verb."""
+    whom = MENTION.search(scope)
+    return (_the_other(told, actor, who) or actor) if whom and whom.group() == actor else actor
 
 
 def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
@@ -173,7 +200,7 @@ def _subject_area(before: str, subject: str) -> Zone | None:
     found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
     if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
-    own = rule("contact.own_area").search(before)
+    own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
     return area_of(own["area"]) if own else None
 
 
@@ -188,13 +215,25 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
     other, other_area = _object(told, actor, rest, who)
     if other is None:
         return None
+    if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
+        actor, area = named["v"], area_of(named["area"])
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
-        area, other_area = area or "front", other_area or "back"
+        area, other_area = area or "front", "back"
     if rule("contact.backs_into").match(verb):
         area = area or "back"
     if pair and area is None:
         area, other_area = pair
-    return Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+    blow = Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+    return _area_against_area(blow, scope)
+
+
+def _area_against_area(blow: Blow, scope: str) -> Blow:
+    """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    met = says.AGAINST.search(scope)
+    if not met or {met["v1"], met["v2"]} != {blow.actor, blow.other}:
+        return blow
+    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
+    return replace(blow, actor_area=zones[blow.actor], other_area=zones[blow.other])
 
 
 def _clause(scope: str) -> str:
@@ -210,7 +249,7 @@ def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str |
     thing = says.OBJECT.match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
-        return _not_itself(m["v"], actor, who), area
+        return _not_itself(m["v"], actor, who, told), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
@@ -230,7 +269,8 @@ def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
     subject = next((v for v in who.ids[:1] if who.counted and v != actor), None)
     named = (v for v in MENTION.findall(told.text) if v != actor and v in who.ids)
-    return who.other(actor) or next(named, subject)
+    earlier = told.earlier if told.earlier != actor else None
+    return who.other(actor) or next(named, subject or earlier)
 
 
 def _damaged(told: Statement, who: Roster) -> Zone | None:
@@ -239,9 +279,11 @@ def _damaged(told: Statement, who: Roster) -> Zone | None:
     return area_of(found["area"]) if found else None
 
 
-def _not_itself(named: str, actor: str, who: Roster) -> str | None:
-    """A vehicle cannot strike itself: the writer meant the other one."""
-    return named if named != actor else who.other(actor)
+def _not_itself(named: str, actor: str, who: Roster, told: Statement) -> str | None:
+    """A vehicle cannot strike itself: the writer meant the other one, or whom the sentence before is about."""
+    if named != actor:
+        return named
+    return who.other(actor) if who.counted else _the_other(told, actor, who)
 
 
 def _area_behind(text: str) -> Zone | None:
@@ -267,7 +309,7 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
         return None
     area, other_area = struck_pair(scope, area, other_area)
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
-    other = _not_itself(other, actor, who) or other
+    other = _not_itself(other, actor, who, told) or other
     return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
 
 

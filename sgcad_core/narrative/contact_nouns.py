@@ -29,6 +29,7 @@ _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 """Groups of who is pushed, into whom, and where."""
 _NAMED = rule("contact_nouns.named")
 _TOOK = rule("contact_nouns.took")
+_RECEIVED = rule("contact_nouns.received")
 _CAUSED = rule("contact_nouns.caused")
 _TOGETHER = rule("contact_nouns.together")
 _NOTHING = rule("contact_nouns.nothing")
@@ -44,12 +45,19 @@ def touches(text: str) -> Iterator[Touch]:
     for m in says.PUSHED.finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
+    for m in _RECEIVED.finditer(text):
+        yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
     for m in _TOOK.finditer(text):
-        yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True)
+        yield Touch(
+            m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True
+        )
 
 
 def together(text: str) -> Iterator[Touch]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
+    for m in rule("contact_nouns.into").finditer(text):
+        if not _NOTHING.search(text[: m.start()]):
+            yield Touch(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
     for m in _TOGETHER.finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")

@@ -20,6 +20,8 @@ _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", 
 """What a vehicle may wait or prepare to do and never does."""
 _SIDES = ("side", "side2", "side3", "side4", "side5", "side6")
 _TURNS = ("turn_left", "turn_right")
+_BY_ANGLE = {90: "right", 135: "right", 225: "left", 270: "left"}
+"""The hand of a turn by its change of heading, clockwise degrees."""
 _ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
 """Ways of moving that are no maneuver of their own, and may be waited for."""
 _BEFORE = ("came_on", "moved_on")
@@ -40,6 +42,7 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         motion.deeds.append(
             Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
         )
+    _read_turn_to(motion, text, weight, number, at)
     told_now = of_role("deed_now") if motion.ordered else ()
     for deed in (*of_role("deed"), *told_now):
         for m in deed.finditer(text):
@@ -75,10 +78,27 @@ def _read_from_onto(motion: Motion, text: str, weight: int, number: int, at: int
     """ "From westbound Elm Street onto southbound Oak Avenue": a turn by its two directions, where no word tells it."""
     for m in rule("deeds.from_onto").finditer(text):
         start, end = compass_of(m["from"]), compass_of(m["onto"])
-        side = {90: "right", 135: "right", 225: "left", 270: "left"}.get(between(start, end)) if start and end else None
+        side = _BY_ANGLE.get(between(start, end)) if start and end else None
         told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.deeds)
         if side and not told:
             motion.deeds.append(Deed(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
+
+
+def _read_turn_to(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """ "Turned toward the north" of who heads east, and "wanted to go left": turns that no other word tells."""
+    if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.deeds):
+        return
+    for m in rule("deeds.turn_to").finditer(text):
+        start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
+        side = _BY_ANGLE.get(between(start, end)) if start and end else None
+        if side and not _NOT.search(text[: m.start()]):
+            want = "want_" if _LATER.search(text[: m.start()]) else ""
+            motion.deeds.append(Deed(f"{want}turn_{side}", weight, number, m.group(), "deeds.turn_to", at + m.end()))
+    for m in rule("deeds.go_turn").finditer(text):
+        want = "want_" if m["go"].lower() == "go" else ""
+        if not _NOT.search(text[: m.start()]):
+            kind = f"{want}turn_{m['hand'].lower()}"
+            motion.deeds.append(Deed(kind, weight, number, m.group(), "deeds.go_turn", at + m.end()))
 
 
 def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:

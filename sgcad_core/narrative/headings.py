@@ -15,6 +15,7 @@ _GAP_STOPS = rule("headings.gap_stops")
 _FROM = rule("headings.from")
 _BOUND_ASIDE = rule("headings.bound_aside")
 _FOLLOWING = rule("headings.following")
+_CAME_WAY = rule("headings.came_way")
 _FROM_BOUND = rule("headings.from_bound")
 _EXIT = rule("headings.exit")
 _TURN_BEFORE = rule("headings.turn_before")
@@ -29,6 +30,9 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
             _note_heading(motion, words.get("dir") or words.get("dir2") or words.get("dir3") or "", weight, by.id)
             if way := compass_of(words.get("dir") or ""):
                 _note_sense(motion, m, way)
+    for m in _CAME_WAY.finditer(text):
+        if not _TURN_BEFORE.search(text[: m.start()]) and not rule("headings.came_way_not").search(text[: m.start()]):
+            _note_heading(motion, m.group("dir"), weight, _CAME_WAY.id)
     for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)
@@ -56,9 +60,9 @@ _BOUND_VEHICLE = rule("headings.bound_vehicle")
 def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
     """ "the northbound V2" tells a heading wherever it stands."""
     for m in _BOUND_VEHICLE.finditer(text):
-        vehicle = m["v"] or m["v2"]
+        vehicle = m["v"] or m["v2"] or m["v3"]
         if vehicle in found:
-            _note_heading(found[vehicle], m["dir"] or m["dir2"], weight, _BOUND_VEHICLE.id)
+            _note_heading(found[vehicle], m["dir"] or m["dir2"] or m["dir3"], weight, _BOUND_VEHICLE.id)
 
 
 def _note_heading(motion: Motion, word: str, weight: int, by: str) -> None:

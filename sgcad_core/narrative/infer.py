@@ -13,7 +13,14 @@ from sgcad_core.language import rule
 from sgcad_core.narrative.compass import between, turned
 from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
-from sgcad_core.narrative.maneuvers import SHIFTED, Decision, changed_lanes_after_turn, decide, turned_before
+from sgcad_core.narrative.maneuvers import (
+    SHIFTED,
+    Decision,
+    changed_lanes_after_turn,
+    decide,
+    meant_turn,
+    turned_before,
+)
 from sgcad_core.narrative.motion import Heard, Motion
 from sgcad_core.narrative.relative import contact_prefers, relative
 from sgcad_core.narrative.sides import join_contacts
@@ -148,7 +155,8 @@ def _areas_hit(vehicle: str, pairs: list[Blow]) -> tuple[Area | None, ...]:
 def _exit(motion: Motion, out: Settled, vehicle: str) -> Compass | None:
     """The told heading behind a turn, if it is not the initial one."""
     told = [e for e in motion.exits if e != out.headings.get(vehicle)]
-    return told[0] if told and out.maneuvers[vehicle] in ("turn_left", "turn_right", "u_turn") else None
+    turns = out.maneuvers[vehicle] in ("turn_left", "turn_right", "u_turn", "merge") or meant_turn(motion)
+    return told[0] if told and turns else None
 
 
 # ------------------------------------------------------------------ headings

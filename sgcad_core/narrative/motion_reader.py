@@ -60,7 +60,16 @@ def motions(
             read_code(found, t, who)
     if not who.counted:
         read_speeds_beside(found, [t for t in told if t.role not in _UNREAD])
+    for motion in found.values():
+        _hear_interview(motion)
     return found
+
+
+def _hear_interview(motion: Motion) -> None:
+    """Of whom nothing else tells what he did: what an interview tells, as if the report told it."""
+    if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.deeds):
+        return
+    motion.deeds = [d._replace(weight=3) for d in motion.deeds]
 
 
 def _behind(blow: Statement, segment: Segment) -> bool:

@@ -95,7 +95,7 @@ class Roster:
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
         text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids), text)
+        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids, self.counted), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
@@ -135,8 +135,14 @@ _BRACKETED = rule("vehicles.bracketed")
 _INTRODUCED = rule("references.introduced")
 
 
-def _keep_number(match: re.Match[str], ids: tuple[str, ...]) -> str:
-    return match.group(2) if match.group(2) in ids else match.group(0)
+def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
+    """The number in place of its description; what that tells of its way ("a westbound van (V1)") stays before it."""
+    if match.group(2) not in ids:
+        return match.group(0)
+    told = None if counted else rule("vehicles.way_or_state").search(match.group(1))
+    if not told:
+        return match.group(2)
+    return f"{told['way']} {match.group(2)}" if told["way"] else f"{match.group(2)}, which was {told['state'].lower()},"
 
 
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
@@ -187,7 +193,7 @@ def _described(vehicle: str, described: tuple[Cue, ...], told: list[str], counte
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
-    model = _model(words, make.end()) if make else None
+    model = _model(words, make.end()) if make else _model_alone(words)
     kind, stated = kind_of(words, model)
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
@@ -215,7 +221,7 @@ def _in_full(found: tuple[Identity, ...], told: list[str]) -> tuple[Identity, ..
 def _completed(v: Identity, full: list[Cue], told: list[str]) -> Identity:
     words = " ".join(cue.words for cue in v.described).lower()
     name = rule("vehicles.make").search(words) or rule("vehicles.model").search(words)
-    if v.model or not name:
+    if (v.make and v.model) or not name:
         return v
     same = [cue for cue in full if rule("makes.whole_word").given(word=name[0]).search(cue.words.lower())]
     return _described(v.id, (same[0], *v.described), told, False) if len(same) == 1 else v
@@ -224,6 +230,11 @@ def _completed(v: Identity, full: list[Cue], told: list[str]) -> Identity:
 def _fits(v: Identity, cue: Cue) -> bool:
     """Whether somebody may be of that make and model: who has a body word has one of its kind."""
     return not v.kind_stated or kind_of(cue.words, None)[0] == v.kind
+
+
+def _model_alone(words: str) -> str | None:
+    """A known model without a make."""
+    return next((m[0] for m in rule("vehicles.model").finditer(words) if m[0][0].isupper()), None)
 
 
 def _model(words: str, start: int) -> str | None:

@@ -47,6 +47,7 @@ def plain(told: Statement, who: Roster) -> str:
     text = rule("zones.of_trailer").sub(r"of \1", text)
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
+    text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
     return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)
 
