@@ -72,9 +72,9 @@ class Config(Record):
     hold_findings: bool = False
     """What findings tell exactly (a maneuver, a number of lanes), further attempts' grammar does not let differ."""
     second_opinion: str = Field("", pattern=r"^[\w-]*$")
-    """configs/prompts/<second_opinion>.md, with which the model is asked for the crash's gist, or "learned": the reader
-    that learned where the rules err. Where it is surer than the rules they give way, field by field. Empty: the rules
-    alone read the narrative."""
+    """"whole": the model is asked for road and behavior; "learned": the reader that learned where the rules err; else
+    configs/prompts/<second_opinion>.md, with which the model is asked for the crash's gist. Where one is surer than the
+    rules they give way, field by field. Empty: the rules alone read the narrative."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None

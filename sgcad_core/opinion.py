@@ -14,8 +14,8 @@ Value = bool | str
 LEARNED = "learned"
 """In a config's `second_opinion`: the reader that learned where the rules err (`sgcad_core.narrative.learned`)."""
 WHOLE = "whole"
-"""The same reader for reports that number nobody; for the others the config's model, which is asked for road and
-behavior (`sgcad_core.narrative.whole_fusion`)."""
+"""The config's model, which is asked for road and behavior of every report that numbers its vehicles
+(`sgcad_core.narrative.whole_fusion`)."""
 WEIGHTS = Path(__file__).parent / "narrative" / "learned.npz"
 """What that reader learned."""
 
@@ -43,7 +43,8 @@ class Answered(Record):
     layout: RoadLayout
     behavior: BehaviorSpec
     p: Mapping[str, float] = {}
-    """Probability of each value by its path ("road.legs[0].lanes_in", "crash.actors[1].maneuver"); no entry: 1."""
+    """Probability of each value by its path ("road.legs[0].lanes_in", "crash.actors[1].maneuver"); no entry: 1, since
+    nothing was chosen. Empty: nothing is known."""
 
 
 class Opinion(Record):

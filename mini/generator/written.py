@@ -69,9 +69,11 @@ def _of_file(file: Path) -> Iterator[Written]:
 
 def crash_of(given: dict[str, Any]) -> Crash:
     """A crash from its fields as JSON."""
-    parts = {"legs": Leg, "actors": Actor, "contacts": Contact, "accesses": Access}
-    rest = {key: value for key, value in given.items() if key not in parts}
-    return Crash(**rest, **{key: [kind(**one) for one in given[key]] for key, kind in parts.items()})
+    parts: dict[str, Any] = {
+        key: [kind(**one) for one in given[key]]
+        for key, kind in (("legs", Leg), ("actors", Actor), ("contacts", Contact), ("accesses", Access))
+    }
+    return Crash(**(given | parts))
 
 
 # ------------------------------------------------------------------ other ways to see it
@@ -97,7 +99,7 @@ def _turned_fact(fact: str, by: int) -> str:
 def _turned_word(found: re.Match[str], quarters: int) -> str:
     """A compass word turned; a single letter only where it stands for a direction of travel ("N/B")."""
     if long := found["long"]:
-        if found["end"] not in ("", "bound", "ern", "erly", "ward", "wards", "ernmost", "er"):
+        if found["end"].lower() not in ("", "bound", "ern", "erly", "ward", "wards", "ernmost", "er"):
             return found[0]
         return _like(long, _moved(long.lower(), quarters)) + found["end"]
     short = found["short"]

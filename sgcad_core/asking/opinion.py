@@ -17,16 +17,13 @@ from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
 from sgcad_core.narrative import learned
-from sgcad_core.narrative.claims import KINDS
+from sgcad_core.narrative.claims import KINDS, UNKNOWN_P
 from sgcad_core.narrative.gist import FIELDS, Gist
 from sgcad_core.opinion import WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records import Context, CrashReport, Query, Token
 from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, RoadLayout
-
-UNKNOWN_P = 0.5
-"""Of a value whose model gives no probabilities, as servers do not: the weights alone then decide."""
 
 
 def seconded(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
@@ -51,10 +48,10 @@ def corrected(report: CrashReport) -> CrashReport:
 
 
 def whole(report: CrashReport, ask: Ask) -> CrashReport:
-    """The report with an opinion of all of it: the model's of one that numbers its vehicles or that only a drawing
-    tells, else the learned reader's. Raises ConfigError for weights that there are not."""
-    if report.narrative.strip() and report.reading.crash.unnumbered:
-        return corrected(report)
+    """The report with the model's answers to all of it; without an opinion where the model has no answer, and where
+    nobody is numbered. Raises ConfigError for weights that there are not."""
+    if report.reading.crash.unnumbered:
+        return report
     weights = load_weights(WHOLE, KINDS)
     context = Context(narrative=report.narrative, diagrams=report.diagrams)
     try:

@@ -47,6 +47,9 @@ KINDS = (
 )  # fmt: skip
 """Kinds of fields, for which a combiner has weights."""
 
+UNKNOWN_P = 0.5
+"""Of a value whose model gives no probabilities, as servers do not: the weights alone then decide."""
+
 
 class Claim(NamedTuple):
     """A value; whether the text tells it outright; its probability, where the reader gives one."""
@@ -175,7 +178,7 @@ def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
 def _heading(road: str) -> Compass | None:
     """Where one drives who comes in on a leg ("N") or on its outer piece ("N_outer")."""
     bearing = road.removesuffix("_outer")
-    return turned(bearing, 180) if bearing in COMPASS else None  # type: ignore[arg-type]
+    return turned(bearing, 180) if bearing in COMPASS else None
 
 
 def _met(behavior: BehaviorSpec, p: Mapping[str, float]) -> Iterator[tuple[str, Claim]]:
@@ -190,7 +193,7 @@ def _met(behavior: BehaviorSpec, p: Mapping[str, float]) -> Iterator[tuple[str, 
 
 def _answered_roads(said: Answered) -> Iterator[tuple[str, Claim]]:
     legs, p = said.layout.legs, said.p
-    at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
+    at: dict[str, str] = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
 
     def sure(some: Iterable[Leg], *names: str) -> float:
         return min((_p(p, f"{at[leg.bearing]}.{name}") for leg in some for name in names), default=1.0)
@@ -213,8 +216,8 @@ def _turns_p(some: Iterable[Leg], at: Mapping[str, str], p: Mapping[str, float])
 
 
 def _p(p: Mapping[str, float], path: str) -> float:
-    """1 where the grammar left no choice."""
-    return p.get(path, 1.0)
+    """1 where the grammar left no choice; even where nothing is known, as of a server that gives no probabilities."""
+    return p.get(path, 1.0) if p else UNKNOWN_P
 
 
 # ------------------------------------------------------------------ shared terms

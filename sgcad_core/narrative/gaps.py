@@ -77,3 +77,12 @@ def untold(text: str, met: Iterable[bool]) -> Gap | None:
         return _NO_CRASH
     return Gap("the narrative's crash cannot be read: no contact of the report's subject is told",
                ("who struck whom or what", "with which sides"), unread=True)  # fmt: skip
+
+
+def thin(text: str) -> Gap:
+    """Of a text that numbers several vehicles and tells neither a contact nor where anybody drove: to draw it would be
+    to invent it."""
+    if not rule("gaps.crash_word").search(text):
+        return _NO_CRASH
+    reason = "the narrative tells neither who struck whom nor how anybody traveled"
+    return Gap(reason, ("who struck whom, and with which sides", "in which direction each traveled"), unread=True)

@@ -29,7 +29,7 @@ from sgcad_core.narrative.crash_roles import role_facts
 from sgcad_core.narrative.draft import Draft
 from sgcad_core.narrative.facts import CrashFacts, crash_of
 from sgcad_core.narrative.forms import account
-from sgcad_core.narrative.gaps import Gap, foreign, several, untold, without_actors
+from sgcad_core.narrative.gaps import Gap, foreign, several, thin, untold, without_actors
 from sgcad_core.narrative.ids import renamed
 from sgcad_core.narrative.infer import settle
 from sgcad_core.narrative.later_impacts import later_impacts, with_props
@@ -201,4 +201,7 @@ def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: Cr
     alone = len(crash.vehicles) == 1 and not crash.contacts
     subject = crash.vehicles[0].id
     mine = (c.stated and subject in (c.striker, c.struck) for c in crash.contacts)
-    return untold(narrative, mine) if named.who.counted or alone else None
+    if named.who.counted or alone:
+        return untold(narrative, mine)
+    told = any(c.stated for c in crash.contacts) or any(v.heading_stated for v in crash.vehicles)
+    return None if told else thin(narrative)

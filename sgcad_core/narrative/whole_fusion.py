@@ -19,17 +19,21 @@ from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.claims import Claim, Claims, kind_of, model_claims, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
+from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.fusion import FILLS, model_right
 from sgcad_core.narrative.lanes import LaneFacts
+from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.others import OtherFacts
 from sgcad_core.narrative.roads import RoadFact, RoadFacts
 from sgcad_core.specs import Area, Compass, RoadLayout
 
 if TYPE_CHECKING:
-    from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
     from sgcad_core.narrative.reading import Reading
     from sgcad_core.opinion import Answered, Opinion, Weights
 
+SURE = 0.9
+"""How sure the model must be of each part of a contact that the rules cannot read."""
 _ROAD = ("legs", "lanes", "turns", "curve")
 """Fields that a layout carries and no fact of a road holds."""
 _TURNS = ("turn_left", "turn_right", "u_turn")
@@ -48,7 +52,13 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
         return reading
-    taken = decided(rules_claim(reading), model_claims(opinion.answered), opinion.weights, opinion.takes)
+    heard = model_claims(opinion.answered)
+    gap = reading.crash.gap
+    if gap is not None:
+        reading = _filled(reading, opinion.answered, heard) if gap.unread else reading
+        if reading.crash.gap is not None:
+            return reading
+    taken = decided(rules_claim(reading), heard, opinion.weights, opinion.takes)
     crash, used = _crash(reading.crash, taken)
     roads, laid = _roads(replace(reading.roads, crash=crash), taken, opinion.answered)
     if not (used | laid):
@@ -87,6 +97,40 @@ def _fact(key: str, one: Taken) -> Fact:
 
 
 _NAMES = {"exit": "exit_heading", "speed": "speed_mph"}
+
+
+# ------------------------------------------------------------------ where the rules can read no crash
+def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
+    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove."""
+    if not said.behavior.contacts or reading.roads.junction.kind not in _LEARNED:
+        return reading
+    first = said.behavior.contacts[0]
+    sure = ("contact", "areas", *(f"heading.{id}" for id in (first.striker, first.struck) if id.startswith("V")))
+    if any(key not in heard or heard[key].p < SURE for key in sure):
+        return reading
+    crash, known = reading.crash, {v.id: v for v in reading.crash.vehicles}
+    vehicles = tuple(
+        _with_claims(known.get(actor.id) or VehicleFacts(actor.id, actor.kind), heard)
+        for actor in said.behavior.actors
+        if actor.id.startswith("V")
+    )
+    others = tuple(OtherFacts(a.id, a.kind, a.kind) for a in said.behavior.actors if not a.id.startswith("V"))
+    contacts = tuple(
+        ContactFacts(c.striker, c.struck, c.striker_area, c.struck_area, True) for c in said.behavior.contacts
+    )
+    crash = replace(crash, vehicles=vehicles, others=others, contacts=contacts, oriented=True, gap=None)
+    facts = [_fact(key, Taken(heard[key].value, heard[key].p)) for key in sure]
+    names = {fact.field for fact in facts}
+    kept = tuple(fact for fact in reading.facts if fact.field not in names)
+    return replace(reading, crash=crash, roads=replace(reading.roads, crash=crash), facts=(*kept, *facts))
+
+
+def _with_claims(v: VehicleFacts, heard: Claims) -> VehicleFacts:
+    """A vehicle as the model has it."""
+    for name, change in _VEHICLE.items():
+        if (one := heard.get(f"{name}.{v.id}")) is not None:
+            v = change(v, one.value)
+    return v
 
 
 # ------------------------------------------------------------------ who moved how, who met whom
@@ -138,8 +182,8 @@ def _met(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[tuple[ContactFa
 
 def _moved(v: VehicleFacts, maneuver: Any) -> VehicleFacts:
     """With another maneuver; where it was to turn to belongs to the maneuver before."""
-    gone = {} if maneuver in _TURNS else {"exit_heading": None, "meant": None}
-    return replace(v, maneuver=maneuver, maneuver_stated=True, from_stop=False, **gone)
+    moved = replace(v, maneuver=maneuver, maneuver_stated=True, from_stop=False)
+    return moved if maneuver in _TURNS else replace(moved, exit_heading=None, meant=None)
 
 
 _VEHICLE: Mapping[str, Callable[[VehicleFacts, Any], VehicleFacts]] = {
@@ -160,6 +204,7 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     used = {key for key in taken if kind_of(key) in _ROAD}
     if used and not _carries(said.layout, facts.crash):
         used = set()
+    added = _added(facts, said.layout) if "legs" in used else frozenset[str]()
     if "legs" in used:
         facts = replace(facts, junction=_junction(facts, said.layout))
     if "control" in taken:
@@ -170,9 +215,15 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
         if name in ("median", "limit", "lanes"):
             facts = _with_road(facts, cast("Compass", axis), _CHANGES[name], taken[key].value)
             used |= {key} if name != "lanes" else set()
-    if not used & {key for key in taken if kind_of(key) in _ROAD}:
-        return facts, used
-    return replace(facts, answered=said.layout, taken=frozenset(key for key in used if kind_of(key) in _ROAD)), used
+    laid = frozenset(key for key in used if kind_of(key) in _ROAD)
+    return (replace(facts, answered=said.layout, taken=laid | added) if laid else facts), used
+
+
+def _added(facts: RoadFacts, layout: RoadLayout) -> frozenset[str]:
+    """Lanes and turns of the roads that the text does not have: they come with the answer's legs."""
+    own = {axis_of(leg.bearing) for leg in layout_of_facts(facts).legs}
+    axes = {axis_of(leg.bearing) for leg in layout.legs} - own
+    return frozenset(f"{name}.{axis}" for axis in axes for name in ("lanes", "turns"))
 
 
 def _carries(layout: RoadLayout, crash: CrashFacts) -> bool:

@@ -214,5 +214,33 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
     assert any("the rules' reading stands" in str(note) for note in result["notes"])
 
 
+def test_a_models_answers_to_the_whole_report_join_the_reading(monkeypatch, tmp_path):
+    from sgcad_core.narrative.claims import KINDS
+    from sgcad_core.opinion import Answered, Opinion, Weights
+    from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
+
+    legs = (Leg(bearing="N", lanes_in=2, lanes_out=2), Leg(bearing="S", lanes_in=2, lanes_out=2))
+    actors = tuple(
+        Actor(id=name, kind=kind, road=road, direction="forward", maneuver="straight")
+        for name, kind, road in (("V1", "truck", "S"), ("V2", "car", "N"))
+    )
+    contact = Contact(striker="V1", struck="V2", striker_area="front", struck_area="front")
+    behavior = BehaviorSpec(actors=actors, contacts=(contact,))
+    weights = {kind: Weights(differ=9.0) for kind in KINDS}
+    said = Opinion(answered=Answered(layout=RoadLayout(legs=legs), behavior=behavior), weights=weights)
+    monkeypatch.setattr("flows.chain.whole", lambda report, ask: report.model_copy(update={"opinion": said}))
+    source = tmp_path / "c1.txt"
+    source.write_text("V1 was northbound and V2 was southbound. The front of V1 struck the front of V2.")
+    config = load(settings.ROOT / "configs" / "fused.yaml", ("tracker=jsonl",))
+    result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
+    assert result["status"] == "generated"
+    taken = {fact["field"]: fact["value"] for fact in result["facts"] if fact["basis"] == "model"}
+    assert taken["vehicles.V1.kind"] == "truck"
+    assert "answered.lanes.N" in taken
+    specs = json.loads(next((tmp_path / "out").rglob("specs.json")).read_text())
+    assert {actor["id"]: actor["kind"] for actor in specs["behavior"]["actors"]} == {"V1": "truck", "V2": "car"}
+    assert {road["lanes_forward"] for road in specs["road"]["roads"]} == {2}
+
+
 def test_the_learned_second_reader_needs_no_model(config_file):
     assert load(config_file("one", second_opinion="learned")).backbone is None

@@ -1,0 +1,110 @@
+"""Reports of other writers: their truth, and figures of rules, model and both."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from benchmarks import outside
+from benchmarks.outside import Case, cases, crossed, fit, right, rules_alone, table, truth_of
+from mini.generator.written import Written, load, report_of, shipped
+from sgcad_core.narrative.claims import kind_of, model_claims
+from sgcad_core.opinion import Answered
+from sgcad_core.specs import BehaviorSpec, RoadLayout
+
+TEXTS = load(outside.FOLDER)[::12]
+
+
+def answer(one: Written) -> Answered:
+    """What a perfect model says."""
+    report = report_of(one, 0)
+    p = {"road.legs[]": 1.0}
+    return Answered(layout=RoadLayout(**report.road), behavior=BehaviorSpec(**(report.behavior or {})), p=p)
+
+
+PERFECT = {one.id: answer(one) for one in TEXTS}
+
+
+def rows(lines: list[str]) -> Mapping[str, list[float]]:
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
+    return {cell[0]: [float(x) for x in cell[1:]] for cell in cells if cell[0] != "field"}
+
+
+def test_measured_narratives_are_others_than_those_that_train() -> None:
+    assert not {one.id for one in load(outside.FOLDER)} & {one.id for one in shipped()}
+
+
+def test_truth_holds_only_what_the_text_tells() -> None:
+    for one in TEXTS:
+        truth = truth_of(one)
+        assert {"contact", "areas"} <= truth.keys()
+        headed = {key.partition(".")[2] for key in truth if kind_of(key) == "heading"}
+        assert {f"heading.{name}" for name in headed} <= one.told
+        assert "weather" not in truth or "weather" in one.told
+
+
+def test_a_perfect_model_is_right_everywhere_and_both_take_it_where_they_learn_to() -> None:
+    found = cases(TEXTS, PERFECT)
+    weights = fit(found)
+    figures = rows(list(table(found, {case.id: weights for case in found})))
+    n, rules, model, fused, either = figures["all"]
+    assert model == either == 1.0
+    assert rules < fused
+    assert n == sum(len(case.truth) for case in found)
+    assert set(crossed(found)) == {case.id for case in found}
+
+
+def test_without_answers_both_are_the_rules() -> None:
+    found = cases(TEXTS, {})
+    _, rules, model, fused, _ = rows(list(table(found, {case.id: {} for case in found})))["all"]
+    assert (model, fused) == (0.0, rules)
+    assert fit(found) == {}
+
+
+def test_errors_are_shown_of_the_half_that_may_be_looked_at_alone() -> None:
+    shown = "\n".join(rules_alone(TEXTS, "lanes"))
+    blind = [case.id for case in cases(TEXTS, {}) if case.blind]
+    assert shown
+    assert blind
+    assert not any(id in shown for id in blind)
+
+
+@pytest.mark.parametrize(("key", "got", "want", "same"), [("speed.V1", 31, 30, True), ("limit.N", 31, 30, False),
+                                                          ("lane.V1", None, 1, False)])  # fmt: skip
+def test_a_speed_is_right_to_one_mph(key: str, got: object, want: object, same: bool) -> None:
+    assert right(key, got, want) is same
+
+
+def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkeypatch, capsys) -> None:
+    folder = tmp_path / "texts"
+    folder.mkdir()
+    lines = (outside.FOLDER / "police.jsonl").read_text().splitlines()[:8]
+    (folder / "some.jsonl").write_text("\n".join(lines))
+    some = {one.text: one for one in load(folder)}
+    asked: list[str] = []
+
+    def whole(report, ask):
+        from sgcad_core.opinion import Opinion
+
+        asked.append(report.case)
+        return report.model_copy(update={"opinion": Opinion(answered=answer(some[report.narrative]))})
+
+    monkeypatch.setattr(outside, "whole", whole)
+    monkeypatch.setattr(outside, "ask_of", lambda config: None)
+    kept, weights = tmp_path / "answers.jsonl", tmp_path / "weights.json"
+    argv = ["outside", "--folder", str(folder), "--answers", str(kept), "--fit", str(weights)]
+    monkeypatch.setattr("sys.argv", argv)
+    outside.main()
+    assert sorted(asked) == sorted(one.id for one in some.values())
+    assert {json.loads(line)["id"] for line in kept.read_text().splitlines()} == set(asked)
+    assert "blind half" in capsys.readouterr().out
+    assert set(json.loads(weights.read_text())) <= set(outside.KINDS)
+    outside.main()
+    assert len(asked) == len(some), "kept answers are not asked for again"
+
+
+def test_a_case_is_blind_by_its_id() -> None:
+    halves = [Case(one.id, {}, None, None).blind for one in load(outside.FOLDER)]  # type: ignore[arg-type]
+    assert 0.4 < sum(halves) / len(halves) < 0.6
+    assert model_claims(PERFECT[TEXTS[0].id])

@@ -1,0 +1,192 @@
+"""Whom a numbered report is believed: rules or model, field by field, and what becomes of the roads."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sgcad_core.narrative.behavior import behavior_of_facts
+from sgcad_core.narrative.claims import KINDS, rules_claim
+from sgcad_core.narrative.layout_facts import layout_of_facts
+from sgcad_core.narrative.reading import Reading, read
+from sgcad_core.narrative.whole_fusion import SURE, decided, same, whole
+from sgcad_core.opinion import Answered, Opinion, Weights
+from sgcad_core.records import CrashReport
+from sgcad_core.roads.layout import road_spec
+from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
+
+TEXT = (
+    "V1 was traveling north on a two-lane, two-way road. V2 was traveling south on the same road. The front of V1 "
+    "struck the front of V2."
+)
+THIN = "V1 met V2. Both vehicles were towed after the crash."
+BELIEVED = {kind: Weights(differ=9.0, slope=0.0, agree=None) for kind in KINDS}
+KNOWN = {"road.legs[]": 1.0}
+"""Probabilities of a model that gives some: what it had no choice about is sure."""
+UNHEARD = {kind: Weights(differ=-9.0, slope=0.0, agree=None) for kind in KINDS}
+
+
+def legs(*some: Leg) -> RoadLayout:
+    return RoadLayout(legs=some)
+
+
+ROAD = legs(Leg(bearing="N", lanes_in=1, lanes_out=1), Leg(bearing="S", lanes_in=1, lanes_out=1))
+
+
+def answered(layout: RoadLayout = ROAD, p: dict[str, float] | None = None, **v1: object) -> Answered:
+    given_ = {"kind": "car", "road": "S", "maneuver": "straight"} | v1
+    behavior = BehaviorSpec(
+        actors=(
+            Actor(id="V1", direction="forward", **given_),  # type: ignore[arg-type]
+            Actor(id="V2", kind="car", road="N", direction="forward", maneuver="straight"),
+        ),
+        contacts=(Contact(striker="V1", struck="V2", striker_area="front", struck_area="front"),),
+    )
+    return Answered(layout=layout, behavior=behavior, p=KNOWN | (p or {}))
+
+
+def told(text: str, said: Answered, weights: dict[str, Weights] = BELIEVED) -> Reading:
+    return whole(read(text), Opinion(answered=said, weights=weights))
+
+
+def test_where_both_agree_nothing_changes() -> None:
+    reading = read(TEXT)
+    assert whole(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
+
+
+def test_a_believed_value_is_taken_and_is_a_fact_of_the_model() -> None:
+    found = told(TEXT, answered(maneuver="turn_left", kind="bus", speed_mph=30))
+    one = found.crash.vehicle("V1")
+    assert one is not None
+    assert (one.maneuver, one.kind, one.speed_mph) == ("turn_left", "bus", 30)
+    facts = {fact.field: fact for fact in found.facts if fact.basis == "model"}
+    assert facts["vehicles.V1.maneuver"].value == "turn_left"
+    assert sum(fact.field == "vehicles.V1.maneuver" for fact in found.facts) == 1, "one value, one fact"
+    assert found.roads.crash is found.crash
+
+
+def test_a_value_that_is_not_believed_is_left() -> None:
+    reading = read(TEXT)
+    said = answered(maneuver="turn_left", kind="bus")
+    assert whole(reading, Opinion(answered=said, weights=UNHEARD)) is reading
+    assert whole(reading, Opinion(answered=said, weights={})) is reading, "kinds without weights are the rules'"
+
+
+def test_what_the_text_tells_outright_weighs() -> None:
+    stubborn = {"maneuver": Weights(differ=1.0, slope=0.0, told=-3.0, agree=None)}
+    rules = rules_claim(read(TEXT + " V1 was turning right."))
+    said = answered(maneuver="turn_left")
+    from sgcad_core.narrative.claims import model_claims
+
+    assert "maneuver.V1" not in decided(rules, model_claims(said), stubborn, 0.5)
+    untold = {key: claim._replace(told=False) for key, claim in rules.items()}
+    assert decided(untold, model_claims(said), stubborn, 0.5)["maneuver.V1"].value == "turn_left"
+
+
+def test_lanes_of_the_answer_become_the_road() -> None:
+    wide = legs(Leg(bearing="N", lanes_in=3, lanes_out=2), Leg(bearing="S", lanes_in=2, lanes_out=3))
+    layout = layout_of_facts(told(TEXT, answered(wide)).roads)
+    assert {leg.bearing: (leg.lanes_in, leg.lanes_out) for leg in layout.legs} == {"N": (3, 2), "S": (2, 3)}
+
+
+def test_a_junction_that_only_the_answer_has_is_drawn_and_the_told_lanes_stay() -> None:
+    tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1, control="stop"))
+    only = {"legs": BELIEVED["legs"], "control": BELIEVED["control"]}
+    found = told(TEXT, answered(tee), only)
+    layout = {leg.bearing: leg for leg in layout_of_facts(found.roads).legs}
+    assert (found.roads.junction.kind, found.roads.junction.stem) == ("t", "E")
+    assert set(layout) == {"N", "S", "E"}
+    assert (layout["N"].lanes_in, layout["E"].lanes_in, layout["E"].control) == (1, 2, "stop")
+
+
+def test_legs_on_which_somebody_could_not_drive_are_not_taken() -> None:
+    across = legs(Leg(bearing="E", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1))
+    only = {"legs": BELIEVED["legs"]}
+    assert told(TEXT, answered(across), only).roads.answered is None
+
+
+@pytest.mark.parametrize("place", ["a roundabout", "a parking lot"])
+def test_places_that_the_model_has_not_learned_stay_as_told(place: str) -> None:
+    reading = read(f"The crash occurred in {place}. {TEXT}")
+    tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1))
+    assert whole(reading, Opinion(answered=answered(tee), weights=BELIEVED)).roads.junction == reading.roads.junction
+
+
+def test_another_first_contact_comes_first() -> None:
+    text = TEXT + " V3 was stopped behind V2, facing south. V2 was pushed back and its back struck the front of V3."
+    assert len(read(text).crash.contacts) > 1
+    behavior = BehaviorSpec(
+        actors=tuple(
+            Actor(id=f"V{n}", kind="car", road="N", direction="forward", maneuver="straight") for n in (1, 2, 3)
+        ),
+        contacts=(Contact(striker="V3", struck="V2", striker_area="front", struck_area="back"),),
+    )
+    only = {key: BELIEVED[key] for key in ("contact", "areas")}
+    found = told(text, Answered(layout=ROAD, behavior=behavior), only).crash.contacts
+    assert (found[0].striker, found[0].struck, found[0].struck_area) == ("V3", "V2", "back")
+    assert {frozenset((c.striker, c.struck)) for c in found} == {frozenset(("V1", "V2")), frozenset(("V2", "V3"))}
+
+
+def test_a_contact_of_strangers_is_not_taken() -> None:
+    behavior = answered().behavior.model_copy(
+        update={"contacts": (Contact(striker="V8", struck="V9", striker_area="front", struck_area="left"),)}
+    )
+    reading = read(TEXT)
+    assert whole(reading, Opinion(answered=Answered(layout=ROAD, behavior=behavior), weights=BELIEVED)) is reading
+
+
+def test_a_crash_that_the_rules_cannot_read_is_the_models_if_that_is_sure() -> None:
+    assert read(THIN).crash.gap is not None
+    found = told(THIN, answered(maneuver="backing"))
+    assert found.crash.gap is None
+    assert found.crash.contacts[0].areas_stated
+    one = found.crash.vehicle("V1")
+    assert one is not None
+    assert one.maneuver == "backing"
+    spec = road_spec(layout_of_facts(found.roads))
+    assert behavior_of_facts(found.crash, spec).contacts[0].striker == "V1"
+
+
+@pytest.mark.parametrize("path", ["crash.contacts[0].striker", "crash.contacts[0].struck_area", "crash.actors[1].road"])
+def test_a_crash_that_nobody_can_read_stays_refused(path: str) -> None:
+    found = told(THIN, answered(p={path: SURE - 0.05}))
+    assert found.crash.gap is not None
+    assert not [fact for fact in found.facts if fact.basis == "model"]
+
+
+def test_no_gap_is_filled_where_no_crash_is_told() -> None:
+    found = told("V1 and V2 were parked.", answered())
+    assert found.crash.gap is not None
+
+
+def test_unnumbered_reports_are_left_to_the_rules() -> None:
+    reading = read("The AV was stopped when an SUV struck its rear bumper.")
+    assert reading.crash.unnumbered
+    assert whole(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
+
+
+def test_a_report_is_read_with_its_opinion() -> None:
+    report = CrashReport(case="a", narrative=TEXT, opinion=Opinion(answered=answered(kind="bus"), weights=BELIEVED))
+    one = report.reading.crash.vehicle("V1")
+    assert one is not None
+    assert one.kind == "bus"
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_speeds_are_the_same_to_one_mph(one: int, other: int) -> None:
+    assert same("speed.V1", one, other) is (abs(one - other) <= 1)
+    assert same("limit.N", one, other) is (one == other)
+
+
+COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
+
+
+@given(
+    st.lists(st.sampled_from(COMPASS), min_size=2, max_size=6, unique=True),
+    st.sampled_from(COMPASS),
+    st.sampled_from(["straight", "turn_left", "turn_right", "stopped", "backing", "lane_change_left"]),
+)
+def test_whatever_the_model_answers_a_road_comes_out_that_carries_everybody(ends, road, maneuver) -> None:
+    layout = legs(*(Leg(bearing=end, lanes_in=1, lanes_out=1) for end in ends))
+    found = told(TEXT, answered(layout, road=road, maneuver=maneuver))
+    spec = road_spec(layout_of_facts(found.roads))
+    assert {actor.id for actor in behavior_of_facts(found.crash, spec).actors} >= {"V1", "V2"}
