@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule
+from sgcad_core.language.rules import Rule
 from sgcad_core.narrative.clauses import Statement
 from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
@@ -41,7 +42,6 @@ class _Value(NamedTuple):
     rule: str
 
 
-_AND_IS = rule("speed_limits.and_is").id
 _LIMIT = rule("road_details.limit")
 _VALUE = rule("road_details.value")
 _ADVISED = rule("road_details.advised")
@@ -70,9 +70,8 @@ def _limits(told: Statement, headings: Mapping[str, Compass], names: StreetNames
 # ------------------------------------------------------------------ values
 def _stated(text: str, names: StreetNames) -> list[_Value]:
     """Limits of a sentence in order: those told by a word, else those that stand where a road is described."""
-    found = [*_with_units(text), *_by_words(text)]
-    if all(value.rule == _AND_IS for value in found):
-        found += _described(text, names)
+    found = [*_with_units(text), *_by_words(text, of_role("posted"))] or list(_described(text, names))
+    found += _by_words(text, of_role("posted_again")) if found else ()
     kept: list[_Value] = []
     for value in sorted(found, key=lambda one: one.start):
         if not kept or value.start >= kept[-1].end:
@@ -90,12 +89,13 @@ def _with_units(text: str) -> Iterator[_Value]:
         yield _Value(mph, m.start(), m.end(), m[0], _LIMIT.id)
 
 
-def _by_words(text: str) -> Iterator[_Value]:
+def _by_words(text: str, rules: Iterable[Rule]) -> Iterator[_Value]:
     """Numbers that a word next to them makes a limit."""
-    for told in of_role("posted"):
+    for told in rules:
         for m in told.finditer(text):
             if not _ADVISED.search(text[: m.start()]):
-                yield _Value(int(m["mph"]), m.start("mph"), m.end("mph"), m[0], told.id)
+                group = next(name for name, value in m.groupdict().items() if value)
+                yield _Value(int(m[group]), m.start(group), m.end(group), m[0], told.id)
 
 
 def _described(text: str, names: StreetNames) -> Iterator[_Value]:
@@ -118,8 +118,10 @@ def _whose(
 ) -> tuple[Compass | None, bool]:
     """ "... for the westbound lane" behind the value, else the subject before it."""
     tail = rule("road_details.for_whom").match(behind)
+    tail = None if behind.startswith(",") and names.axis(before) else tail
     for whole in ([tail[1]] if tail else []) + [before]:
-        if axis := _named(whole, names) or axis_in(whole.rpartition("(")[2]):
+        named = _named(whole, names) if whole is before else names.axis(whole)
+        if axis := named or axis_in(whole.rpartition("(")[2]):
             return axis, False
         part = rule("speed_limits.aside").sub(" ", whole)
         if rule("road_details.everywhere").search(part):

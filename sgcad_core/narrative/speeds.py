@@ -74,9 +74,18 @@ def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
             continue
         if rule("speeds.other").search(told.text):
             continue
-        if len({m[0] for m in named}) == 1:
+        if len({m[0] for m in named}) == 1 or _opens(told.text, named, speed):
             yield named[0][0], speed
+            continue
+        if not named and told.subject and rule("speeds.pronoun").search(told.text):
+            yield told.subject, speed
             continue
         before = [m for m in named if m.end() <= speed.start]
         if before and rule("speeds.between").fullmatch(told.text, before[-1].end(), speed.start):
             yield before[-1][0], speed
+
+
+def _opens(text: str, named: Sequence[re.Match[str]], speed: Speed) -> bool:
+    """Whether a speed stands before the first vehicle, whose it is: "At 40 mph a northbound V1"."""
+    before = text[: named[0].start()] if named else ""
+    return speed.end <= len(before) and rule("speeds.opening").fullmatch(before) is not None
