@@ -72,6 +72,7 @@ def rules_claim(reading: Reading) -> Claims:
     """What the rules make of a text: every value that they have, and whether the text tells it."""
     crash, roads = reading.crash, reading.roads
     found = {key: Claim(*said) for v in crash.vehicles for key, said in _vehicle(v)}
+    found |= {f"kind.{other.id}": Claim(other.kind) for other in crash.others}
     found |= _ways(reading)
     first = crash.contacts[0] if crash.contacts and not crash.gap else None
     if first is not None:

@@ -22,16 +22,28 @@ class Conditions(NamedTuple):
 
 
 _NEGATED = rule("conditions.negated")
+_LESS = ("interview", "injury", "police", "restraint", "towing", "health")
+"""Roles of sentences that are asked where the crash's own tell nothing; they must tell two of the three."""
 _ROLES = ("opening", "road", "conditions", "approach", "impact", "other", "rest", "avoidance")
 
 
+_KINDS = ("light", "weather", "surface")
+
+
 def conditions(sentences: Iterable[Sentence]) -> Conditions:
-    """What the crash's own sentences say; the worst weather and surface win."""
-    said = [s for s in sentences if s.role in _ROLES]
-    lit = [s for s in said if not rule("conditions.traffic_light").search(s.text) or "dark" in s.text.lower()]
-    found = {role: _first(role, lit if role == "light" else said) for role in ("light", "weather", "surface")}
+    """What the crash's own sentences say, else others; the worst weather and surface win."""
+    told = list(sentences)
+    own, less = ([s for s in told if s.role in roles] for roles in (_ROLES, _LESS))
+    less = [s for s in less if sum(_told(kind, [s]) is not None for kind in _KINDS) > 1]
+    found = {kind: _told(kind, own) or _told(kind, less) for kind in _KINDS}
     values = {role: told[0] for role, told in found.items() if told}
     return Conditions(**values, sources={role: told[1] for role, told in found.items() if told})
+
+
+def _told(role: str, said: list[Sentence]) -> tuple[Any, Cue] | None:
+    signal = rule("conditions.traffic_light")
+    lit = [s for s in said if not signal.search(s.text) or rule("conditions.dark").search(s.text)]
+    return _first(role, lit if role == "light" else said)
 
 
 def _first(role: str, said: list[Sentence]) -> tuple[Any, Cue] | None:

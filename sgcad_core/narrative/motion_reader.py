@@ -16,7 +16,8 @@ from sgcad_core.narrative.deeds import read_deeds
 from sgcad_core.narrative.headings import note_bound, read_heading
 from sgcad_core.narrative.motion import Motion
 from sgcad_core.narrative.roles import HIT, Role
-from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane, read_speed
+from sgcad_core.narrative.speeds import read_speed, read_speeds_beside
+from sgcad_core.narrative.surroundings import read_access, read_kin, read_lane
 from sgcad_core.narrative.vehicles import Identity, Roster
 
 _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
@@ -57,6 +58,8 @@ def motions(
             note_bound(found, t.text, _WEIGHT.get(t.role, 1))
         if t.role in ("codes", "factors"):
             read_code(found, t, who)
+    if not who.counted:
+        read_speeds_beside(found, [t for t in told if t.role not in _UNREAD])
     for motion in found.values():
         _hear_interview(motion)
     return found

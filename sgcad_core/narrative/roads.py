@@ -30,9 +30,10 @@ from sgcad_core.narrative.places import (
     names_closure,
     names_gore,
 )
-from sgcad_core.narrative.road_details import Curve, SpeedLimit, curves, speed_limits
+from sgcad_core.narrative.road_details import Curve, curves
 from sgcad_core.narrative.road_merge import GatheredRoad, gather
 from sgcad_core.narrative.roles import CRASH_ROLES, STORY_ROLES
+from sgcad_core.narrative.speed_limits import SpeedLimit, speed_limits
 from sgcad_core.narrative.unsupported import unsupported_places
 from sgcad_core.narrative.vehicles import Roster
 from sgcad_core.specs import Beside, Compass, RoadLayout

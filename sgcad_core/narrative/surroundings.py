@@ -1,4 +1,4 @@
-"""What stands around a vehicle in its own sentences: the other vehicle, its lane and speed, driveways and ramps."""
+"""What stands around a vehicle in its own sentences: the other vehicle, its lane, driveways and ramps."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import re
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.language import of_role, rule, values
-from sgcad_core.narrative.limits import FASTEST_MPH, MILES
 from sgcad_core.narrative.motion import Access, Motion
 from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.narrative.vehicles import Roster
@@ -27,7 +26,7 @@ def read_kin(motion: Motion, text: str, weight: int, vehicle: str, who: Roster) 
                 motion.kin.append((weight, kin, other or who.other(vehicle), word))
 
 
-# ------------------------------------------------------------------ lane, speed, access
+# ------------------------------------------------------------------ lane, access
 _LANE = rule("surroundings.lane")
 _OTHER_LANE = rule("surroundings.other_lane")
 _IN_LANE = rule("surroundings.in_lane")
@@ -62,23 +61,6 @@ def _lane_word(m: re.Match[str]) -> str:
     if word in ("middle", "center"):
         return "middle"
     return "left" if word in ("far left", "left-most", "leftmost", "left", "inside", "passing", "inner") else "right"
-
-
-_SPEED = rule("surroundings.speed")
-_KMPH = rule("surroundings.kmph")
-_LIMIT = rule("surroundings.limit")
-
-
-def read_speed(motion: Motion, text: str, weight: int) -> None:
-    if _LIMIT.search(text):
-        return
-    for pattern, factor in ((_SPEED, 1.0), (_KMPH, MILES)):
-        m = pattern.search(text)
-        if m:
-            low, high = float(m.group("a")), float(m.group("b") or m.group("a"))
-            speed_mph = round(min(FASTEST_MPH, (low + high) / 2 * factor))
-            motion.heard(motion.speeds_mph, weight, speed_mph, m.group(), pattern.id)
-            return
 
 
 _ORIGIN = rule("surroundings.origin")

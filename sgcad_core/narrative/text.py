@@ -58,6 +58,7 @@ _TYPO = rule("text.typo")
 # ------------------------------------------------------------------ mentions, units, directions
 
 _LETTERED = rule("text.lettered")
+_SPOKEN = rule("text.spoken_speed")
 _VEHICLE_WORD = rule("text.vehicle_word")
 _VEHICLE_CASE = rule("text.vehicle_case")
 _COUNTED_LANE = rule("text.counted_lane")
@@ -96,6 +97,7 @@ def _spell(text: Traced) -> Traced:
     text = _spaces(text).sub(_TYPO, _mend_typo)
     for spelling in of_role("spelling"):
         text = text.sub(spelling, spelling.yields["to"])
+    text = text.sub(_SPOKEN, lambda m: str(values("spoken_speed")[m.group().lower()]))
     text = text.sub(rule("text.first_vehicle"), "V1")
     text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
     text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
-from sgcad_core.narrative.designations import designations
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
@@ -101,7 +100,8 @@ class Roster:
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
         text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
-        text = self._by_models(text)
+        text = text if self.counted or not self._full else self._full.sub(self._by_name, text)
+        text = rule("vehicles.repeated_number").sub(self._once, rule("vehicles.number_in_brackets").sub(r" \1", text))
         return rule("common.space").sub(" ", text).strip()
 
     def _once(self, match: re.Match[str]) -> str:
@@ -115,15 +115,16 @@ class Roster:
             return None
         return rule("vehicles.alias").given(names=tuple(sorted(self.aliases, key=len, reverse=True)))
 
-    def _by_models(self, text: str) -> str:
-        """With models replaced, wherever no description of a number holds them: "a Ford Focus", "Focus's front"."""
-        models = {v.model.lower() for v in self.vehicles if v.model and self.aliases.get(v.model.lower()) == v.id}
-        if self.counted or not models:
-            return text
-        names = tuple(sorted(models, key=len, reverse=True))
-        text = rule("vehicles.alias_full").given(names=names).sub(self._number, text)
-        text = rule("vehicles.alias_bare").given(names=names).sub(lambda m: self.aliases[m.group().lower()], text)
-        return rule("vehicles.repeated_number").sub(self._once, text)
+    @cached_property
+    def _full(self) -> re.Pattern[str] | None:
+        told = {_full_name(v) for v in self.vehicles}
+        names = [name for name in self.aliases if name in told]
+        if not names:
+            return None
+        return rule("vehicles.full_name").given(models=tuple(sorted(names, key=len, reverse=True)))
+
+    def _by_name(self, match: re.Match[str]) -> str:
+        return self.aliases[match.group("model").lower()]
 
     def _number(self, match: re.Match[str]) -> str:
         return match.group(2) or self.aliases[match.group(1).lower()]
@@ -147,8 +148,8 @@ def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> s
 def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
-    named = {} if counted else designations(told)
-    found = tuple(_identity(vehicle, told, counted, named.get(vehicle, ())) for vehicle in _numbers(told))
+    found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
+    found = found if counted else _in_full(found, told)
     found = tuple(_marked(v) if any(_BESIDE.search(c.words) for c in v.described) else v for v in found)
     return Roster(found, _aliases(found))
 
@@ -178,16 +179,21 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str], counted: bool, named: tuple[Cue, ...]) -> Identity:
+def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
     found = introductions if counted else descriptions
     described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
-    if not any(rule("vehicles.make").search(cue.words) for cue in described):
-        described = (*described, *named)
+    words = " ".join(cue.words for cue in described)
+    if not counted and not rule("vehicles.make").search(words):
+        described += tuple(Cue(n, d) for n, text in enumerate(told) for d in named_before(text, vehicle))
+    return _described(vehicle, described, told, counted)
+
+
+def _described(vehicle: str, described: tuple[Cue, ...], told: list[str], counted: bool) -> Identity:
     words = " ".join(cue.words for cue in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
-    model = _model(words, make.end()) if make else _known_model(named)
+    model = _model(words, make.end()) if make else _model_alone(words)
     kind, stated = kind_of(words, model)
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
     return Identity(
@@ -196,9 +202,39 @@ def _identity(vehicle: str, told: list[str], counted: bool, named: tuple[Cue, ..
     )  # fmt: skip
 
 
-def _known_model(named: tuple[Cue, ...]) -> str | None:
-    """The model by which a report names a vehicle without a make."""
-    return next((cue.words for cue in named if cue.words.lower() not in BODY_WORDS), None)
+def _in_full(found: tuple[Identity, ...], told: list[str]) -> tuple[Identity, ...]:
+    """Identities of which the report tells make and model elsewhere: "a Kia Rio stopped", then "the Rio is V2"."""
+    full: dict[str, Cue] = {}
+    for n, text in enumerate(told):
+        for m in rule("vehicles.make_and_model").finditer(text):
+            full.setdefault(m.group("name").lower(), Cue(n, m[0]))
+    known = {f"{v.make} {v.model}".lower() for v in found if v.make and v.model}
+    found = tuple(_completed(v, [full[name] for name in full if name not in known], told) for v in found)
+    known = {f"{v.make} {v.model}".lower() for v in found if v.make and v.model}
+    left = [full[name] for name in full if name not in known]
+    nameless = [v for v in found if v.make is None]
+    if len(nameless) == len(left) == 1 and _fits(nameless[0], left[0]):
+        return tuple(_described(v.id, (*v.described, left[0]), told, False) if v is nameless[0] else v for v in found)
+    return found
+
+
+def _completed(v: Identity, full: list[Cue], told: list[str]) -> Identity:
+    words = " ".join(cue.words for cue in v.described).lower()
+    name = rule("vehicles.make").search(words) or rule("vehicles.model").search(words)
+    if (v.make and v.model) or not name:
+        return v
+    same = [cue for cue in full if rule("makes.whole_word").given(word=name[0]).search(cue.words.lower())]
+    return _described(v.id, (same[0], *v.described), told, False) if len(same) == 1 else v
+
+
+def _fits(v: Identity, cue: Cue) -> bool:
+    """Whether somebody may be of that make and model: who has a body word has one of its kind."""
+    return not v.kind_stated or kind_of(cue.words, None)[0] == v.kind
+
+
+def _model_alone(words: str) -> str | None:
+    """A known model without a make."""
+    return next((m[0] for m in rule("vehicles.model").finditer(words) if m[0][0].isupper()), None)
 
 
 def _model(words: str, start: int) -> str | None:
@@ -207,9 +243,10 @@ def _model(words: str, start: int) -> str | None:
     for word in rule("vehicles.word").findall(words[start:])[:3]:
         if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or _YEAR.fullmatch(word):
             break
-        if rule("vehicles.doors").match(word) or word.lower() in COLORS or word.lower() in MAKES:
+        bare = word.rstrip(".,")
+        if rule("vehicles.doors").match(word) or word.lower() in COLORS or bare.lower() in MAKES or bare in found:
             break
-        found.append(word.rstrip(".,"))
+        found.append(bare)
     return " ".join(found[:2]) or None
 
 
@@ -232,10 +269,17 @@ def descriptions(text: str, vehicle: str) -> list[str]:
     """Noun phrases that describe a vehicle: behind "V1," or "V1 was a", or before "(V1)"."""
     found = [m.group(1) for m in _BRACKETED.finditer(text) if m.group(2) == vehicle]
     for mention in rule("common.named_vehicle").given(vehicle=vehicle).finditer(text):
-        end = _description_end(text, mention.end())
-        if end > mention.end():
-            found.append(text[mention.end() : end])
+        start = mention.end() + text.startswith((")", "),"), mention.end())
+        end = _description_end(text, start)
+        if end > start:
+            found.append(text[start:end])
     return found
+
+
+def named_before(text: str, vehicle: str) -> list[str]:
+    """Makes, models and body words that a number is given to behind them: "a Ford Escape, V2," or "the van is V1"."""
+    found = rule("vehicles.named_before").given(vehicle=vehicle).finditer(text)
+    return [" ".join(filter(None, m.group("year", "name", "body", "bodied", "only"))) for m in found]
 
 
 def introductions(text: str, vehicle: str) -> list[str]:
@@ -259,7 +303,8 @@ def _description_end(text: str, start: int) -> int:
         at = token.end()
         if text[at - 1] in ".:" or text[at : at + 1] == ";":
             break
-    return at
+    own = rule("vehicles.indefinite").match(text, start)
+    return start if not own and rule("vehicles.another").match(text, at) else at
 
 
 def _drop_descriptions(text: str) -> str:
@@ -300,6 +345,14 @@ def _aliases(vehicles: tuple[Identity, ...]) -> dict[str, str]:
     return {name: next(iter(ids)) for name, ids in claims.items() if len(ids) == 1}
 
 
+def _full_name(v: Identity) -> str | None:
+    """Its model, else its make with a body word, lower case."""
+    if v.model or not v.make:
+        return v.model.lower() if v.model else None
+    found = rule("vehicles.make_and_model").search(" ".join(cue.words for cue in v.described))
+    return found[0].lower() if found and found[0] != found["name"] else None
+
+
 def _names(v: Identity) -> set[str]:
     names: set[str] = set()
     if v.make:
@@ -308,6 +361,8 @@ def _names(v: Identity) -> set[str]:
     if v.model:
         first = v.model.split()[0].lower()
         names |= {v.model.lower()} | ({first} if len(first) > 2 else set())
+    if (full := _full_name(v)) and not v.counted:
+        names.add(full)
     if not v.counted:
         plain = () if v.kind_stated else ("car", "cab")
         names |= {w for w, kind in BODY_WORDS.items() if kind == v.kind and w not in ("vehicle", "truck", *plain)}

@@ -11,7 +11,7 @@ from tests.sgcad_core.language.told import differs, drawn, silenced, told
 ELSEWHERE = ("account", "degrade", "report", "wordings")
 """Files whose rules no reading uses: what a scenario made of a report, robustness levels, texts without roads, the
 learned reader's words. They have tests of their own."""
-WITHOUT = 67
+WITHOUT = 66
 """Rules that no text of facts needs yet; let it only shrink."""
 
 
