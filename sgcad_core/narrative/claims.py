@@ -11,13 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sgcad_core.errors import Refused
 from sgcad_core.kinds import JOINING
-from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.compass import COMPASS, turned
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
-from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import Compass, Leg
 
 if TYPE_CHECKING:
@@ -95,31 +92,38 @@ def _vehicle(v: VehicleFacts) -> Iterator[tuple[str, tuple[Any, bool]]]:
 
 
 def _ways(reading: Reading) -> Claims:
-    """Lane and way out of everybody as they are drawn: a lane may be told by a word, a way out follows from a turn."""
-    told = {v.id: v for v in reading.crash.vehicles}
-    try:
-        behavior = behavior_of_facts(reading.crash, road_spec(layout_of_facts(reading.roads)))
-    except Refused:
-        return {}
+    """Lane and way out of everybody: a lane may be told by a word, a way out follows from a turn."""
+    legs = {leg.bearing: leg for leg in layout_of_facts(reading.roads).legs}
     found: Claims = {}
-    for actor in behavior.actors:
-        v = told.get(actor.id)
-        if v is None:
-            continue
-        if actor.lane is not None:
-            found[f"lane.{v.id}"] = Claim(actor.lane, v.lane is not None or v.lane_word is not None)
-        if way := _way_out(v) or (actor.exit_road if actor.exit_road in COMPASS else None):
-            found[f"exit.{v.id}"] = Claim(way, v.exit_heading is not None or v.maneuver_stated)
+    for v in reading.crash.vehicles:
+        if (out := _way_out(v, legs)) is not None:
+            found[f"exit.{v.id}"] = Claim(out, v.exit_heading is not None or v.maneuver_stated)
+        comes = legs.get(turned(v.heading, 180)) if v.heading else None
+        if (lane := _lane(v, comes.lanes_in if comes else 0)) is not None:
+            found[f"lane.{v.id}"] = Claim(lane, v.lane is not None or v.lane_word is not None)
     return found
 
 
-def _way_out(v: VehicleFacts) -> Compass | None:
-    """The way on as far as it is told: that of a turn made or meant, or straight on."""
-    if v.exit_heading:
+_QUARTER_DEG = {"turn_left": -90, "turn_right": 90, "u_turn": 180}
+
+
+def _way_out(v: VehicleFacts, legs: Mapping[Compass, Leg]) -> Compass | None:
+    """The told way out, else the leg that is nearest to where the maneuver leads; None where there is none near."""
+    if v.exit_heading is not None or v.heading is None:
         return v.exit_heading
-    if not v.heading_stated or v.heading is None or v.meant or v.faces:
-        return None
-    return {"u_turn": turned(v.heading, 180), **dict.fromkeys(_ONWARD, v.heading)}.get(v.maneuver)
+    toward = turned(v.heading, _QUARTER_DEG.get(v.maneuver, 0))
+    near = [turned(toward, by) for by in (0, -45, 45)]
+    return next((leg for leg in near if leg in legs), None)
+
+
+def _lane(v: VehicleFacts, lanes: int) -> int | None:
+    """1 = at the right curb; of a word as many as the leg that it comes in on has (0: unknown)."""
+    if v.lane is not None:
+        return v.lane if v.lane > 0 else lanes + 1 + v.lane if lanes else None
+    word = v.lane_word or ("right" if lanes == 1 else "")
+    if word in ("right", "right_turn"):
+        return 1
+    return {"left": lanes, "left_turn": lanes, "middle": (lanes + 1) // 2}.get(word) or None
 
 
 def _roads(facts: RoadFacts) -> Iterator[tuple[str, Claim]]:

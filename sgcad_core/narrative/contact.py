@@ -104,8 +104,8 @@ def _unnamed_pair(told: Statement, text: str, who: Roster) -> list[Blow]:
     pair = rule("contact_nouns.bare_pair").search(text) if len(who.ids) == 2 and not MENTION.search(text) else None
     if not pair or who.counted:
         return []
-    areas = area_of(pair["a1"]), area_of(pair["a2"])
-    return [Blow(*who.ids, *areas, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
+    (one, other), mine, theirs = who.ids, area_of(pair["a1"]), area_of(pair["a2"])
+    return [Blow(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
 
 
 def _touch(t: Touch, told: Statement) -> Blow:
