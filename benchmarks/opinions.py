@@ -117,14 +117,15 @@ def fit(cases: Sequence[Case], key: str) -> Weights:
             rows.append((1.0, np.log(p / (1 - p)), float(key in case.rules.told)))
             marks.append(float(theirs))
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
-    found = _logistic(np.array(rows).reshape(-1, 3), np.array(marks))
+    found = logistic(np.array(rows).reshape(-1, 3), np.array(marks))
     differ, slope, told = (round(float(one), 3) for one in found)
     return Weights(differ=differ, slope=slope, told=told, agree=round(float(agree), 3))
 
 
-def _logistic(rows: NDArray[np.float64], marks: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Newton's steps, halved while they lead up, for a ridge about (0, 1, 0); columns: 1, logit of p, told."""
-    begun = np.array((0.0, 1.0, 0.0))
+def logistic(rows: NDArray[np.float64], marks: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Newton's steps, halved while they lead up, for a ridge about (0, 1, 0, ...); columns: 1, logit of p, told, ..."""
+    begun = np.zeros(rows.shape[1])
+    begun[1] = 1.0
 
     def cost(at: NDArray[np.float64]) -> float:
         return float(np.logaddexp(0, rows @ at).sum() - marks @ (rows @ at) + RIDGE / 2 * ((at - begun) ** 2).sum())
@@ -133,7 +134,7 @@ def _logistic(rows: NDArray[np.float64], marks: NDArray[np.float64]) -> NDArray[
     for _ in range(STEPS if len(rows) else 0):
         share = 1 / (1 + np.exp(-np.clip(rows @ found, -30, 30)))
         slope = rows.T @ (share - marks) + RIDGE * (found - begun)
-        bend = (rows * (share * (1 - share))[:, None]).T @ rows + RIDGE * np.eye(3)
+        bend = (rows * (share * (1 - share))[:, None]).T @ rows + RIDGE * np.eye(len(begun))
         step = np.linalg.solve(bend, slope)
         while np.abs(step).max() > 1e-8 and cost(found - step) > cost(found):
             step /= 2

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.incidents import by_hash
-from benchmarks.opinions import _logistic, calibration_error
+from benchmarks.opinions import calibration_error, logistic
 from flows.chain import ask_of
 from mini.generator.report import Report
 from mini.generator.written import Written, load, report_of
@@ -39,7 +39,7 @@ from sgcad_core.narrative.fusion import model_right
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import same
 from sgcad_core.narrative.whole_fusion import whole as fused
-from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
+from sgcad_core.opinion import MOST_NATS, WHOLE, Answered, Opinion, Weights
 from sgcad_core.records import CrashReport
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
@@ -124,31 +124,37 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
     """Weights by kind of field: a logistic regression on where the readers differ and one of both is right.
 
     Where the rules have no value the model's is held against nothing: such rows count as those where it is untold.
+    What the text does not tell is no reason to leave the rules: there a differing value of the model's counts as wrong.
     """
-    rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
+    rows: dict[str, list[tuple[float, ...]]] = defaultdict(list)
     marks: dict[str, list[float]] = defaultdict(list)
     agreed: dict[str, list[bool]] = defaultdict(list)
     for case in some:
         rules, model = case.claims
         for key, said in model.items():
             want, rule = case.truth.get(key), rules.get(key)
-            if want is None:
-                continue
             if rule is not None and same(key, rule.value, said.value):
-                agreed[kind_of(key)].append(right(key, said.value, want.value))
+                agreed[kind_of(key)] += [right(key, said.value, want.value)] if want is not None else []
                 continue
-            mine, theirs = rule is not None and right(key, rule.value, want.value), right(key, said.value, want.value)
-            if rule is None or mine != theirs:
-                p = min(max(said.p, 1e-6), 1 - 1e-6)
-                rows[kind_of(key)].append((1.0, float(np.log(p / (1 - p))), float(rule is not None and rule.told)))
+            theirs = want is not None and right(key, said.value, want.value)
+            mine = rule is not None and want is not None and right(key, rule.value, want.value)
+            if rule is None or want is None or mine != theirs:
+                rows[kind_of(key)].append(_row(said, rule))
                 marks[kind_of(key)].append(float(theirs))
     return {kind: _weights(rows[kind], marks[kind], agreed[kind]) for kind in KINDS if rows[kind]}
 
 
-def _weights(rows: Sequence[tuple[float, float, float]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
-    differ, slope, told = (round(float(x), 3) for x in _logistic(np.array(rows), np.array(marks)))
+def _row(said: Claim, rule: Claim | None) -> tuple[float, ...]:
+    """What `fusion.model_right` goes by: 1, logit of p, told, nats."""
+    p = min(max(said.p, 1e-6), 1 - 1e-6)
+    told = rule is not None and rule.told
+    return 1.0, float(np.log(p / (1 - p))), float(told), min(max(said.nats, 0.0), MOST_NATS)
+
+
+def _weights(rows: Sequence[tuple[float, ...]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
+    differ, slope, told, nats = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks)))
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
-    return Weights(differ=differ, slope=slope, told=told, agree=round(agree, 3))
+    return Weights(differ=differ, slope=slope, told=told, nats=nats, agree=round(agree, 3))
 
 
 def right(key: str, got: object, want: object) -> bool:
@@ -204,7 +210,7 @@ def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinio
         return None
     if same(key, rule.value, said.value):
         return weights.agree
-    p = model_right(weights, said.p, rule.told)
+    p = model_right(weights, said.p, rule.told, said.nats)
     return p if p >= opinion.takes else 1 - p
 
 

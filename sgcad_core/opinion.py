@@ -11,6 +11,8 @@ from sgcad_core.frozen import Record
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 Value = bool | str
+MOST_NATS = 6.0
+"""More grounding than that says no more: the report makes the value 400 times likelier."""
 LEARNED = "learned"
 """In a config's `second_opinion`: the reader that learned where the rules err (`sgcad_core.narrative.learned`)."""
 WHOLE = "whole"
@@ -27,6 +29,8 @@ class Weights(Record):
     differ: float = 0.0
     slope: float = 1.0
     told: float = 0.0
+    nats: float = 0.0
+    """Per nat by which the report makes the value likelier than it is without it, up to `MOST_NATS`."""
     agree: float | None = Field(0.9, ge=0, le=1)
 
 
@@ -45,6 +49,8 @@ class Answered(Record):
     p: Mapping[str, float] = {}
     """Probability of each value by its path ("road.legs[0].lanes_in", "crash.actors[1].maneuver"); no entry: 1, since
     nothing was chosen. Empty: nothing is known."""
+    nats: Mapping[str, float] = {}
+    """Grounding of each value by the same path: log p(y|c,x) - log p(y|x). Empty: nobody asked without the report."""
 
 
 class Opinion(Record):

@@ -73,7 +73,9 @@ def _answered(context: Context, case: str, ask: Ask) -> Answered:
     behavior = parse_answer(crash.text, BehaviorSpec)
     p = {f"road.{path}": sure for path, sure in probabilities(road.tokens).items()}
     p |= {f"crash.{path}": sure for path, sure in probabilities(crash.tokens).items()}
-    return Answered(layout=layout, behavior=behavior, p=p)
+    nats = {f"road.{path}": gain for path, gain in road.grounding.items()}
+    nats |= {f"crash.{path}": gain for path, gain in crash.grounding.items()}
+    return Answered(layout=layout, behavior=behavior, p=p, nats=nats)
 
 
 def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:

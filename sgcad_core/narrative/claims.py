@@ -9,6 +9,7 @@ A claim is a value with how sure it is. Fields are named by what they are of: `h
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sgcad_core.kinds import JOINING
@@ -49,11 +50,12 @@ UNKNOWN_P = 0.5
 
 
 class Claim(NamedTuple):
-    """A value; whether the text tells it outright; its probability, where the reader gives one."""
+    """A value; whether the text tells it outright; its probability and its grounding, where the reader gives them."""
 
     value: Any
     told: bool = True
     p: float = 1.0
+    nats: float = 0.0
 
 
 Claims = dict[str, Claim]
@@ -151,17 +153,33 @@ def _counted(road: RoadFact) -> bool:
 
 # ------------------------------------------------------------------ a model's
 def model_claims(said: Answered) -> Claims:
-    """What a model's answers say, each value with its probability. What is null in them is no claim."""
-    p = said.p
+    """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
+    sure = _Sure(said.p, said.nats)
     found: Claims = {}
     for i, actor in enumerate(said.behavior.actors):
         at = f"crash.actors[{i}]"
-        found |= {key: Claim(value, p=_p(p, f"{at}.{name}")) for key, name, value in _actor(actor)}
-    found |= dict(_met(said.behavior, p))
+        found |= {key: sure.claim(value, f"{at}.{name}") for key, name, value in _actor(actor)}
+    found |= dict(_met(said.behavior, sure))
     for key in ("light", "weather", "surface"):
         if (value := getattr(said.behavior, key)) is not None:
-            found[key] = Claim(value, p=_p(p, f"crash.{key}"))
-    return found | dict(_answered_roads(said))
+            found[key] = sure.claim(value, f"crash.{key}")
+    return found | dict(_answered_roads(said.layout.legs, sure))
+
+
+class _Sure(NamedTuple):
+    """Probability and grounding of every value by its path."""
+
+    p: Mapping[str, float]
+    nats: Mapping[str, float]
+
+    def claim(self, value: Any, *paths: str, joint: bool = False) -> Claim:
+        """A claim that stands at some paths: as sure as the least sure of them, or (`joint`) as all together.
+
+        A value without a probability is sure, since the grammar left no choice; even where nothing is known, as of a
+        server that gives no probabilities.
+        """
+        some = [self.p.get(path, 1.0) if self.p else UNKNOWN_P for path in paths] or [1.0]
+        return Claim(value, True, prod(some) if joint else min(some), sum(self.nats.get(path, 0.0) for path in paths))
 
 
 def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
@@ -185,43 +203,33 @@ def _heading(road: str) -> Compass | None:
     return turned(bearing, 180) if bearing in COMPASS else None
 
 
-def _met(behavior: BehaviorSpec, p: Mapping[str, float]) -> Iterator[tuple[str, Claim]]:
+def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
     if not behavior.contacts:
         return
-    first = behavior.contacts[0]
-    sure = [_p(p, f"crash.contacts[0].{key}") for key in ("striker", "struck", "striker_area", "struck_area")]
-    yield "contact", Claim((first.striker, first.struck), p=sure[0] * sure[1])
-    sides = {first.striker: first.striker_area, first.struck: first.struck_area}
-    yield "areas", Claim(_sorted(sides), p=sure[2] * sure[3])
+    first, at = behavior.contacts[0], "crash.contacts[0]"
+    yield "contact", sure.claim((first.striker, first.struck), f"{at}.striker", f"{at}.struck", joint=True)
+    sides = _sorted({first.striker: first.striker_area, first.struck: first.struck_area})
+    yield "areas", sure.claim(sides, f"{at}.striker_area", f"{at}.struck_area", joint=True)
 
 
-def _answered_roads(said: Answered) -> Iterator[tuple[str, Claim]]:
-    legs, p = said.layout.legs, said.p
-    at: dict[str, str] = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
+def _answered_roads(legs: tuple[Leg, ...], sure: _Sure) -> Iterator[tuple[str, Claim]]:
+    at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
 
-    def sure(some: Iterable[Leg], *names: str) -> float:
-        return min((_p(p, f"{at[leg.bearing]}.{name}") for leg in some for name in names), default=1.0)
+    def claim(value: Any, some: Iterable[Leg], *names: str) -> Claim:
+        return sure.claim(value, *(f"{at[leg.bearing]}.{name}" for leg in some for name in names))
 
-    yield "legs", Claim(tuple(sorted(at)), p=min(sure(legs, "bearing"), _p(p, "road.legs[]")))
+    bearings = [f"{place}.bearing" for place in at.values()]
+    yield "legs", sure.claim(tuple(sorted(at)), "road.legs[]", *bearings)
     for axis, some in by_axis(legs):
-        yield f"lanes.{axis}", Claim(lanes_of(some), p=sure(some, "lanes_in", "lanes_out"))
+        yield f"lanes.{axis}", claim(lanes_of(some), some, "lanes_in", "lanes_out")
         if turns := turns_of(some):
-            yield f"turns.{axis}", Claim(turns, p=_turns_p(some, at, p))
-        yield f"median.{axis}", Claim(some[0].median, p=sure(some, "median"))
-        yield f"curve.{axis}", Claim(curves_of(some), p=sure(some, "curve"))
+            places = [f"{at[leg.bearing]}.turns_in[{k}]" for leg in some for k in range(len(leg.turns_in))]
+            yield f"turns.{axis}", sure.claim(turns, *places)
+        yield f"median.{axis}", claim(some[0].median, some, "median")
+        yield f"curve.{axis}", claim(curves_of(some), some, "curve")
         if (limit := some[0].speed_limit_mph) is not None:
-            yield f"limit.{axis}", Claim(limit, p=sure(some[:1], "speed_limit_mph"))
-    yield "control", Claim(control_of(legs), p=sure(legs, "control"))
-
-
-def _turns_p(some: Iterable[Leg], at: Mapping[str, str], p: Mapping[str, float]) -> float:
-    names = [f"{at[leg.bearing]}.turns_in[{k}]" for leg in some for k in range(len(leg.turns_in))]
-    return min((_p(p, name) for name in names), default=1.0)
-
-
-def _p(p: Mapping[str, float], path: str) -> float:
-    """1 where the grammar left no choice; even where nothing is known, as of a server that gives no probabilities."""
-    return p.get(path, 1.0) if p else UNKNOWN_P
+            yield f"limit.{axis}", claim(limit, some[:1], "speed_limit_mph")
+    yield "control", claim(control_of(legs), legs, "control")
 
 
 # ------------------------------------------------------------------ shared terms

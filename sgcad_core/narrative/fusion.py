@@ -22,7 +22,7 @@ from sgcad_core.kinds import FOUR_LEG, Maneuver
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.gist import FIELDS, SUBJECT, alike, areas, meeting, partner, rules_say
 from sgcad_core.narrative.near_crash import NearFacts
-from sgcad_core.opinion import Opinion, Value, Weights
+from sgcad_core.opinion import MOST_NATS, Opinion, Value, Weights
 from sgcad_core.specs import ActorKind, Area
 
 if TYPE_CHECKING:
@@ -63,10 +63,11 @@ def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
     return found
 
 
-def model_right(weights: Weights, p: float, told: bool) -> float:
-    """Probability that a model's value is right that the rules do not share."""
+def model_right(weights: Weights, p: float, told: bool, nats: float = 0.0) -> float:
+    """Probability that a model's value is right that the rules do not share; `nats`: its grounding."""
     p = min(max(p, _EDGE), 1 - _EDGE)
-    return 1 / (1 + math.exp(-(weights.differ + weights.slope * math.log(p / (1 - p)) + weights.told * told)))
+    ground = weights.nats * min(max(nats, 0.0), MOST_NATS)
+    return 1 / (1 + math.exp(-(weights.differ + weights.slope * math.log(p / (1 - p)) + weights.told * told + ground)))
 
 
 # ------------------------------------------------------------------ taken over

@@ -56,16 +56,24 @@ def test_a_model_claims_its_values_with_their_probabilities() -> None:
     }  # fmt: skip
     found = model_claims(Answered(layout=LAYOUT, behavior=BEHAVIOR, p=p))
     assert found["contact"].p == 0.25
-    assert found["heading.V1"] == ("N", True, 0.9)
+    assert found["heading.V1"][:3] == ("N", True, 0.9)
     assert found["heading.V2"].value == "S", "the outer piece of a leg is that leg"
     assert found["exit.V1"].value == "N"
     assert "exit.V2" not in found
     assert "lane.V1" not in found
     assert "heading.O1" not in found
-    assert found["lanes.N"] == ((("N", 2, 1), ("S", 1, 1)), True, 0.7)
-    assert found["turns.N"] == ((("N", ("through", "left")),), True, 0.6)
+    assert found["lanes.N"][:3] == ((("N", 2, 1), ("S", 1, 1)), True, 0.7)
+    assert found["turns.N"][:3] == ((("N", ("through", "left")),), True, 0.6)
     assert "lanes.E" not in found, "a driveway is no street"
     assert found["legs"].value == ("E", "N", "S")
+
+
+def test_grounding_of_a_claim_is_that_of_all_its_values() -> None:
+    nats = {"crash.contacts[0].striker": 1.5, "crash.contacts[0].struck": 0.5, "road.legs[0].lanes_in": -0.5}
+    found = model_claims(Answered(layout=LAYOUT, behavior=BEHAVIOR, p={"road.legs[]": 1.0}, nats=nats))
+    assert found["contact"].nats == 2.0
+    assert found["lanes.N"].nats == -0.5
+    assert found["heading.V1"].nats == 0.0
 
 
 def test_without_probabilities_every_value_is_even() -> None:

@@ -112,3 +112,10 @@ def test_a_report_is_read_with_its_opinion() -> None:
 def test_what_cannot_be_taken_over_leaves_the_reading(values: dict[str, str]) -> None:
     reading = read(TEXT)
     assert fused(reading, opinion(**values)) is reading
+
+
+def test_what_the_report_makes_likelier_is_believed_the_more_up_to_a_bound() -> None:
+    weights = Weights(differ=-1.0, nats=0.5)
+    even = [model_right(weights, 0.5, told=False, nats=nats) for nats in (-3.0, 0.0, 2.0, 6.0, 60.0)]
+    assert even[0] == even[1] < 0.5 <= even[2] < even[3] == even[4]
+    assert model_right(Weights(differ=-1.0), 0.5, told=False, nats=5.0) == even[1], "without a weight it says nothing"
