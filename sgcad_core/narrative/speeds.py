@@ -74,6 +74,8 @@ def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
             continue
         if rule("speeds.other").search(told.text):
             continue
+        if named and rule("speeds.somebody").search(told.text[: named[0].start()]):
+            continue
         if len({m[0] for m in named}) == 1 or _opens(told.text, named, speed):
             yield named[0][0], speed
             continue
