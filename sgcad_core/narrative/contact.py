@@ -8,42 +8,27 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from sgcad_core.language import rule
 from sgcad_core.narrative import contact_words as says
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.clauses import Statement, subject_starts
-from sgcad_core.narrative.contact_nouns import Touch, door_of, involved, paired_areas, struck_pair, together, touches
-from sgcad_core.narrative.motion import Cue
-from sgcad_core.narrative.roles import HIT, Role
+from sgcad_core.narrative.contact_nouns import (
+    Touch,
+    door_of,
+    involved,
+    is_noun,
+    paired_areas,
+    struck_pair,
+    subject_area,
+    together,
+    touches,
+)
+from sgcad_core.narrative.roles import HIT
 from sgcad_core.narrative.vehicles import MENTION, Roster
 from sgcad_core.narrative.walkers import with_people
 from sgcad_core.narrative.zones import Zone, area_by, area_if_told, area_of, plain
-
-
-@dataclass(frozen=True)
-class Blow:
-    """A contact as told: `other` is a vehicle id or the object's word; an area not told is None."""
-
-    actor: str
-    other: str
-    actor_area: Zone | None
-    other_area: Zone | None
-    number: int
-    role: Role
-    passive: bool = False
-    words: str = ""
-    mutual: bool = False
-    """They collided: the text names no striker."""
-    noun: bool = False
-    """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
-    summary: bool = False
-    """No more than who collided with whom, wherever in the text: it says nothing of when."""
-
-    @property
-    def cue(self) -> Cue:
-        """Where it was read."""
-        return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
 
 
 def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
@@ -121,7 +106,7 @@ def _blow(
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
     passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
     befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
-    if not befell and (says.NEAR_MISS.search(before) or _is_noun(before, m.group(), behind)):
+    if not befell and (says.NEAR_MISS.search(before) or is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
@@ -135,7 +120,7 @@ def _blow(
         return None
     if len(subjects) > 1:
         return _mutual(told, subjects, m.group(), before, scope)
-    actor, actor_area = subjects[0], _subject_area(before, subjects[0])
+    actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
         actor = _meant_by_pronoun(told, actor, scope, who)
     other = None if passive or not who.counted else who.other(actor)
@@ -171,14 +156,6 @@ def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, 
     return Blow(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
 
 
-def _is_noun(before: str, word: str, behind: str) -> bool:
-    """ "the impact", "at impact", "of contact": no verb."""
-    nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
-    if word.lower() not in nouns or says.CAUSED.search(before):
-        return False
-    return bool(rule("contact.noun_before").search(before))
-
-
 def _subjects(
     told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
@@ -193,15 +170,6 @@ def _subjects(
     if mentions:
         return (mentions[-1],)
     return (told.subject,) if told.subject else ()
-
-
-def _subject_area(before: str, subject: str) -> Zone | None:
-    """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
-    found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
-    if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
-        return area_of(found[-1]["area"])
-    own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
-    return area_of(own["area"]) if own else None
 
 
 def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
@@ -328,14 +296,3 @@ def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, 
     if rule("contact.head_on").search(scope):
         first = second = "front"
     return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
-
-
-def with_areas(blow: Blow, retold: Iterable[Blow]) -> Blow:
-    """The blow with areas that it lacks taken from other tellings of the same pair."""
-    for other in retold:
-        if {other.actor, other.other} != {blow.actor, blow.other}:
-            continue
-        same = other.actor == blow.actor
-        mine, theirs = (other.actor_area, other.other_area) if same else (other.other_area, other.actor_area)
-        blow = replace(blow, actor_area=blow.actor_area or mine, other_area=blow.other_area or theirs)
-    return blow

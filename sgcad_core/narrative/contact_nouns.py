@@ -105,3 +105,20 @@ def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple
 def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
     """Whether the first of two zones is the front of who strikes."""
     return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")
+
+
+def is_noun(before: str, word: str, behind: str) -> bool:
+    """ "the impact", "at impact", "of contact": no verb."""
+    nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
+    if word.lower() not in nouns or says.CAUSED.search(before):
+        return False
+    return bool(rule("contact.noun_before").search(before))
+
+
+def subject_area(before: str, subject: str) -> Zone | None:
+    """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
+    found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
+    if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
+        return area_of(found[-1]["area"])
+    own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
+    return area_of(own["area"]) if own else None

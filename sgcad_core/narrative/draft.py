@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, get_args
 
-from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.course import CoursesRead, ImpactRead
 from sgcad_core.narrative.motion import Cue, Motion
 from sgcad_core.narrative.near_crash import NearMiss

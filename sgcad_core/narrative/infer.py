@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from sgcad_core.language import rule
+from sgcad_core.narrative.blow import Blow, with_areas
 from sgcad_core.narrative.compass import between, turned
-from sgcad_core.narrative.contact import Blow, with_areas
 from sgcad_core.narrative.draft import QUARTER_DEG, Draft, Settled, end_of
 from sgcad_core.narrative.maneuvers import (
     SHIFTED,

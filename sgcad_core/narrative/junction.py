@@ -10,15 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JOINING, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
+from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
 from sgcad_core.language import rule
 from sgcad_core.narrative.approaches import Approaches
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.compass import between, compass_of, turned
 from sgcad_core.narrative.control import Control, control_of, controlled, signed_legs
-from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import VehicleFacts
-from sgcad_core.narrative.mentions import axis_of
+from sgcad_core.narrative.junction_stem import BESIDE, ENDS, SIDE_ROAD, contradicted, crossing, stem_of, stem_told
 from sgcad_core.narrative.motion import DRIVES, Cue
 from sgcad_core.narrative.places import MEDIAN_OPENING, in_gores
 from sgcad_core.narrative.road_merge import GatheredRoad
@@ -49,7 +47,6 @@ class JunctionFacts:
     """Where kind, control and stem were read, as far as they were."""
 
 
-_NUMBERED = rule("common.vehicle_begins")
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
 _NO_JUNCTION = rule("junction.no_junction")
@@ -85,11 +82,11 @@ def junction_of(
         offset = any(_OFFSET.search(t.text) for t in story)
         more = (around, _skew_deg(story), offset)
         return JunctionFacts(kind, None, control, halted, stated, False, (), *more, where=where)
-    lead = next((v.heading for v in vehicles if v.heading and v.origin not in _BESIDE), None)
-    said, stem_at = _stem_told(story, vehicles, lead, only_compass=True) or (None, None)
-    said = None if said and _contradicted(said, vehicles) else said
+    lead = next((v.heading for v in vehicles if v.heading and v.origin not in BESIDE), None)
+    said, stem_at = stem_told(story, vehicles, lead, only_compass=True) or (None, None)
+    said = None if said and contradicted(said, vehicles) else said
     said = said or (listed.alone if kind == T else None)
-    stem = said or _stem(kind, story, vehicles, roads, halted, lead)
+    stem = said or stem_of(kind, story, vehicles, roads, halted, lead)
     where |= _where(stem=stem_at if said else None)
     halted = (stem,) if stem and signed else ()
     skew = _skew_deg(story)
@@ -121,12 +118,12 @@ def _kind(
         return (T, False) if _one_sided(story, roads) else (FOUR_LEG, False)
     if any(_RAMP_JOINS.search(t.text) for t in story) and _merging(story, roads):
         return RAMP, True
-    if any(_DRIVE_NAMED.search(t.text) for t in story) and not _crossing(vehicles):
+    if any(_DRIVE_NAMED.search(t.text) for t in story) and not crossing(vehicles):
         return DRIVEWAY, True
-    if any(_SIDE_STREET.search(t.text) for t in story) and not _crossing(vehicles):
+    if any(_SIDE_STREET.search(t.text) for t in story) and not crossing(vehicles):
         return T, False
-    if _crossing(vehicles) or _turning(vehicles):
-        return (T, False) if _one_sided(story, roads) or not _crossing(vehicles) else (FOUR_LEG, False)
+    if crossing(vehicles) or _turning(vehicles):
+        return (T, False) if _one_sided(story, roads) or not crossing(vehicles) else (FOUR_LEG, False)
     return "none", False
 
 
@@ -184,134 +181,15 @@ def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
     return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
 
-_SIDE_ROAD = rule("junction.side_road")
 _RAMP_JOINS, _DRIVE_NAMED = rule("junction.ramp_joins"), rule("junction.drive_named")
 _SIDE_STREET = rule("junction.side_street")
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
-_ENDS = rule("junction.ends")
 
 
 def _one_sided(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
     """Whether a side road is told to lie on one side or to end."""
-    return any(_SIDE_ROAD.search(t.text) or (_ENDS.search(t.text) and _JUNCTION.search(t.text)) for t in story)
-
-
-def _crossing(vehicles: Sequence[VehicleFacts]) -> bool:
-    """Whether two of the moving vehicles come on different axes, both headings told."""
-    told = [v.heading for v in vehicles if v.heading and v.heading_stated and v.maneuver != "parked"][:2]
-    return len(told) == 2 and axis_of(told[0]) != axis_of(told[1])
+    return any(SIDE_ROAD.search(t.text) or (ENDS.search(t.text) and _JUNCTION.search(t.text)) for t in story)
 
 
 def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
     return any(v.maneuver in ("turn_left", "turn_right") for v in vehicles)
-
-
-# ------------------------------------------------------------------ stem
-_BESIDE = (*DRIVES, RAMP, "side_road")
-"""Where vehicles come from that come in by the stem."""
-
-
-def _stem(
-    kind: JunctionKind,
-    story: Sequence[Statement],
-    vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
-    halted: Sequence[Compass],
-    lead: Compass | None,
-) -> Compass | None:
-    """Where a side leg lies that no compass word tells: on the side that the vehicles' paths need, else right of V1."""
-    main = next((r.axis for r in roads if r.axis and r.kind not in JOINING and not r.cross), None)
-    from_paths = _stem_of_paths(vehicles, halted, main if kind in (DRIVEWAY, ALLEY) else None)
-    if from_paths:
-        return from_paths
-    said = _stem_told(story, vehicles, lead)
-    if said:
-        return said[0]
-    meant = _stem_meant(story, vehicles)
-    if meant:
-        return meant
-    if len(halted) == 1:
-        return halted[0]
-    return turned(lead, 90) if lead else None
-
-
-def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], main: Compass | None) -> Compass | None:
-    """The leg that one vehicle comes from or turns into while the others keep to the through road (`main`)."""
-    for v in vehicles:
-        if v.heading and v.origin in _BESIDE and axis_of(v.heading) != main:
-            return turned(v.heading, 180)
-    known = [v for v in vehicles if v.heading and v.maneuver != "parked"]
-    axes = list(dict.fromkeys(axis_of(v.heading) for v in known if v.heading))
-    if len(axes) > 1:
-        return turned(_on_stem(known, halted).heading or "N", 180)
-    for v in known:
-        side = QUARTER_DEG.get(v.maneuver)
-        if side and v.heading:
-            return turned(v.heading, side)
-        if v.exit_heading and v.heading and between(v.heading, v.exit_heading) in (90, 270):
-            return v.exit_heading
-    return None
-
-
-_TURN_SIDE = rule("junction.turn_side")
-
-
-def _stem_meant(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> Compass | None:
-    """The side that a vehicle waited, slowed or meant to turn to."""
-    for v in sorted(vehicles, key=lambda v: v.target is None):
-        for t in story:
-            turn = _TURN_SIDE.search(t.text)
-            mine = v.id in rule("common.vehicle").findall(t.text[: turn.start()])[-1:] if turn else False
-            if turn and v.heading and (mine or (t.subject == v.id and not _NUMBERED.search(t.text[: turn.start()]))):
-                return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
-    return None
-
-
-def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> VehicleFacts:
-    """Of vehicles on two axes the one on the ending leg: it turns, or it has the sign."""
-
-    def likely(v: VehicleFacts) -> tuple[bool, bool, bool]:
-        turns = v.maneuver in ("turn_left", "turn_right")
-        return turns, bool(v.heading and turned(v.heading, 180) in halted), v.maneuver != "straight"
-
-    return max(known, key=likely)
-
-
-def _contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
-    """Whether a vehicle is told to come from where, with that stem, there is no road."""
-    told = [v for v in vehicles if v.heading and v.heading_stated]
-    if any(v.heading == stem and v.maneuver not in ("turn_left", "turn_right") for v in told):
-        return True
-    leaving = [turned(v.heading, QUARTER_DEG[v.maneuver]) for v in told if v.heading and v.maneuver in QUARTER_DEG]
-    if turned(stem, 180) in leaving:
-        return True
-    turning = [axis_of(v.heading) for v in told if v.heading and v.maneuver in ("turn_left", "turn_right")]
-    return _crossing(told) and len(turning) == 1 and turning[0] != axis_of(stem)
-
-
-def _stem_told(
-    story: Sequence[Statement], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
-) -> tuple[Compass, Cue] | None:
-    for t in story:
-        ends = _ENDS.search(t.text)
-        way = compass_of(ends["dir"]) if ends and ends["dir"] and _JUNCTION.search(t.text) else None
-        if ends and way:
-            return turned(way, 180), Cue(t.number, ends["dir"], _ENDS.id)
-        place = _SIDE_ROAD.search(t.text) or _DRIVE_SIDE.search(t.text)
-        if place:
-            word = next(filter(None, place.groups()))
-            found = _bearing(word, t, vehicles, lead)
-            if found and not (only_compass and word.lower() in ("left", "right")):
-                return found, Cue(t.number, word, "junction.side_road")
-    return None
-
-
-_DRIVE_SIDE = rule("junction.drive_side")
-
-
-def _bearing(word: str, told: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
-    """A compass point as it stands; left and right as the sentence's vehicle (or the first) heads."""
-    if word.lower() not in ("left", "right"):
-        return compass_of(word)
-    own = next((v.heading for v in vehicles if v.id == told.subject and v.heading), lead)
-    return turned(own, -90 if word.lower() == "left" else 90) if own else None

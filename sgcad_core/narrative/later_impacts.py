@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.clauses import Segment, Statement
-from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.course import UNREAD, CoursesRead, ImpactRead
 from sgcad_core.narrative.draft import end_of
 from sgcad_core.narrative.motion import Cue

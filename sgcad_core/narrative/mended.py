@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from sgcad_core.edits import Edit, by_person, canonical, effective, of_contacts, values
 from sgcad_core.facts import Fact, Value
-from sgcad_core.narrative.compass import between, turned
+from sgcad_core.narrative.compass import between
 from sgcad_core.narrative.draft import AREAS
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.near_crash import NearFacts
+from sgcad_core.narrative.orientation import turned_vehicle
 from sgcad_core.narrative.others import OtherFacts
 from sgcad_core.narrative.roads import RoadFacts
 from sgcad_core.specs import Area
@@ -113,7 +114,7 @@ def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> 
         return replace(crash, vehicles=vehicles)
     if not crash.oriented and known.heading:
         turn = between(known.heading, heading)
-        vehicles = tuple(v if v.id == name else _turned(v, turn) for v in vehicles)
+        vehicles = tuple(v if v.id == name else turned_vehicle(v, turn) for v in vehicles)
     return replace(crash, vehicles=vehicles, oriented=True)
 
 
@@ -128,11 +129,6 @@ def _update(known: VehicleFacts, fields: Mapping[str, Value]) -> dict[str, Any]:
     if "start_lane" in fields:
         update |= {"lane": fields["start_lane"], "lane_word": None}
     return update
-
-
-def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
-    heading = turned(v.heading, clockwise_deg) if v.heading else None
-    return replace(v, heading=heading, exit_heading=turned(v.exit_heading, clockwise_deg) if v.exit_heading else None)
 
 
 # ------------------------------------------------------------------ contacts

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.language import of_role, rule
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.clauses import Segment, Statement
-from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.contact import blows
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import CRASH_ROLES, Role, is_impact
 from sgcad_core.narrative.vehicles import Roster

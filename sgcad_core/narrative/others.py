@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sgcad_core.language import of_role
-from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.specs import ActorKind
 
 

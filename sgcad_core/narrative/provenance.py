@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.facts import Fact, Value
-from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.draft import Draft, Settled
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.maneuvers import meant_turn

@@ -20,9 +20,10 @@ from typing import NamedTuple
 from sgcad_core.edits import Edit
 from sgcad_core.facts import Fact
 from sgcad_core.language import rule
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.clauses import Segment, Statement, segments, tell
 from sgcad_core.narrative.conditions import Conditions, conditions
-from sgcad_core.narrative.contact import Blow, blows
+from sgcad_core.narrative.contact import blows
 from sgcad_core.narrative.course import CoursesRead, courses_told, cut_by_deeds
 from sgcad_core.narrative.course_provenance import course_provenance
 from sgcad_core.narrative.crash_roles import role_facts

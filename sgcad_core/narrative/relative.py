@@ -6,7 +6,7 @@ Evidence is added up: relation words, critical events, maneuvers, and which side
 from __future__ import annotations
 
 from sgcad_core.kinds import RAMP
-from sgcad_core.narrative.contact import Blow
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.draft import HIT_FROM, Draft, Settled, apart, bend_deg, end_of, is_sideswipe
 from sgcad_core.narrative.motion import DRIVES
 from sgcad_core.specs import Area

@@ -14,13 +14,14 @@ from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OP
 from sgcad_core.language import of_role, rule
 from sgcad_core.narrative.approaches import Approaches, approaches_of
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, between, compass_of, turned
+from sgcad_core.narrative.compass import AXIS_NAMES, COMPASS, turned
 from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
 from sgcad_core.narrative.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.mentions import Kind, RoadMention, axis_of, road_mentions
-from sgcad_core.narrative.motion import DRIVES, Cue
+from sgcad_core.narrative.motion import Cue
+from sgcad_core.narrative.orientation import oriented
 from sgcad_core.narrative.places import (
     CLOSED_LANES,
     ClosedLanes,
@@ -105,7 +106,7 @@ class RoadFacts:
 def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
-    crash = _oriented(crash, mentions, told)
+    crash = oriented(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
@@ -229,28 +230,6 @@ _RURAL = rule("roads.rural")
 _URBAN = rule("roads.urban")
 _CROSSWALK = rule("roads.crosswalk")
 _EXIT_RAMP, _ENTRANCE_RAMP = rule("roads.exit_ramp"), rule("roads.entrance_ramp")
-_PLACE = rule("roads.place")
-
-
-def _oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
-    """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
-    streets = [m for m in mentions if m.axis and m.kind not in JOINING]
-    joined = [m for m in streets if m.relation == "other"] if any(m.kind == RAMP for m in mentions) else []
-    axis = next((m.axis for m in joined + streets), None)
-    lead = next((v for v in crash.vehicles if v.heading and v.origin not in (*DRIVES, RAMP)), None)
-    place = next((m for t in told if t.role in ("opening", "impact", "road") and (m := _PLACE.search(t.text))), None)
-    told_way = compass_of(place[1]) if place else None
-    told_way = told_way if told_way and axis in (None, axis_of(told_way)) else None
-    way = told_way or axis
-    if crash.oriented or not way or not lead or not lead.heading or (not place and axis_of(lead.heading) == axis):
-        return crash
-    turn = between(lead.heading, way)
-    return replace(crash, vehicles=tuple(_turned(v, turn) for v in crash.vehicles), oriented=told_way is not None)
-
-
-def _turned(v: VehicleFacts, clockwise_deg: int) -> VehicleFacts:
-    heading = turned(v.heading, clockwise_deg) if v.heading else None
-    return replace(v, heading=heading, exit_heading=turned(v.exit_heading, clockwise_deg) if v.exit_heading else None)
 
 
 def _telling(told: tuple[Statement, ...]) -> list[Statement]:

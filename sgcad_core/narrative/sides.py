@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sgcad_core.narrative.blow import Blow
 from sgcad_core.narrative.compass import OPPOSITE_HAND, between
-from sgcad_core.narrative.contact import Blow
 from sgcad_core.narrative.draft import AREAS, TURN_DEG, Draft, Joined, Settled, apart, end_of, is_sideswipe, side_hit
 from sgcad_core.narrative.others import is_person
 from sgcad_core.narrative.zones import Zone

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sgcad_core.language import rule
+from sgcad_core.narrative import vehicle_descriptions as phrases
 from sgcad_core.narrative.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.specs import ActorKind
@@ -94,12 +95,12 @@ class Roster:
 
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
-        text = _INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
-        text = _BRACKETED.sub(lambda m: _keep_number(m, self.ids, self.counted), text)
+        text = phrases.INTRODUCED.sub(r"\2", sentence) if self.counted else sentence
+        text = phrases.BRACKETED.sub(lambda m: _keep_number(m, self.ids, self.counted), text)
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
-        text = _OCCUPIED.sub(r"\1 ", _drop_descriptions(text))
+        text = _OCCUPIED.sub(r"\1 ", phrases.without_descriptions(text))
         text = text if self.counted or not self._full else self._full.sub(self._by_name, text)
         text = rule("vehicles.repeated_number").sub(self._once, rule("vehicles.number_in_brackets").sub(r" \1", text))
         return rule("common.space").sub(" ", text).strip()
@@ -131,8 +132,6 @@ class Roster:
 
 
 _OCCUPIED = rule("vehicles.occupied")
-_BRACKETED = rule("vehicles.bracketed")
-_INTRODUCED = rule("references.introduced")
 
 
 def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
@@ -180,11 +179,11 @@ _LONGEST_ID = 3
 
 
 def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
-    found = introductions if counted else descriptions
+    found = phrases.introductions if counted else phrases.descriptions
     described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
     words = " ".join(cue.words for cue in described)
     if not counted and not rule("vehicles.make").search(words):
-        described += tuple(Cue(n, d) for n, text in enumerate(told) for d in named_before(text, vehicle))
+        described += tuple(Cue(n, d) for n, text in enumerate(told) for d in phrases.named_before(text, vehicle))
     return _described(vehicle, described, told, counted)
 
 
@@ -262,77 +261,6 @@ def _tow_owner(text: str) -> str | None:
         return None
     before = MENTION.findall(text[: verb.start()]) or MENTION.findall(text)
     return before[-1] if before else None
-
-
-# ------------------------------------------------------------------ descriptions
-def descriptions(text: str, vehicle: str) -> list[str]:
-    """Noun phrases that describe a vehicle: behind "V1," or "V1 was a", or before "(V1)"."""
-    found = [m.group(1) for m in _BRACKETED.finditer(text) if m.group(2) == vehicle]
-    for mention in rule("common.named_vehicle").given(vehicle=vehicle).finditer(text):
-        start = mention.end() + text.startswith((")", "),"), mention.end())
-        end = _description_end(text, start)
-        if end > start:
-            found.append(text[start:end])
-    return found
-
-
-def named_before(text: str, vehicle: str) -> list[str]:
-    """Makes, models and body words that a number is given to behind them: "a Ford Escape, V2," or "the van is V1"."""
-    found = rule("vehicles.named_before").given(vehicle=vehicle).finditer(text)
-    return [" ".join(filter(None, m.group("year", "name", "body", "bodied", "only"))) for m in found]
-
-
-def introductions(text: str, vehicle: str) -> list[str]:
-    """The words that first describe an actor of a report that numbers nobody."""
-    return [m.group(1) for m in _INTRODUCED.finditer(text) if m.group(2) == vehicle]
-
-
-_LEAD = rule("vehicles.lead")
-
-
-def _description_end(text: str, start: int) -> int:
-    """Where the description that begins at `start` ends; `start` itself if there is none."""
-    lead = _LEAD.match(text, start)
-    if not lead or _STOP.match(text, lead.end()):
-        return start
-    at = lead.end()
-    for _ in range(16):
-        token = rule("vehicles.token").match(text, at)
-        if not token or _STOP.match(text, token.start(1)) or MENTION.match(text, token.start(1)):
-            break
-        at = token.end()
-        if text[at - 1] in ".:" or text[at : at + 1] == ";":
-            break
-    own = rule("vehicles.indefinite").match(text, start)
-    return start if not own and rule("vehicles.another").match(text, at) else at
-
-
-def _drop_descriptions(text: str) -> str:
-    """ "V1, a 2001 Ford Focus, was" -> "V1 was"; "V1 was a 2001 Ford Focus that stopped" -> "V1 stopped"."""
-    out, at = "", 0
-    for mention in MENTION.finditer(text):
-        if mention.start() < at:
-            continue
-        end = _description_end(text, mention.end())
-        out += text[at : mention.end()]
-        at = mention.end()
-        if end > at:
-            out, at = _join(out, text, at, end)
-    return out + text[at:]
-
-
-def _join(out: str, text: str, start: int, end: int) -> tuple[str, int]:
-    """Glue what follows a dropped description to its mention."""
-    dropped = text[start:end]
-    was = rule("vehicles.was").match(dropped)
-    tail = rule("vehicles.relative").match(text[end:])
-    skip = tail.end() if tail else 0
-    rest = text[end + skip :]
-    if was and rule("vehicles.verb").match(rest):
-        return f"{out} {was.group(1)} ", end + skip
-    if dropped.endswith("."):
-        return f"{out}.", end
-    return f"{out} ", end + skip
 
 
 # ------------------------------------------------------------------ names
