@@ -28,7 +28,7 @@ from flows.chain import ask_of
 from sgcad_core.asking.opinion import seconded
 from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
-from sgcad_core.narrative.fusion import decide
+from sgcad_core.narrative.fusion import decide, terms
 from sgcad_core.narrative.gist import FIELDS, RulesSay, alike, rules_say
 from sgcad_core.narrative.reading import read
 from sgcad_core.opinion import Heard, Opinion, Value, Weights
@@ -113,8 +113,7 @@ def fit(cases: Sequence[Case], key: str) -> Weights:
         if alike(rule, heard.value):
             agreed.append(ours)
         elif ours != theirs:
-            p = min(max(heard.p, 1e-6), 1 - 1e-6)
-            rows.append((1.0, np.log(p / (1 - p)), float(key in case.rules.told)))
+            rows.append(terms(heard.p, key in case.rules.told)[:3])
             marks.append(float(theirs))
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
     found = logistic(np.array(rows).reshape(-1, 3), np.array(marks))

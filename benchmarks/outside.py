@@ -19,7 +19,6 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from math import comb
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,13 +32,14 @@ from mini.generator.written import Written, load, report_of
 from sgcad_core.asking.opinion import load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
+from sgcad_core.metrics.statistics import mcnemar
 from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, model_claims, rules_claim
 from sgcad_core.narrative.compass import COMPASS
-from sgcad_core.narrative.fusion import model_right
+from sgcad_core.narrative.fusion import model_right, terms
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import same
 from sgcad_core.narrative.whole_fusion import whole as fused
-from sgcad_core.opinion import MOST_NATS, WHOLE, Answered, Opinion, Weights
+from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
 from sgcad_core.records import CrashReport
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
@@ -139,16 +139,9 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
             theirs = want is not None and right(key, said.value, want.value)
             mine = rule is not None and want is not None and right(key, rule.value, want.value)
             if rule is None or want is None or mine != theirs:
-                rows[kind_of(key)].append(_row(said, rule))
+                rows[kind_of(key)].append(terms(said.p, rule is not None and rule.told, said.nats))
                 marks[kind_of(key)].append(float(theirs))
     return {kind: _weights(rows[kind], marks[kind], agreed[kind]) for kind in KINDS if rows[kind]}
-
-
-def _row(said: Claim, rule: Claim | None) -> tuple[float, ...]:
-    """What `fusion.model_right` goes by: 1, logit of p, told, nats."""
-    p = min(max(said.p, 1e-6), 1 - 1e-6)
-    told = rule is not None and rule.told
-    return 1.0, float(np.log(p / (1 - p))), float(told), min(max(said.nats, 0.0), MOST_NATS)
 
 
 def _weights(rows: Sequence[tuple[float, ...]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
@@ -194,13 +187,8 @@ def versus(pairs: Sequence[tuple[bool, bool]]) -> str:
     """How many the second has right and the first wrong, the other way round, and the exact McNemar test's p."""
     better = sum(b and not a for a, b in pairs)
     worse = sum(a and not b for a, b in pairs)
-    return f"+{better} -{worse}, {_sign_test(better, worse):.3f}"
-
-
-def _sign_test(better: int, worse: int) -> float:
-    """Two-sided probability of so uneven a split of fair coins."""
-    n, least = better + worse, min(better, worse)
-    return min(1.0, 2 * sum(comb(n, k) for k in range(least + 1)) / 2**n) if n else 1.0
+    before, after = zip(*pairs, strict=True) if pairs else ((), ())
+    return f"+{better} -{worse}, {mcnemar(before, after):.3f}"
 
 
 def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinion) -> float | None:

@@ -10,9 +10,10 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from itertools import accumulate
 
 from sgcad_core import settings
-from sgcad_core.asking.fields import spans
+from sgcad_core.asking.fields import grounding
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
@@ -99,15 +100,7 @@ def probabilities(tokens: Sequence[Token]) -> dict[str, float]:
     A token belongs to the field that it overlaps, one over several to the first.
     """
     text = "".join(token.text for token in tokens)
-    found: dict[str, float] = {}
-    ahead, at = list(reversed(spans(text))), 0
-    for token in tokens:
-        end = at + len(token.text)
-        while ahead and ahead[-1].end <= at:
-            ahead.pop()
-        if ahead and ahead[-1].start < end:
-            nats = 0.0 if token.forced else token.logp_with_context
-            path = ahead[-1].path
-            found[path] = min(1.0, found.get(path, 1.0) * math.exp(nats))
-        at = end
-    return found
+    ends = list(accumulate(len(token.text) for token in tokens))
+    chosen = [0.0 if token.forced else token.logp_with_context for token in tokens]
+    nats = grounding(text, ends, chosen, [0.0] * len(tokens))
+    return {path: min(1.0, math.exp(sure)) for path, sure in nats.items()}

@@ -46,11 +46,6 @@ class Marks:
     scope: Compass | None = None
     """The axis that was told last."""
 
-    @property
-    def known(self) -> bool:
-        """Whether any was told."""
-        return bool(self.mark.keys)
-
     def of(self, part: Token) -> Mark | None:
         """The mark that a part makes; None where it makes none."""
         found = self._legs(part) or self._road(part) or (Mark((ALL,)) if part.kind in _SOME else None)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sgcad_core.kinds import JOINING
 from sgcad_core.narrative.compass import COMPASS, turned
+from sgcad_core.narrative.draft import QUARTER_DEG
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.specs import Compass, Leg
@@ -72,7 +73,8 @@ def rules_claim(reading: Reading) -> Claims:
     crash, roads = reading.crash, reading.roads
     found = {key: Claim(*said) for v in crash.vehicles for key, said in _vehicle(v)}
     found |= {f"kind.{other.id}": Claim(other.kind) for other in crash.others}
-    found |= _ways(reading)
+    legs = layout_of_facts(roads).legs
+    found |= _ways(crash, legs)
     first = crash.contacts[0] if crash.contacts and not crash.gap else None
     if first is not None:
         found["contact"] = Claim((first.striker, first.struck), first.stated)
@@ -81,7 +83,7 @@ def rules_claim(reading: Reading) -> Claims:
     for key in ("light", "weather", "surface"):
         if (value := getattr(crash, key)) is not None:
             found[key] = Claim(value)
-    return found | dict(_roads(roads))
+    return found | dict(_roads(roads, legs))
 
 
 def _vehicle(v: VehicleFacts) -> Iterator[tuple[str, tuple[Any, bool]]]:
@@ -93,11 +95,11 @@ def _vehicle(v: VehicleFacts) -> Iterator[tuple[str, tuple[Any, bool]]]:
         yield f"speed.{v.id}", (v.speed_mph, True)
 
 
-def _ways(reading: Reading) -> Claims:
+def _ways(crash: CrashFacts, drawn: tuple[Leg, ...]) -> Claims:
     """Lane and way out of everybody: a lane may be told by a word, a way out follows from a turn."""
-    legs = {leg.bearing: leg for leg in layout_of_facts(reading.roads).legs}
+    legs = {leg.bearing: leg for leg in drawn}
     found: Claims = {}
-    for v in reading.crash.vehicles:
+    for v in crash.vehicles:
         if (out := _way_out(v, legs)) is not None:
             found[f"exit.{v.id}"] = Claim(out, v.exit_heading is not None or v.maneuver_stated)
         comes = legs.get(turned(v.heading, 180)) if v.heading else None
@@ -106,14 +108,14 @@ def _ways(reading: Reading) -> Claims:
     return found
 
 
-_QUARTER_DEG = {"turn_left": -90, "turn_right": 90, "u_turn": 180}
+_TURN_DEG = {**QUARTER_DEG, "u_turn": 180}
 
 
 def _way_out(v: VehicleFacts, legs: Mapping[Compass, Leg]) -> Compass | None:
     """The told way out, else the leg that is nearest to where the maneuver leads; None where there is none near."""
     if v.exit_heading is not None or v.heading is None:
         return v.exit_heading
-    toward = turned(v.heading, _QUARTER_DEG.get(v.maneuver, 0))
+    toward = turned(v.heading, _TURN_DEG.get(v.maneuver, 0))
     near = [turned(toward, by) for by in (0, -45, 45)]
     return next((leg for leg in near if leg in legs), None)
 
@@ -128,8 +130,8 @@ def _lane(v: VehicleFacts, lanes: int) -> int | None:
     return {"left": lanes, "left_turn": lanes, "middle": (lanes + 1) // 2}.get(word) or None
 
 
-def _roads(facts: RoadFacts) -> Iterator[tuple[str, Claim]]:
-    legs, junction = layout_of_facts(facts).legs, facts.junction
+def _roads(facts: RoadFacts, legs: tuple[Leg, ...]) -> Iterator[tuple[str, Claim]]:
+    junction = facts.junction
     bearings = tuple(sorted(leg.bearing for leg in legs))
     yield "legs", Claim(bearings, junction.stated and (junction.stem is None or junction.stem_stated))
     roads = {road.axis: road for road in facts.streets if road.axis}

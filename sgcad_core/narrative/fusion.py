@@ -34,7 +34,7 @@ FILLS = 0.6
 _EDGE = 1e-6
 _VEHICLES = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle")
 _PARTNER = "V2"
-_TURNS = ("turn_left", "turn_right", "u_turn")
+TURNS = ("turn_left", "turn_right", "u_turn")
 
 
 class Decided(NamedTuple):
@@ -63,11 +63,16 @@ def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
     return found
 
 
+def terms(p: float, told: bool, nats: float = 0.0) -> tuple[float, float, float, float]:
+    """What weights multiply, in the order differ, slope, told, nats: 1, logit of p, told, bounded grounding."""
+    p = min(max(p, _EDGE), 1 - _EDGE)
+    return 1.0, math.log(p / (1 - p)), float(told), min(max(nats, 0.0), MOST_NATS)
+
+
 def model_right(weights: Weights, p: float, told: bool, nats: float = 0.0) -> float:
     """Probability that a model's value is right that the rules do not share; `nats`: its grounding."""
-    p = min(max(p, _EDGE), 1 - _EDGE)
-    ground = weights.nats * min(max(nats, 0.0), MOST_NATS)
-    return 1 / (1 + math.exp(-(weights.differ + weights.slope * math.log(p / (1 - p)) + weights.told * told + ground)))
+    factors = (weights.differ, weights.slope, weights.told, weights.nats)
+    return 1 / (1 + math.exp(-sum(a * b for a, b in zip(factors, terms(p, told, nats), strict=True))))
 
 
 # ------------------------------------------------------------------ taken over
@@ -94,10 +99,14 @@ def fused(reading: Reading, opinion: Opinion) -> Reading:
 
 
 def _fact(key: str, one: Decided) -> Fact:
+    return model_fact(f"gist.{key}", one.value, one.p)
+
+
+def model_fact(field: str, value: Value | int, p: float) -> Fact:
+    """A value of the second reader's that is taken."""
     return Fact(
-        field=f"gist.{key}", value=one.value, basis="model", status="inferred", rule="second opinion",
-        confidence=round(one.p, 3),
-    )  # fmt: skip
+        field=field, value=value, basis="model", status="inferred", rule="second opinion", confidence=round(p, 3)
+    )
 
 
 def _touched(crash: CrashFacts, one: Decided) -> CrashFacts:
@@ -120,7 +129,7 @@ def _moved(crash: CrashFacts, id: str, maneuver: Maneuver) -> CrashFacts:
     vehicle = crash.vehicle(id)
     if vehicle is None or maneuver == "other":
         return crash
-    gone = {"exit_heading": None, "meant": None, "from_stop": False} if maneuver not in _TURNS else {}
+    gone = {"exit_heading": None, "meant": None, "from_stop": False} if maneuver not in TURNS else {}
     changed = replace(vehicle, maneuver=maneuver, maneuver_stated=True, **gone)  # type: ignore[arg-type]
     return replace(crash, vehicles=tuple(changed if v is vehicle else v for v in crash.vehicles))
 

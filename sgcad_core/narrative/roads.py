@@ -136,7 +136,7 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
         MEDIAN_OPENING: (opens, opening),
         GORE: (names_gore(told), gore),
     }
-    roads = tuple(_uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
+    roads = tuple(uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
     junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
@@ -199,7 +199,7 @@ def _listed(approaches: Approaches, junction: JunctionFacts, axis: Compass) -> b
     return any(one.turns_in for one in told) and all(one.lanes_in and one.lanes_out for one in told)
 
 
-def _uncounted(road: RoadFact) -> RoadFact:
+def uncounted(road: RoadFact) -> RoadFact:
     """The road without the lanes that were counted for all of it, where those of each leg are told."""
     return replace(road, lanes=replace(road.lanes, total=None, each_way=None, toward={}, turns={}, own=None))
 

@@ -16,6 +16,7 @@ from sgcad_core.narrative.compass import compass_of
 from sgcad_core.narrative.mentions import axis_in, axis_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import STORY_ROLES
+from sgcad_core.narrative.speeds import Speed
 from sgcad_core.narrative.street_names import StreetNames, street_names
 from sgcad_core.specs import Compass
 
@@ -30,16 +31,6 @@ class SpeedLimit(NamedTuple):
     axis: Compass | None
     cross: bool
     cue: Cue
-
-
-class _Value(NamedTuple):
-    """A limit where it stands in a text."""
-
-    mph: int
-    start: int
-    end: int
-    words: str
-    rule: str
 
 
 _LIMIT = rule("road_details.limit")
@@ -68,48 +59,48 @@ def _limits(told: Statement, headings: Mapping[str, Compass], names: StreetNames
 
 
 # ------------------------------------------------------------------ values
-def _stated(text: str, names: StreetNames) -> list[_Value]:
+def _stated(text: str, names: StreetNames) -> list[Speed]:
     """Limits of a sentence in order: those told by a word, else those that stand where a road is described."""
     found = [*_with_units(text), *_by_words(text, of_role("posted"))] or list(_described(text, names))
     found += _by_words(text, of_role("posted_again")) if found else ()
-    kept: list[_Value] = []
+    kept: list[Speed] = []
     for value in sorted(found, key=lambda one: one.start):
         if not kept or value.start >= kept[-1].end:
             kept.append(value)
     return kept
 
 
-def _with_units(text: str) -> Iterator[_Value]:
+def _with_units(text: str) -> Iterator[Speed]:
     """Speeds behind a word for a limit; those in km/h only where none is in mph."""
     start = _LIMIT.search(text)
     values = list(_VALUE.finditer(text, start.start())) if start else []
     values = [m for m in values if not _ADVISED.search(text[: m.start()])]
     for m in [m for m in values if m[2].lower() == "mph"] or values:
         mph = int(m[1]) if m[2].lower() == "mph" else 5 * round(int(m[1]) * MPH_PER_KMPH / 5)
-        yield _Value(mph, m.start(), m.end(), m[0], _LIMIT.id)
+        yield Speed(mph, m.start(), m.end(), m[0], _LIMIT.id)
 
 
-def _by_words(text: str, rules: Iterable[Rule]) -> Iterator[_Value]:
+def _by_words(text: str, rules: Iterable[Rule]) -> Iterator[Speed]:
     """Numbers that a word next to them makes a limit."""
     for told in rules:
         for m in told.finditer(text):
             if not _ADVISED.search(text[: m.start()]):
                 group = next(name for name, value in m.groupdict().items() if value)
-                yield _Value(int(m[group]), m.start(group), m.end(group), m[0], told.id)
+                yield Speed(int(m[group]), m.start(group), m.end(group), m[0], told.id)
 
 
-def _described(text: str, names: StreetNames) -> Iterator[_Value]:
+def _described(text: str, names: StreetNames) -> Iterator[Speed]:
     """Speeds in a sentence about a road on which nobody drives, or in brackets behind a road or with its lanes."""
     place = rule("speed_limits.alone")
     if not rule("common.vehicle").search(text) and not rule("speed_limits.driving").search(text):
         if rule("speed_limits.road").search(text) or next(names.in_text(text), None):
-            yield from (_Value(int(m["mph"]), m.start(), m.end(), m[0], place.id) for m in place.finditer(text))
+            yield from (Speed(int(m["mph"]), m.start(), m.end(), m[0], place.id) for m in place.finditer(text))
         return
     for bracket in rule("speed_limits.bracket").finditer(text):
         of_road = rule("speed_limits.road").search(bracket[0])
         if of_road or rule("speed_limits.behind_road").search(text[: bracket.start()]):
             inside = place.finditer(text, bracket.start(), bracket.end())
-            yield from (_Value(int(m["mph"]), m.start(), m.end(), m[0], place.id) for m in inside)
+            yield from (Speed(int(m["mph"]), m.start(), m.end(), m[0], place.id) for m in inside)
 
 
 # ------------------------------------------------------------------ of which road

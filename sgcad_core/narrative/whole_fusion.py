@@ -11,7 +11,7 @@ the model's legs or lanes only if everybody can drive on it as read. Every value
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -20,12 +20,12 @@ from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.claims import Claim, Claims, kind_of, model_claims, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.fusion import FILLS, model_right
+from sgcad_core.narrative.fusion import FILLS, TURNS, model_fact, model_right
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.narrative.others import OtherFacts
-from sgcad_core.narrative.roads import RoadFact, RoadFacts
+from sgcad_core.narrative.roads import RoadFact, RoadFacts, uncounted
 from sgcad_core.specs import Area, Compass, RoadLayout
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ SURE = 0.9
 """How sure the model must be of each part of a contact that the rules cannot read."""
 _ROAD = ("legs", "lanes", "turns", "curve")
 """Fields that a layout carries and no fact of a road holds."""
-_TURNS = ("turn_left", "turn_right", "u_turn")
 _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 """Kinds of junctions whose layouts the embedded model has learned."""
 
@@ -64,6 +63,11 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
     if not (used | laid):
         return reading
     facts = [_fact(key, taken[key]) for key in taken if key in used | laid]
+    return _told(reading, crash, roads, facts)
+
+
+def _told(reading: Reading, crash: CrashFacts, roads: RoadFacts, facts: Sequence[Fact]) -> Reading:
+    """The reading with another crash on its roads; these facts are in the place of those of the same fields."""
     names = {fact.field for fact in facts}
     kept = tuple(fact for fact in reading.facts if fact.field not in names)
     return replace(reading, crash=crash, roads=replace(roads, crash=crash), facts=(*kept, *facts))
@@ -90,10 +94,7 @@ def same(key: str, one: Any, other: Any) -> bool:
 def _fact(key: str, one: Taken) -> Fact:
     name, _, of = key.partition(".")
     field = f"vehicles.{of}.{_NAMES.get(name, name)}" if name in _VEHICLE else f"answered.{key}"
-    value = one.value if isinstance(one.value, str | int | bool) else str(one.value)
-    return Fact(
-        field=field, value=value, basis="model", status="inferred", rule="second opinion", confidence=round(one.p, 3)
-    )
+    return model_fact(field, one.value if isinstance(one.value, str | int | bool) else str(one.value), one.p)
 
 
 _NAMES = {"exit": "exit_heading", "speed": "speed_mph"}
@@ -110,7 +111,7 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
         return reading
     crash, known = reading.crash, {v.id: v for v in reading.crash.vehicles}
     vehicles = tuple(
-        _with_claims(known.get(actor.id) or VehicleFacts(actor.id, actor.kind), heard)
+        _with_values(known.get(actor.id) or VehicleFacts(actor.id, actor.kind), heard)
         for actor in said.behavior.actors
         if actor.id.startswith("V")
     )
@@ -119,16 +120,13 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
         ContactFacts(c.striker, c.struck, c.striker_area, c.struck_area, True) for c in said.behavior.contacts
     )
     crash = replace(crash, vehicles=vehicles, others=others, contacts=contacts, oriented=True, gap=None)
-    facts = [_fact(key, Taken(heard[key].value, heard[key].p)) for key in sure]
-    names = {fact.field for fact in facts}
-    kept = tuple(fact for fact in reading.facts if fact.field not in names)
-    return replace(reading, crash=crash, roads=replace(reading.roads, crash=crash), facts=(*kept, *facts))
+    return _told(reading, crash, reading.roads, [_fact(key, Taken(heard[key].value, heard[key].p)) for key in sure])
 
 
-def _with_claims(v: VehicleFacts, heard: Claims) -> VehicleFacts:
-    """A vehicle as the model has it."""
+def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Taken]) -> VehicleFacts:
+    """A vehicle with the values that there are of it."""
     for name, change in _VEHICLE.items():
-        if (one := heard.get(f"{name}.{v.id}")) is not None:
+        if (one := values.get(f"{name}.{v.id}")) is not None:
             v = change(v, one.value)
     return v
 
@@ -136,16 +134,9 @@ def _with_claims(v: VehicleFacts, heard: Claims) -> VehicleFacts:
 # ------------------------------------------------------------------ who moved how, who met whom
 def _crash(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[CrashFacts, set[str]]:
     """The crash with the values that fit into it, and their fields."""
-    used: set[str] = set()
-    vehicles = []
-    for v in crash.vehicles:
-        for name, change in _VEHICLE.items():
-            if (one := taken.get(f"{name}.{v.id}")) is not None:
-                v = change(v, one.value)
-                used.add(f"{name}.{v.id}")
-        vehicles.append(v)
+    used = {key for v in crash.vehicles for name in _VEHICLE if (key := f"{name}.{v.id}") in taken}
     oriented = crash.oriented or any(kind_of(key) == "heading" for key in used)
-    crash = replace(crash, vehicles=tuple(vehicles), oriented=oriented)
+    crash = replace(crash, vehicles=tuple(_with_values(v, taken) for v in crash.vehicles), oriented=oriented)
     for key in ("light", "weather", "surface"):
         if key in taken:
             crash = replace(crash, **{key: taken[key].value})
@@ -183,7 +174,7 @@ def _met(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[tuple[ContactFa
 def _moved(v: VehicleFacts, maneuver: Any) -> VehicleFacts:
     """With another maneuver; where it was to turn to belongs to the maneuver before."""
     moved = replace(v, maneuver=maneuver, maneuver_stated=True, from_stop=False)
-    return moved if maneuver in _TURNS else replace(moved, exit_heading=None, meant=None)
+    return moved if maneuver in TURNS else replace(moved, exit_heading=None, meant=None)
 
 
 _VEHICLE: Mapping[str, Callable[[VehicleFacts, Any], VehicleFacts]] = {
@@ -266,17 +257,10 @@ def _with_road(facts: RoadFacts, axis: Compass, change: Callable[[RoadFact, Any]
     return replace(facts, roads=tuple(change(road, value) if road is streets[0] else road for road in roads))
 
 
-def _uncounted(road: RoadFact, _: Any) -> RoadFact:
-    """What the text seemed to count is not held against the network."""
-    return replace(road, lanes=replace(road.lanes, total=None, each_way=None, toward={}, turns={}, own=None))
-
-
 _CHANGES: Mapping[str, Callable[[RoadFact, Any], RoadFact]] = {
-    "lanes": _uncounted,
+    "lanes": lambda road, _: uncounted(road),  # what the text seemed to count is not held against the network
     "median": lambda road, kind: replace(
         road, lanes=replace(road.lanes, median=None if kind == "none" else kind, divided=kind != "none")
     ),
     "limit": lambda road, mph: replace(road, speed_limit_mph=mph),
 }
-
-__all__ = ["Claim", "Taken", "decided", "same", "whole"]
