@@ -5,11 +5,12 @@
 
 `benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
 nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
-only totals are. `--fit` fits the weights of the combiner on the seen half; its own row there is cross-fitted. Fields
-are those of `sgcad_core.narrative.claims`; those that the text does not tell do not count. "fused, p": how many the
-combiner has right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected
-calibration error of the combiner where both have a value, in ten bins. The model's answers are kept in --answers.
-`--rules` asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
+only totals are. The reports in `sparse/` leave out much of their crash on purpose: sides, lanes, maneuvers. `--fit`
+fits the weights of the combiner on the seen half; its own row there is cross-fitted. Fields are those of
+`sgcad_core.narrative.claims`; those that the text does not tell do not count. "fused, p": how many the combiner has
+right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected calibration
+error of the combiner where both have a value, in ten bins. The model's answers are kept in --answers. `--rules` asks no
+model; with `--show` it prints the texts in which the rules have a kind of field wrong.
 """
 
 from __future__ import annotations
@@ -37,13 +38,15 @@ from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, model_cla
 from sgcad_core.narrative.compass import COMPASS
 from sgcad_core.narrative.fusion import model_right, terms
 from sgcad_core.narrative.reading import Reading, read
-from sgcad_core.narrative.whole_fusion import same
+from sgcad_core.narrative.whole_fusion import decided, same
 from sgcad_core.narrative.whole_fusion import whole as fused
 from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
 from sgcad_core.records import CrashReport
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 FOLDER = Path(__file__).parent / "outside"
+SPARSE = "sparse"
+"""Folder within it: reports that leave out much of their crash."""
 AT_ONCE = 8
 _FACTS = {"maneuver": "man", "contact": "contact.0", "areas": "areas.0"}
 """Kinds of fields whose facts the generator calls otherwise."""
@@ -139,15 +142,15 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
             theirs = want is not None and right(key, said.value, want.value)
             mine = rule is not None and want is not None and right(key, rule.value, want.value)
             if rule is None or want is None or mine != theirs:
-                rows[kind_of(key)].append(terms(said.p, rule is not None and rule.told, said.nats))
+                rows[kind_of(key)].append(terms(said.p, rule.told if rule is not None else 0.0, said.nats, said.told))
                 marks[kind_of(key)].append(float(theirs))
     return {kind: _weights(rows[kind], marks[kind], agreed[kind]) for kind in KINDS if rows[kind]}
 
 
 def _weights(rows: Sequence[tuple[float, ...]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
-    differ, slope, told, nats = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks)))
+    differ, slope, told, nats, tells = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks)))
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
-    return Weights(differ=differ, slope=slope, told=told, nats=nats, agree=round(agree, 3))
+    return Weights(differ=differ, slope=slope, told=told, nats=nats, tells=tells, agree=round(agree, 3))
 
 
 def right(key: str, got: object, want: object) -> bool:
@@ -156,6 +159,18 @@ def right(key: str, got: object, want: object) -> bool:
 
 
 # ------------------------------------------------------------------ table
+def untold(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -> str:
+    """How many values of the rules that the text does not tell are given up for the model's guess."""
+    changed = count = 0
+    for case in some:
+        rules, model = case.claims
+        taken = decided(rules, model, weights[case.id], Opinion().takes)
+        for key in (rules.keys() & model.keys()) - case.truth.keys():
+            differ = not same(key, rules[key].value, model[key].value)
+            count, changed = count + differ, changed + (differ and key in taken)
+    return f"not told, readers differ: {count}; of these the model's is taken: {changed}"
+
+
 def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -> Iterator[str]:
     """Lines by kind of field; `weights` by id of the case."""
     marks: dict[str, list[tuple[bool, bool, bool]]] = defaultdict(list)
@@ -198,7 +213,7 @@ def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinio
         return None
     if same(key, rule.value, said.value):
         return weights.agree
-    p = model_right(weights, said.p, rule.told, said.nats)
+    p = model_right(weights, said.p, rule.told, said.nats, said.told)
     return p if p >= opinion.takes else 1 - p
 
 
@@ -239,7 +254,8 @@ def main() -> None:
     parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
     options = parser.parse_args()
     try:
-        texts = load(options.folder)
+        sparse = load(options.folder / SPARSE) if (options.folder / SPARSE).is_dir() else ()
+        texts = (*load(options.folder), *sparse)
         if options.rules:
             print("\n".join(rules_alone(texts, options.show)))  # noqa: T201 - a command prints
             return
@@ -248,9 +264,18 @@ def main() -> None:
         raise SystemExit(str(fault)) from fault
     seen, blind = ([case for case in all_cases if case.blind == half] for half in (False, True))
     shipped = load_weights(WHOLE, KINDS) if options.fit is None else fit(seen)
-    lines = [f"seen half, {len(seen)} texts, weights cross-fitted", *table(seen, crossed(seen)), ""]
-    lines += [f"blind half, {len(blind)} texts", *table(blind, {case.id: shipped for case in blind})]
-    print("\n".join(lines))  # noqa: T201 - a command prints
+    leaving_out = {one.id for one in sparse}
+    parts = (
+        ("seen half, weights cross-fitted", seen, crossed(seen)),
+        ("blind half", blind, {case.id: shipped for case in blind}),
+    )
+    for name, some, weights in parts:
+        for kind, part in (
+            (name, [case for case in some if case.id not in leaving_out]),
+            (f"{name}, reports that leave out much", [case for case in some if case.id in leaving_out]),
+        ):
+            lines = [f"{kind}: {len(part)} texts", *table(part, weights), "", untold(part, weights), ""]
+            print("\n".join(lines if part else []))  # noqa: T201 - a command prints
     if options.fit is not None:
         weights = {kind: one.model_dump() for kind, one in shipped.items()}
         options.fit.write_text(json.dumps(weights, indent=1) + "\n", encoding="utf-8")

@@ -16,7 +16,7 @@ import torch
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from mini import eye
+from mini import eye, told_heads
 from mini.grow import deepened, depth
 
 MODEL = "model.safetensors"
@@ -44,6 +44,7 @@ def blend(before: Path, after: Path, out: Path, share: float) -> None:
     """Write a folder of weights between two exported ones; other files come from `after`, then `before`."""
     for folder in (before, after):
         shutil.copytree(folder, out, dirs_exist_ok=True)
+    (out / told_heads.FILE).unlink(missing_ok=True)  # heads are of the weights that they were fitted on
     for name in (MODEL, eye.FILE):
         mean = blended(load_file(before / name), load_file(after / name), share)
         save_file(mean, out / name, metadata={"format": "pt"})

@@ -31,6 +31,8 @@ class Weights(Record):
     told: float = 0.0
     nats: float = 0.0
     """Per nat by which the report makes the value likelier than it is without it, up to `MOST_NATS`."""
+    tells: float = 0.0
+    """Per unit of the log-odds that the evidence tells the value, by the model's own head."""
     agree: float | None = Field(0.9, ge=0, le=1)
 
 
@@ -51,6 +53,8 @@ class Answered(Record):
     nothing was chosen. Empty: nothing is known."""
     nats: Mapping[str, float] = {}
     """Grounding of each value by the same path: log p(y|c,x) - log p(y|x). Empty: nobody asked without the report."""
+    told: Mapping[str, float] = {}
+    """Probability that the evidence tells each value, by the same path, of a model that has heads for it."""
 
 
 class Opinion(Record):

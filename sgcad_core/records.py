@@ -79,6 +79,8 @@ class Generation(Record):
     finish: Literal["stop", "length", "refused"] = "stop"
     grounding: Mapping[str, float] = {}
     """JSON path of an answer field -> log p(y|c,x) - log p(y|x) summed over its tokens, nats."""
+    told: Mapping[str, float] = {}
+    """The same path -> probability that the evidence tells the value, by heads of the model's own; empty without."""
     prompt_tokens: int = 0
     model_calls: int = 0
     seconds: float = 0.0

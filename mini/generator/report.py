@@ -7,7 +7,7 @@ text contradicts itself). The last three are refused.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
@@ -33,6 +33,8 @@ UNUSUAL = 0.2
 UNUSUAL_ONE_WAY = 0.04
 """The same share where one of the roads whose lanes are kept back is one-way: of these writers pass over one lane."""
 SECOND_THOUGHTS = 4
+GONE = 0.5
+"""The largest share of sentences that a depleted report lacks."""
 ONE_WAY = {"text": 0.3, "both": 0.12, "image": 0.05, "none": 0.08}
 """How often a crash that trains, in each mode, gets a one-way street where it can: in words they come without a count
 of lanes, at a T and beside two-way streets, and each of these is rare in crashes as they are sampled."""
@@ -205,3 +207,20 @@ def refusal(reason: int) -> Json:
     """A refusal: 0 thin, 1 no crash, 2 conflict."""
     missing = {0: list(MISSING), 1: list(MISSING[2:]), 2: [MISSING[0], MISSING[2]]}[reason]
     return {"refuse": REASONS[reason], "missing": missing}
+
+
+def depleted(report: Report, rng: Random) -> Report:
+    """A report that lacks some of its sentences, and so what only these tell: each left out with the same probability,
+    which is drawn anew for every report.
+
+    Its answers stay those of the crash; notes are not kept.
+    """
+    gone, start, text = rng.random() * GONE, 0, ""
+    sentences: Sentences = []
+    for end, facts in report.sentences:
+        if rng.random() >= gone:
+            text += report.narrative[start:end]
+            sentences.append((len(text), facts))
+        start = end
+    told, doubtful = _stated_facts(report.crash, sentences)
+    return replace(report, narrative=text, sentences=sentences, stated=told, doubtful=doubtful, notes=[])

@@ -6,9 +6,10 @@ which ask for it on behalf of videos, are not used. Knows no prompt and no decod
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
@@ -16,11 +17,13 @@ from typing import Any
 import torch
 import transformers as tf
 from PIL import Image
+from safetensors import SafetensorError, safe_open
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
 
+TOLD = "told.safetensors"
 Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
 """A picture in one of its views (0: as it is) to the tensors of the model's arguments, and what else the processor says
 of it."""
@@ -34,6 +37,9 @@ class Loaded:
     tokenizer: Any
     template: str | None
     prepare: Prepare | None
+    told: Mapping[str, torch.Tensor] = field(default_factory=dict)
+    """Heads (hidden + 1,) by the names of fields ("legs.lanes_in"), the constant last: the log-odds that the evidence
+    tells the value of such a field, from the state before its first token. Empty for a model that has none."""
 
 
 def load(name: str, revision: str | None, options: Mapping[str, Any], device: str, quantization: str) -> Loaded:
@@ -50,7 +56,7 @@ def load(name: str, revision: str | None, options: Mapping[str, Any], device: st
     model.eval()
     sees = hasattr(model.config, "vision_config")
     prepare = _prepare(place, revision) if sees else None
-    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare)
+    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _told(place, model))
 
 
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
@@ -100,6 +106,33 @@ def _model(place: str, revision: str | None, options: dict[str, Any], quantizati
         return kind.from_pretrained(place, revision=revision, **options)
     except (OSError, ValueError, ImportError, KeyError) as fault:
         raise _not_loaded(place, fault) from fault
+
+
+def _told(place: str, model: Any) -> dict[str, torch.Tensor]:
+    """The heads that stand beside a folder's weights, if there are some."""
+    file = Path(place) / TOLD
+    if not file.is_file():
+        return {}
+    size = model.get_output_embeddings().weight.shape[1] + 1
+    remedy = "fit the heads again for these weights or take the file away"
+    try:
+        with safe_open(file, "pt") as opened:
+            made_for = (opened.metadata() or {}).get("model", "")
+            heads = {name: opened.get_tensor(name).float() for name in opened.keys()}  # noqa: SIM118 - is no mapping
+    except (SafetensorError, OSError) as fault:
+        raise ConfigError(f"{file}: is no file of safetensors: {fault}; {remedy}") from fault
+    if wrong := sorted(name for name, head in heads.items() if head.shape != (size,)):
+        raise ConfigError(f"{file}: {', '.join(wrong)}: a head of this model has {size} numbers; {remedy}")
+    if made_for and made_for != _digest(file.with_name("model.safetensors")):
+        raise ConfigError(f"{file}: its heads were fitted on other weights than those beside it; {remedy}")
+    return heads
+
+
+def _digest(file: Path) -> str:
+    if not file.is_file():
+        return ""
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()
 
 
 def _quantization(name: str) -> Any:

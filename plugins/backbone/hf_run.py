@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import codecs
 import dataclasses
+import math
 import threading
 import weakref
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from plugins.backbone.prompt import Parts
-from sgcad_core.asking.fields import grounding, is_refusal
+from sgcad_core.asking.fields import first_tokens, grounding, is_refusal, name_of
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 from sgcad_core.records import Finding, Generation, Token
 
@@ -52,6 +53,8 @@ class Running:
     maker: GrammarMaker
     eos: frozenset[int]
     name: str
+    told: Mapping[str, Any] = field(default_factory=dict)
+    """Heads of the model's own that say whether the evidence tells a value (`hf_load.Loaded.told`)."""
 
     def answer(self, call: Call) -> tuple[Generation, tuple[int, ...]]:
         """The generation and its token ids. Raises the project's errors, see `HfVision.generate`."""
@@ -71,6 +74,7 @@ class Running:
                 self.eos,
                 call.draft,
                 views=views,
+                keep_states=bool(self.told),
             )
             found = self.engine.generate(request)
         except records.DoesNotFit as fault:
@@ -124,9 +128,9 @@ class Running:
     def _generation(self, found: Answer, notes: list[str]) -> Generation:
         parts = [bytes(self.maker.tokens.decode_bytes([token])) for token in found.ids]
         text = b"".join(parts)
+        ends = list(accumulate(len(part) for part in parts))
         ground = {}
         if found.without_context:
-            ends = list(accumulate(len(part) for part in parts))
             ground = grounding(text.decode("latin-1"), ends, found.with_context, found.without_context)
         answer = text.decode("utf-8", errors="replace")
         finish = "length" if not found.finished else "refused" if is_refusal(answer) else "stop"
@@ -136,12 +140,20 @@ class Running:
                 "tokens": self._tokens(parts, found),
                 "finish": finish,
                 "grounding": ground,
+                "told": self._told(text.decode("latin-1"), ends, found) if found.states else {},
                 "prompt_tokens": found.prompt_tokens,
                 "model_calls": found.model_calls,
                 "seconds": found.seconds,
                 "notes": tuple(notes),
             }
         )
+
+    def _told(self, text: str, ends: Sequence[int], found: Answer) -> dict[str, float]:
+        """By path: how likely the evidence tells the value, of those that were a choice and whose kind has a head."""
+        places = {path: at for path, at in first_tokens(text, ends).items() if not found.forced[at]}
+        heads = {path: head for path in places if (head := self.told.get(name_of(path))) is not None}
+        logits = {path: float(found.states[places[path]] @ head[:-1] + head[-1]) for path, head in heads.items()}
+        return {path: 1 / (1 + math.exp(-logit)) for path, logit in logits.items()}
 
     def _tokens(self, parts: list[bytes], found: Answer) -> tuple[Token, ...]:
         """Token records; a character that several tokens spell counts to the last of them."""
@@ -219,8 +231,8 @@ def start(
     eos = _end_tokens(loaded.model, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
     maker = GrammarMaker(loaded.tokenizer, vocabulary, sorted(eos))
-    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes)
-    return Running(engine, prompter, maker, frozenset(eos), name)
+    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.told))
+    return Running(engine, prompter, maker, frozenset(eos), name, loaded.told)
 
 
 def _end_tokens(model: Any, tokenizer: Any) -> set[int]:

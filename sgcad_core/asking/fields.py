@@ -9,12 +9,14 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"?', re.DOTALL)
 _SCALAR = re.compile(r"[^\s,\]}]+")
 _SPACE = re.compile(r"\s*")
+_PLACES = re.compile(r"\[\d*\]")
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,16 @@ def grounding(
             found[span.path] = found.get(span.path, 0.0) + with_ - without
         start = end
     return found
+
+
+def first_tokens(text: str, ends: Sequence[int]) -> dict[str, int]:
+    """By path: which token a field begins in. `ends[i]` is where token i ends in `text`."""
+    return {span.path: bisect_right(ends, span.start) for span in spans(text)}
+
+
+def name_of(path: str) -> str:
+    """A path without the places in its lists: "legs.lanes_in" of "legs[0].lanes_in"."""
+    return _PLACES.sub("", path)
 
 
 def _scanned(text: str) -> _Scan:

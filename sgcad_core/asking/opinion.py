@@ -76,7 +76,9 @@ def _answered(context: Context, case: str, ask: Ask) -> Answered:
     p |= {f"crash.{path}": sure for path, sure in probabilities(crash.tokens).items()}
     nats = {f"road.{path}": gain for path, gain in road.grounding.items()}
     nats |= {f"crash.{path}": gain for path, gain in crash.grounding.items()}
-    return Answered(layout=layout, behavior=behavior, p=p, nats=nats)
+    told = {f"road.{path}": share for path, share in road.told.items()}
+    told |= {f"crash.{path}": share for path, share in crash.told.items()}
+    return Answered(layout=layout, behavior=behavior, p=p, nats=nats, told=told)
 
 
 def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:

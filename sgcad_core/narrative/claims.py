@@ -47,14 +47,16 @@ KINDS = (
 """Kinds of fields, for which a combiner has weights."""
 
 UNKNOWN_P = 0.5
-"""Of a value whose model gives no probabilities, as servers do not: the weights alone then decide."""
+"""Of a value whose model gives no probabilities, as servers do not, or has no head that says whether it is told: the
+weights alone then decide."""
 
 
 class Claim(NamedTuple):
-    """A value; whether the text tells it outright; its probability and its grounding, where the reader gives them."""
+    """A value; whether the evidence tells it (of the rules 0 or 1, of a model the probability); the value's own
+    probability and its grounding, where the reader gives them."""
 
     value: Any
-    told: bool = True
+    told: float = 1.0
     p: float = 1.0
     nats: float = 0.0
 
@@ -156,7 +158,7 @@ def _counted(road: RoadFact) -> bool:
 # ------------------------------------------------------------------ a model's
 def model_claims(said: Answered) -> Claims:
     """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
-    sure = _Sure(said.p, said.nats)
+    sure = _Sure(said.p, said.nats, said.told)
     found: Claims = {}
     for i, actor in enumerate(said.behavior.actors):
         at = f"crash.actors[{i}]"
@@ -173,6 +175,7 @@ class _Sure(NamedTuple):
 
     p: Mapping[str, float]
     nats: Mapping[str, float]
+    told: Mapping[str, float]
 
     def claim(self, value: Any, *paths: str, joint: bool = False) -> Claim:
         """A claim that stands at some paths: as sure as the least sure of them, or (`joint`) as all together.
@@ -181,7 +184,8 @@ class _Sure(NamedTuple):
         server that gives no probabilities.
         """
         some = [self.p.get(path, 1.0) if self.p else UNKNOWN_P for path in paths] or [1.0]
-        return Claim(value, True, prod(some) if joint else min(some), sum(self.nats.get(path, 0.0) for path in paths))
+        told = min([self.told.get(path, UNKNOWN_P) for path in paths], default=UNKNOWN_P)
+        return Claim(value, told, prod(some) if joint else min(some), sum(self.nats.get(path, 0.0) for path in paths))
 
 
 def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:

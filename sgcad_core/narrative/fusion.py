@@ -63,16 +63,23 @@ def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
     return found
 
 
-def terms(p: float, told: bool, nats: float = 0.0) -> tuple[float, float, float, float]:
-    """What weights multiply, in the order differ, slope, told, nats: 1, logit of p, told, bounded grounding."""
+def terms(p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> tuple[float, ...]:
+    """What weights multiply, in the order differ, slope, told, nats, tells: 1, logit of p, told, bounded grounding,
+    bounded logit of tells."""
+    most = MOST_NATS
+    return 1.0, _logit(p), float(told), min(max(nats, 0.0), most), min(max(_logit(tells), -most), most)
+
+
+def _logit(p: float) -> float:
     p = min(max(p, _EDGE), 1 - _EDGE)
-    return 1.0, math.log(p / (1 - p)), float(told), min(max(nats, 0.0), MOST_NATS)
+    return math.log(p / (1 - p))
 
 
-def model_right(weights: Weights, p: float, told: bool, nats: float = 0.0) -> float:
-    """Probability that a model's value is right that the rules do not share; `nats`: its grounding."""
-    factors = (weights.differ, weights.slope, weights.told, weights.nats)
-    return 1 / (1 + math.exp(-sum(a * b for a, b in zip(factors, terms(p, told, nats), strict=True))))
+def model_right(weights: Weights, p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> float:
+    """Probability that a model's value is right that the rules do not share; `told`: whether the text tells the rules'
+    value outright; `nats`: the value's grounding; `tells`: how likely the evidence tells it, by the model's head."""
+    factors = (weights.differ, weights.slope, weights.told, weights.nats, weights.tells)
+    return 1 / (1 + math.exp(-sum(a * b for a, b in zip(factors, terms(p, told, nats, tells), strict=True))))
 
 
 # ------------------------------------------------------------------ taken over

@@ -80,7 +80,7 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
         weight, rule = weights.get(kind_of(key)), rules.get(key)
         if weight is None or (rule is not None and same(key, rule.value, said.value)):
             continue
-        p = model_right(weight, said.p, rule is not None and rule.told, said.nats)
+        p = model_right(weight, said.p, rule.told if rule is not None else 0.0, said.nats, said.told)
         if p >= (takes if rule is not None else FILLS):
             found[key] = Taken(said.value, p)
     return found

@@ -70,9 +70,11 @@ def test_folders_are_blended_and_the_rest_is_kept(tmp_path: Path) -> None:
         save_file({"conv": torch.full((2,), float(seed)).to(torch.bfloat16)}, folder / eye.FILE)
         (folder / "config.json").write_text(name)
     (tmp_path / "before" / "north.safetensors").write_text("kept")
+    (tmp_path / "before" / "told.safetensors").write_text("of the weights before")
     blend(tmp_path / "before", tmp_path / "after", tmp_path / "out", 0.25)
     assert load_file(tmp_path / "out" / eye.FILE)["conv"].tolist() == [0.25, 0.25]
     assert load_file(tmp_path / "out" / eye.FILE)["conv"].dtype == torch.bfloat16
     assert load_file(tmp_path / "out" / MODEL).keys() == weights_of(3, 1).keys()
     assert (tmp_path / "out" / "config.json").read_text() == "after"
     assert (tmp_path / "out" / "north.safetensors").read_text() == "kept"
+    assert not (tmp_path / "out" / "told.safetensors").exists(), "no head fits the mean of two states"

@@ -34,6 +34,8 @@ class Said:
     picked: list[int]
     picked_with: list[float]
     picked_without: list[float]
+    states: torch.Tensor | None = None
+    """(chunk, hidden) of the row with context, where they are kept."""
 
 
 @dataclass(eq=False)
@@ -143,7 +145,8 @@ class Job:
         `choices` is how many tokens the grammar left at each scored position, empty without one. Raises
         DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
         """
-        self._note(said.known_with, said.known_without)
+        known = len(said.known_with)
+        self._note(said.known_with, said.known_without, said.states, range(known))
         if self.closing:
             return self._finish()
         guesses = self.guesses
@@ -158,7 +161,8 @@ class Job:
             if choices and choices[i] == 0:
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
             self._accept(said.picked[i], bool(choices) and choices[i] == 1)
-            self._note(said.picked_with[i : i + 1], said.picked_without[i : i + 1])
+            at = range(known + i, known + i + 1)
+            self._note(said.picked_with[i : i + 1], said.picked_without[i : i + 1], said.states, at)
             if i == right and not self._take(said.picked[i]):
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
         for row in self.rows:
@@ -187,7 +191,8 @@ class Job:
         if self.answer.ids and self.answer.ids[-1] in self.request.eos:
             if self.track and not self.track.complete:
                 raise DoesNotFit("the text that must follow is an end token of this tokenizer", self.path())
-            for kept in (self.answer.ids, self.answer.with_context, self.answer.without_context, self.answer.forced):
+            answer = self.answer
+            for kept in (answer.ids, answer.with_context, answer.without_context, answer.forced, answer.states):
                 del kept[-1:]
             return self._finish()
         self._force()
@@ -212,9 +217,17 @@ class Job:
         self.answer.forced.append(forced)
         self.draft.note(token)
 
-    def _note(self, with_context: Sequence[float], without_context: Sequence[float]) -> None:
+    def _note(
+        self,
+        with_context: Sequence[float],
+        without_context: Sequence[float],
+        states: torch.Tensor | None,
+        places: range,
+    ) -> None:
         self.answer.with_context += with_context
         self.answer.without_context += without_context
+        if states is not None:
+            self.answer.states += states[places.start : places.stop].float().cpu().unbind()
 
     def _finish(self, complete: bool = True) -> None:
         self.answer.finished = complete

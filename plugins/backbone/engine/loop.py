@@ -32,10 +32,19 @@ class Engine:
     """The token loop of one model. Close it, or leave it: its thread is a daemon."""
 
     def __init__(
-        self, model: Any, family: Family, apart: bool = False, reports_at_once: int = 8, prefix_bytes: int = 1 << 30
+        self,
+        model: Any,
+        family: Family,
+        apart: bool = False,
+        reports_at_once: int = 8,
+        prefix_bytes: int = 1 << 30,
+        watched: bool = False,
     ) -> None:
+        """`watched`: requests may keep states."""
         self.model = model
         self.runner = Runner(model, family, apart, prefix_bytes)
+        if watched:
+            self.runner.watch()
         self.window = window_of(model)
         self.limit = reports_at_once
         self.jobs: list[Job] = []
@@ -170,7 +179,11 @@ class Engine:
             without_context.append(next(logits) if job.request.without_context is not None else None)
             with_context.append(averaged(first, [next(logits) for _ in job.request.views]))
             job.answer.model_calls += self.runner.calls - before
-        return heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
+        found = heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
+        for job, one in zip(jobs, found, strict=True):
+            if one.said is not None and job.request.keep_states:
+                one.said.states = self.runner.states.get(id(job.rows[0]))
+        return found
 
     def _vocabulary(self) -> int:
         return int(self.model.get_output_embeddings().weight.shape[0])

@@ -102,6 +102,8 @@ class Request:
     jump_forward: bool = True
     views: Sequence[Prompt] = ()
     """The evidence with its pictures laid out otherwise: what these rows predict is averaged with the first's."""
+    keep_states: bool = False
+    """Keep the state that each token was chosen from; the loop must watch them (`Engine`'s `watched`)."""
 
     @property
     def prompts(self) -> list[Prompt]:
@@ -118,6 +120,9 @@ class Answer:
     without_context: list[float] = field(default_factory=list)
     """Empty if the row without context was not run."""
     forced: list[bool] = field(default_factory=list)
+    states: list[Any] = field(default_factory=list)
+    """What the output embedding got of the first row with context before each token, (hidden,) in fp32 on the host;
+    empty unless asked for."""
     finished: bool = False
     """False: max_new_tokens was reached, which only happens without a grammar."""
     prompt_tokens: int = 0

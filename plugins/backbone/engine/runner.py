@@ -57,6 +57,18 @@ class Runner:
         text = model.config.get_text_config()
         self.layers = int(text.num_hidden_layers)
         self.bool_mask = getattr(text, "_attn_implementation", "sdpa") != "eager"
+        self.last: Tensor | None = None
+        """What the output embedding got in the last pass, (rows, width, hidden), once `watch` was called."""
+        self.states: dict[int, Tensor] = {}
+        """By id of a row that was stepped: (tokens, hidden)."""
+
+    def watch(self) -> None:
+        """From now on keep the states that every step's logits come from."""
+
+        def seen(_: Any, given: tuple[Tensor, ...]) -> None:
+            self.last = given[0]
+
+        self.model.get_output_embeddings().register_forward_pre_hook(seen)
 
     def open(self, prompt: Prompt, behind: Sequence[int] = ()) -> Row:
         """Give a prompt a row and prefill all of prompt and `behind` but the last token."""
@@ -95,10 +107,13 @@ class Runner:
         The rows' lengths stay: the caller adds what it accepts, the rest is overwritten later.
         """
         found: dict[int, Tensor] = {}
+        self.states = {}
         by_row = {id(row): tokens for row, tokens in chunks}
         for lane in {id(row.lane): row.lane for row, _ in chunks}.values():
             logits = self._forward(lane, [by_row[id(row)] for row in lane.rows])
             found |= {id(row): logits[i, : len(by_row[id(row)])] for i, row in enumerate(lane.rows)}
+            if self.last is not None:
+                self.states |= {id(row): self.last[i, : len(by_row[id(row)])] for i, row in enumerate(lane.rows)}
         return [found[id(row)] for row, _ in chunks]
 
     def reset(self) -> None:

@@ -81,7 +81,7 @@ def plain_loop(name: str, rows: tuple[Prompt, Prompt], decoder: Decoder, limit: 
 def run(name: str, count: int, decoder: Decoder, limit: int, grammar: Grammar | None = None, **fields: Any) -> Any:
     """`count` reports at once through the engine: prompts, answers and recorded rows."""
     model, family, apart = model_of(name)
-    engine = Engine(model, family, apart, reports_at_once=8)
+    engine = Engine(model, family, apart, reports_at_once=8, watched=fields.get("keep_states", False))
     reports = [tiny.prompts(name, family, seed) for seed in range(count)]
     recorders = [Recorder(decoder) for _ in reports]
     requests = [
@@ -116,6 +116,21 @@ def test_a_batch_of_reports_equals_two_forwards_without_cache(name: str, alpha: 
         assert answer.ids == ids
         assert worst(recorder, answer, seen) < LIMIT
         assert (answer.without_context == []) == (alpha == 0.0)
+
+
+@pytest.mark.parametrize("name", ARCHITECTURES)
+@pytest.mark.parametrize("held", [False, True], ids=["free", "grammar"])
+def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, held: bool) -> None:
+    grammar = maker().grammar(tiny.SCHEMA) if held else None
+    _, (first, *_), _ = run(name, 1, Cad(alpha=0.7), 60, grammar)
+    _, answers, _ = run(name, 3, Cad(alpha=0.7), 60, grammar, keep_states=True, draft=first.ids)
+    embedding = model_of(name)[0].get_output_embeddings()
+    for answer in answers:
+        assert len(answer.states) == len(answer.ids) == len(answer.with_context)
+        logp = embedding(torch.stack(answer.states)).log_softmax(-1)
+        found = logp.gather(-1, torch.tensor(answer.ids)[:, None])[:, 0]
+        assert found.tolist() == pytest.approx(answer.with_context, abs=LIMIT)
+    assert first.states == [], "not asked for"
 
 
 @pytest.mark.parametrize("name", ARCHITECTURES)

@@ -7,12 +7,14 @@ import importlib.util
 import json
 import math
 import weakref
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import pytest
 import torch
+from safetensors.torch import save_file
 
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.adacad import AdaCad
@@ -82,6 +84,46 @@ def test_grounding_is_the_sum_over_the_fields_tokens(backbones: dict[str, HfVisi
         if at >= end:
             break
     assert generation.grounding["name"] == pytest.approx(total, abs=1e-6)
+
+
+def heads(folder: Path, size: int = 65, **metadata: str) -> None:
+    """Heads that are sure of names and unsure of bearings."""
+    sure = torch.zeros(size)
+    sure[-1] = 3.0
+    save_file({"name": sure, "bearing": torch.zeros(size)}, folder / "told.safetensors", metadata)
+
+
+def test_heads_beside_the_weights_say_what_the_evidence_tells(tmp_path: Path) -> None:
+    folder = folders.save("qwen2_5_vl", tmp_path / "m")
+    without = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200).generate(
+        folders.context(), QUERY, Greedy()
+    )
+    heads(folder)
+    found = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200).generate(
+        folders.context(), QUERY, Greedy()
+    )
+    assert without.told == {}
+    assert found.text == without.text, "heads change no answer"
+    assert found.told["name"] == pytest.approx(1 / (1 + math.exp(-3)))
+    assert set(found.told.items()) <= {("name", found.told["name"]), ("bearing", 0.5)}
+
+
+@pytest.mark.parametrize(
+    ("write", "fault"),
+    [
+        (lambda folder: heads(folder, size=9), "a head of this model has 65 numbers"),
+        (lambda folder: heads(folder, model="0" * 64), "fitted on other weights"),
+        (lambda folder: (folder / "told.safetensors").write_text("x"), "no file of safetensors"),
+    ],
+    ids=["size", "weights", "text"],
+)
+def test_heads_of_another_model_are_refused(tmp_path: Path, write: Callable[[Path], None], fault: str) -> None:
+    folder = folders.save("text_only", tmp_path / "m")
+    write(folder)
+    with pytest.raises(ConfigError, match=f"told.safetensors.*{fault}.*take the file away"):
+        HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200).generate(
+            folders.context(), QUERY, Greedy()
+        )
 
 
 def test_the_evidence_changes_the_answer_and_its_grounding(backbones: dict[str, HfVision]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.asking.fields import grounding, is_refusal, open_path, spans
+from sgcad_core.asking.fields import first_tokens, grounding, is_refusal, name_of, open_path, spans
 
 SCALARS = st.none() | st.booleans() | st.integers(-99, 99) | st.floats(-9, 9) | st.text(max_size=8)
 VALUES = st.recursive(
@@ -74,6 +74,24 @@ def test_grounding_sums_the_tokens_of_each_field_and_of_list_lengths() -> None:
 
 def test_a_token_over_several_fields_counts_to_the_first() -> None:
     assert grounding("[1,2]", [3, 5], [3.0, 5.0], [1.0, 1.0]) == {"[]": 2.0, "[0]": 0.0, "[1]": 4.0}
+
+
+@given(VALUES, st.lists(st.integers(1, 5), min_size=1))
+@settings(max_examples=100, deadline=None)
+def test_a_field_begins_in_the_token_that_holds_its_first_letter(value: Any, sizes: list[int]) -> None:
+    text = json.dumps(value, separators=(",", ":"))
+    ends = [0]
+    while ends[-1] < len(text):
+        ends.append(ends[-1] + sizes[len(ends) % len(sizes)])
+    found = first_tokens(text, ends[1:])
+    for span in spans(text):
+        assert ends[found[span.path]] <= span.start < ends[found[span.path] + 1]
+
+
+def test_the_name_of_a_field_has_no_places() -> None:
+    assert name_of("legs[0].turns_in[12]") == "legs.turns_in"
+    assert name_of("legs[]") == "legs"
+    assert name_of("light") == "light"
 
 
 def test_a_refusal_is_an_object_with_the_key_refuse() -> None:
