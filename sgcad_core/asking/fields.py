@@ -85,7 +85,7 @@ def grounding(
 
 def first_tokens(text: str, ends: Sequence[int]) -> dict[str, int]:
     """By path: which token a field begins in. `ends[i]` is where token i ends in `text`."""
-    return {span.path: bisect_right(ends, span.start) for span in spans(text)}
+    return {span.path: bisect_right(ends, span.start) for span in reversed(spans(text))}
 
 
 def name_of(path: str) -> str:
