@@ -195,7 +195,9 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     used = {key for key in taken if kind_of(key) in _ROAD}
     if used and not _carries(said.layout, facts.crash):
         used = set()
-    added = _added(facts, said.layout) if "legs" in used else frozenset[str]()
+    added = _added(facts, said.layout)
+    if "legs" not in used:
+        used, added = {key for key in used if f"lanes.{key.partition('.')[2]}" not in added}, frozenset()
     if "legs" in used:
         facts = replace(facts, junction=_junction(facts, said.layout))
     if "control" in taken:
@@ -203,9 +205,9 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
         used.add("control")
     for key in taken:
         name, _, axis = key.partition(".")
-        if name in ("median", "limit", "lanes"):
+        if name in ("median", "limit") or (name == "lanes" and key in used):
             facts = _with_road(facts, cast("Compass", axis), _CHANGES[name], taken[key].value)
-            used |= {key} if name != "lanes" else set()
+            used.add(key)
     laid = frozenset(key for key in used if kind_of(key) in _ROAD)
     return (replace(facts, answered=said.layout, taken=laid | added) if laid else facts), used
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.claims import KINDS, rules_claim
+from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, model_claims, rules_claim
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import SURE, decided, same, whole
@@ -75,8 +75,6 @@ def test_what_the_text_tells_outright_weighs() -> None:
     stubborn = {"maneuver": Weights(differ=1.0, slope=0.0, told=-3.0, agree=None)}
     rules = rules_claim(read(TEXT + " V1 was turning right."))
     said = answered(maneuver="turn_left")
-    from sgcad_core.narrative.claims import model_claims
-
     assert "maneuver.V1" not in decided(rules, model_claims(said), stubborn, 0.5)
     untold = {key: claim._replace(told=False) for key, claim in rules.items()}
     assert decided(untold, model_claims(said), stubborn, 0.5)["maneuver.V1"].value == "turn_left"
@@ -102,6 +100,29 @@ def test_legs_on_which_somebody_could_not_drive_are_not_taken() -> None:
     across = legs(Leg(bearing="E", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1))
     only = {"legs": BELIEVED["legs"]}
     assert told(TEXT, answered(across), only).roads.answered is None
+
+
+def test_told_lanes_stay_counted_where_the_answers_are_not_laid() -> None:
+    arms = (Leg(bearing="E", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1))
+    north_alone = legs(*arms, Leg(bearing="N", lanes_in=3, lanes_out=3))
+    whole_cross = legs(*north_alone.legs, Leg(bearing="S", lanes_in=3, lanes_out=3))
+    only = {"lanes": BELIEVED["lanes"]}
+    before = read(TEXT).roads.roads
+    assert told(TEXT, answered(north_alone, road="E"), only).roads.roads == before, "V1 comes from the south"
+    (north,) = told(TEXT, answered(whole_cross), only).roads.roads
+    assert before[0].lanes.total == 2
+    assert north.lanes.total is None, "laid, and no road across of which no leg is taken"
+
+
+def test_what_the_evidence_tells_by_the_models_own_head_weighs() -> None:
+    weights = {"maneuver": Weights(differ=0.0, slope=0.0, tells=1.0, agree=None)}
+    rules = rules_claim(read(TEXT))
+    for share, taken in ((0.02, False), (0.5, True), (0.98, True)):
+        said = answered(maneuver="turn_left").model_copy(update={"told": {"crash.actors[0].maneuver": share}})
+        claims = model_claims(said)
+        assert claims["maneuver.V1"].told == share
+        assert claims["heading.V1"].told == UNKNOWN_P, "no head says"
+        assert ("maneuver.V1" in decided(rules, claims, weights, 0.5)) is taken
 
 
 @pytest.mark.parametrize("place", ["a roundabout", "a parking lot"])
