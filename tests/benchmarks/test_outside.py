@@ -7,7 +7,19 @@ from pathlib import Path
 import pytest
 
 from benchmarks import outside
-from benchmarks.outside import Case, cases, confidence, crossed, fit, right, rules_alone, table, truth_of, versus
+from benchmarks.outside import (
+    Case,
+    cases,
+    confidence,
+    crossed,
+    fit,
+    right,
+    rules_alone,
+    table,
+    truth_of,
+    untold,
+    versus,
+)
 from mini.generator.written import Written, load, report_of, shipped
 from sgcad_core.narrative.claims import Claim, kind_of, model_claims
 from sgcad_core.opinion import Answered, Opinion, Weights
@@ -32,7 +44,36 @@ def rows(lines: list[str]) -> Mapping[str, list[float]]:
 
 
 def test_measured_narratives_are_others_than_those_that_train() -> None:
-    assert not {one.id for one in load(outside.FOLDER)} & {one.id for one in shipped()}
+    measured = [one.id for one in (*load(outside.FOLDER), *load(outside.FOLDER / outside.SPARSE))]
+    assert len(set(measured)) == len(measured)
+    assert not set(measured) & {one.id for one in shipped()}
+
+
+def test_reports_that_leave_out_much_leave_out_sides_lanes_and_maneuvers() -> None:
+    found = load(outside.FOLDER / outside.SPARSE)
+    lacking = {fact: sum(fact not in one.told for one in found) for fact in ("areas.0", "contact.0", "man.V1")}
+    assert min(lacking.values()) > len(found) / 4
+    sides = [case for case in cases([one for one in found if "areas.0" not in one.told], {}) if not case.blind]
+    assert not any(case.claims[0]["areas"].told for case in sides if "areas" in case.claims[0])
+
+
+def test_what_is_not_told_and_given_up_is_counted() -> None:
+    told = next(case for case in cases(TEXTS, PERFECT) if any(same_field(case)))
+    key = next(key for key, differ in zip(told.claims[1], same_field(told), strict=True) if differ)
+    less = told._replace(truth={k: v for k, v in told.truth.items() if k != key})
+    for differ, taken in ((9.0, 1), (-9.0, 0)):
+        weights = {less.id: {kind_of(key): Weights(differ=differ, slope=0.0)}}
+        line = untold([less], weights)
+        assert line.endswith(f"taken: {taken}")
+
+
+def same_field(case: Case) -> list[bool]:
+    """Of every field of the model: whether it is told and the rules have another value."""
+    rules, model = case.claims
+    return [
+        key in case.truth and key in rules and not right(key, rules[key].value, claim.value)
+        for key, claim in model.items()
+    ]
 
 
 def test_truth_holds_only_what_the_text_tells() -> None:
