@@ -30,7 +30,7 @@ from benchmarks.opinions import calibration_error, logistic
 from flows.chain import ask_of
 from mini.generator.report import Report
 from mini.generator.written import Written, load, report_of
-from sgcad_core.asking.opinion import load_weights, whole
+from sgcad_core.asking.opinion import TAKES, load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
 from sgcad_core.metrics.statistics import mcnemar
@@ -38,7 +38,7 @@ from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, model_cla
 from sgcad_core.narrative.compass import COMPASS
 from sgcad_core.narrative.fusion import model_right, terms
 from sgcad_core.narrative.reading import Reading, read
-from sgcad_core.narrative.whole_fusion import decided, same
+from sgcad_core.narrative.whole_fusion import agree, decided, same
 from sgcad_core.narrative.whole_fusion import whole as fused
 from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
 from sgcad_core.records import CrashReport
@@ -136,8 +136,8 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
         rules, model = case.claims
         for key, said in model.items():
             want, rule = case.truth.get(key), rules.get(key)
-            if rule is not None and same(key, rule.value, said.value):
-                agreed[kind_of(key)] += [right(key, said.value, want.value)] if want is not None else []
+            if rule is not None and agree(key, rule, said):
+                agreed[kind_of(key)] += [right(key, rule.value, want.value)] if want is not None else []
                 continue
             theirs = want is not None and right(key, said.value, want.value)
             mine = rule is not None and want is not None and right(key, rule.value, want.value)
@@ -164,9 +164,9 @@ def untold(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -
     changed = count = 0
     for case in some:
         rules, model = case.claims
-        taken = decided(rules, model, weights[case.id], Opinion().takes)
+        taken = decided(rules, model, weights[case.id], TAKES)
         for key in (rules.keys() & model.keys()) - case.truth.keys():
-            differ = not same(key, rules[key].value, model[key].value)
+            differ = not agree(key, rules[key], model[key])
             count, changed = count + differ, changed + (differ and key in taken)
     return f"not told, readers differ: {count}; of these the model's is taken: {changed}"
 
@@ -177,7 +177,7 @@ def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) ->
     sure: dict[str, list[tuple[float, bool]]] = defaultdict(list)
     for case in some:
         rules, model = case.claims
-        opinion = Opinion(weights=weights[case.id], answered=case.answered)
+        opinion = Opinion(weights=weights[case.id], answered=case.answered, takes=TAKES)
         both = fused(case.reading, opinion)
         after = rules_claim(both)
         for key, want in case.truth.items():
@@ -211,7 +211,7 @@ def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinio
     weights = opinion.weights.get(kind_of(key))
     if weights is None or rule is None or said is None:
         return None
-    if same(key, rule.value, said.value):
+    if agree(key, rule, said):
         return weights.agree
     p = model_right(weights, said.p, rule.told, said.nats, said.told)
     return p if p >= opinion.takes else 1 - p

@@ -26,6 +26,10 @@ from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
+TAKES = 2 / 3
+"""How likely right an answer to the whole report must be to replace the rules' value: to spoil one costs as much as to
+mend two, since the rules name the sentence of each value and read known writers nearly without errors."""
+
 
 def seconded(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
     """The report with the model's opinion; without one where the model has no answer. Raises ConfigError for a prompt
@@ -59,7 +63,7 @@ def whole(report: CrashReport, ask: Ask) -> CrashReport:
         answered = _answered(context, report.case, ask)
     except (Refused, InvalidOutput) as fault:
         return report.model_copy(update={"notes": (*report.notes, f"no second opinion: {fault}")})
-    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered)})
+    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered, takes=TAKES)})
 
 
 def _answered(context: Context, case: str, ask: Ask) -> Answered:

@@ -9,22 +9,24 @@ A claim is a value with how sure it is. Fields are named by what they are of: `h
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sgcad_core.kinds import JOINING
 from sgcad_core.narrative.compass import COMPASS, turned
-from sgcad_core.narrative.draft import QUARTER_DEG
+from sgcad_core.narrative.draft import AREAS, QUARTER_DEG
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.specs import Compass, Leg
 
 if TYPE_CHECKING:
-    from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
+    from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
     from sgcad_core.narrative.reading import Reading
     from sgcad_core.narrative.roads import RoadFact, RoadFacts
     from sgcad_core.opinion import Answered
     from sgcad_core.specs import Actor, BehaviorSpec
+    from sgcad_core.told_course import CourseTold
 
 _THROUGH = {"through_right": "through", "left_through": "through"}
 """Readers differ in whether they say that one may also turn from a through lane."""
@@ -59,6 +61,9 @@ class Claim(NamedTuple):
     told: float = 1.0
     p: float = 1.0
     nats: float = 0.0
+    also: tuple[Any, ...] = ()
+    """Other values that what is told allows as well: a corner is two sides, who steers left in evasion also leaves his
+    lane to the left."""
 
 
 Claims = dict[str, Claim]
@@ -73,7 +78,7 @@ def kind_of(field: str) -> str:
 def rules_claim(reading: Reading) -> Claims:
     """What the rules make of a text: every value that they have, and whether the text tells it."""
     crash, roads = reading.crash, reading.roads
-    found = {key: Claim(*said) for v in crash.vehicles for key, said in _vehicle(v)}
+    found = {key: claim for v in crash.vehicles for key, claim in _vehicle(v, crash.courses.get(v.id))}
     found |= {f"kind.{other.id}": Claim(other.kind) for other in crash.others}
     legs = layout_of_facts(roads).legs
     found |= _ways(crash, legs)
@@ -81,20 +86,46 @@ def rules_claim(reading: Reading) -> Claims:
     if first is not None:
         found["contact"] = Claim((first.striker, first.struck), first.stated)
         sides = {first.striker: first.striker_area, first.struck: first.struck_area}
-        found["areas"] = Claim(_sorted(sides), first.areas_stated)
+        found["areas"] = Claim(_sorted(sides), first.areas_stated, also=_corners(first))
     for key in ("light", "weather", "surface"):
         if (value := getattr(crash, key)) is not None:
             found[key] = Claim(value)
     return found | dict(_roads(roads, legs))
 
 
-def _vehicle(v: VehicleFacts) -> Iterator[tuple[str, tuple[Any, bool]]]:
-    yield f"kind.{v.id}", (v.kind, v.make is None)
+def _vehicle(v: VehicleFacts, course: CourseTold | None) -> Iterator[tuple[str, Claim]]:
+    yield f"kind.{v.id}", Claim(v.kind, v.make is None)
     if v.heading is not None:
-        yield f"heading.{v.id}", (v.heading, v.heading_stated)
-    yield f"maneuver.{v.id}", (v.maneuver, v.maneuver_stated)
+        yield f"heading.{v.id}", Claim(v.heading, v.heading_stated or _turned_from(v))
+    evading = _EVADING.get(course.steers, ()) if course is not None and course.steers else ()
+    yield f"maneuver.{v.id}", Claim(v.maneuver, v.maneuver_stated, also=evading)
     if v.speed_mph is not None:
-        yield f"speed.{v.id}", (v.speed_mph, True)
+        yield f"speed.{v.id}", Claim(v.speed_mph)
+
+
+_EVADING: Mapping[str, tuple[str, ...]] = {
+    "left": ("lane_change_left", "departing_road_left", "crossing_centerline"),
+    "right": ("lane_change_right", "departing_road_right"),
+}
+"""What a steering in evasion looks like to a reader that has maneuvers only."""
+
+
+def _turned_from(v: VehicleFacts) -> bool:
+    """Whether the heading follows from a told turn and the told way out."""
+    turn = QUARTER_DEG.get(v.maneuver)
+    return v.maneuver_stated and turn is not None and v.exit_heading == turned(v.heading or "N", turn)
+
+
+def _corners(contact: ContactFacts) -> tuple[Any, ...]:
+    """Sides by id that told corners allow as well; a side that nobody tells allows no other."""
+    mays = [
+        may if len(may) < len(AREAS) else (area,)
+        for may, area in (
+            (contact.striker_may, contact.striker_area),
+            (contact.struck_may, contact.struck_area),
+        )
+    ]
+    return tuple(_sorted({contact.striker: mine, contact.struck: theirs}) for mine, theirs in product(*mays))
 
 
 def _ways(crash: CrashFacts, drawn: tuple[Leg, ...]) -> Claims:

@@ -37,7 +37,7 @@ SURE = 0.9
 _ROAD = ("legs", "lanes", "turns", "curve")
 """Fields that a layout carries and no fact of a road holds."""
 _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
-"""Kinds of junctions whose layouts the embedded model has learned."""
+"""Kinds of junctions whose layouts the embedded model has learned; of a ramp without the lane in which one merges."""
 
 
 class Taken(NamedTuple):
@@ -78,7 +78,7 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
     found = {}
     for key, said in model.items():
         weight, rule = weights.get(kind_of(key)), rules.get(key)
-        if weight is None or (rule is not None and same(key, rule.value, said.value)):
+        if weight is None or (rule is not None and agree(key, rule, said)):
             continue
         p = model_right(weight, said.p, rule.told if rule is not None else 0.0, said.nats, said.told)
         if p >= (takes if rule is not None else FILLS):
@@ -89,6 +89,16 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
 def same(key: str, one: Any, other: Any) -> bool:
     """Whether two values of a field are the same; a speed to one mph, since it is told in ranges and in km/h."""
     return abs(one - other) <= 1 if kind_of(key) == "speed" else bool(one == other)
+
+
+def agree(key: str, rule: Claim, said: Claim) -> bool:
+    """Whether the model's value is the rules' or one that what they read allows as well; lanes of the legs that both
+    have."""
+    if kind_of(key) in ("lanes", "turns"):
+        ours, theirs = ({leg: rest for leg, *rest in claim.value} for claim in (rule, said))
+        common = ours.keys() & theirs.keys()
+        return bool(common) and all(ours[leg] == theirs[leg] for leg in common)
+    return any(same(key, value, said.value) for value in (rule.value, *rule.also))
 
 
 def _fact(key: str, one: Taken) -> Fact:
@@ -193,6 +203,8 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     if facts.junction.kind not in _LEARNED or facts.closed or facts.opening or facts.crash.gore:
         return facts, set()
     used = {key for key in taken if kind_of(key) in _ROAD}
+    if facts.junction.kind == RAMP:
+        used = {key for key in used if kind_of(key) not in ("lanes", "turns")}
     if used and not _carries(said.layout, facts.crash):
         used = set()
     added = _added(facts, said.layout)

@@ -5,10 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, model_claims, rules_claim
+from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, Claim, model_claims, rules_claim
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import Reading, read
-from sgcad_core.narrative.whole_fusion import SURE, decided, same, whole
+from sgcad_core.narrative.whole_fusion import SURE, agree, decided, same, whole
 from sgcad_core.opinion import Answered, Opinion, Weights
 from sgcad_core.records import CrashReport
 from sgcad_core.roads.layout import road_spec
@@ -100,6 +100,47 @@ def test_legs_on_which_somebody_could_not_drive_are_not_taken() -> None:
     across = legs(Leg(bearing="E", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1))
     only = {"legs": BELIEVED["legs"]}
     assert told(TEXT, answered(across), only).roads.answered is None
+
+
+def test_lanes_beside_a_ramp_are_the_rules_since_the_model_knows_no_acceleration_lane() -> None:
+    text = (
+        "V1 was traveling north in the right lane of a six-lane highway with three lanes in each direction. V2 was "
+        "merging from the on-ramp. The front of V2 struck the right side of V1."
+    )
+    before = read(text)
+    assert before.roads.junction.kind == "ramp"
+    wide = legs(Leg(bearing="N", lanes_in=2, lanes_out=2), Leg(bearing="S", lanes_in=2, lanes_out=2))
+    said = answered(wide)
+    assert "lanes.N" in decided(rules_claim(before), model_claims(said), {"lanes": BELIEVED["lanes"]}, 0.5)
+    assert told(text, said, {"lanes": BELIEVED["lanes"]}).roads == before.roads
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "value"),
+    [
+        ("The right front corner of V1 struck the front of V2.", "areas", (("V1", "front"), ("V2", "front"))),
+        ("V1 swerved left to avoid V2. The front of V1 struck V2.", "maneuver.V1", "lane_change_left"),
+        ("V1 swerved right to avoid V2. The front of V1 struck V2.", "maneuver.V1", "departing_road_right"),
+    ],
+)
+def test_what_the_rules_read_may_allow_the_models_value_as_well(text: str, key: str, value: object) -> None:
+    roads = "V1 was traveling north on a two-lane road. V2 was traveling south on the same road. "
+    rules = rules_claim(read(roads + text))
+    assert agree(key, rules[key], Claim(value))
+    assert not agree(key, rules[key], Claim("backing"))
+
+
+def test_lanes_agree_by_the_legs_that_both_have() -> None:
+    ours = Claim((("N", 1, 2), ("S", 2, 1)))
+    assert agree("lanes.N", ours, Claim((("S", 2, 1),)))
+    assert not agree("lanes.N", ours, Claim((("S", 2, 2),)))
+    assert not agree("lanes.N", ours, Claim(()))
+
+
+def test_a_heading_that_follows_from_a_told_turn_is_told() -> None:
+    turned_ = "V1 was traveling north on a two-lane road. V2 pulled out of a parking lot and turned right onto the "
+    rules = rules_claim(read(turned_ + "northbound lane. The front of V1 struck the left side of V2."))
+    assert rules["heading.V2"][:2] == ("W", True)
 
 
 def test_told_lanes_stay_counted_where_the_answers_are_not_laid() -> None:
