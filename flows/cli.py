@@ -25,6 +25,7 @@ from flows.plugin_commands import plugins_app
 from flows.results.commands import report, score, table
 from flows.revising_commands import revise
 from flows.terminal import escape_plain
+from sgcad_core import settings
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-DEFAULT_CONFIG = Path("template.yaml")
 DEFAULT_OUT = Path("runs")
 PATIENCE_S = 5.0
 
@@ -120,7 +120,7 @@ def _batch(
     """Check everything, then start."""
     from flows import batch as batches
 
-    made = batches.batch_of(found, config or [DEFAULT_CONFIG], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
+    made = batches.batch_of(found, config or [Path(settings.default_config())], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
     from flows import start
 
     raise typer.Exit(_carry_out(made, lambda watch: start.evaluate(made, watch.ended, on_turn=watch.turn))[0])

@@ -12,7 +12,7 @@ from pathlib import Path
 from flows import single, start, summary, watching
 from flows.batch import Batch, batch_of
 from flows.cases import cases_in
-from flows.cli import DEFAULT_CONFIG, DEFAULT_OUT, guarded
+from flows.cli import DEFAULT_OUT, guarded
 from flows.store import CaseFolder
 from flows.terminal import escape_plain
 from sgcad_core import settings
@@ -23,11 +23,10 @@ REPORTS = settings.ROOT / "docs" / "demo"
 def main(arguments: Sequence[str] = ()) -> int:
     """Run the demo; its exit code."""
     out = Path(arguments[0]) if arguments else DEFAULT_OUT / "demo"
-    batch = batch_of(cases_in([REPORTS]), [DEFAULT_CONFIG], out)
+    config = settings.default_config()
+    batch = batch_of(cases_in([REPORTS]), [Path(config)], out)
     _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
-    _say(
-        f"for each, with configs/{DEFAULT_CONFIG}: rules, no model. The first start makes two databases: half a minute."
-    )
+    _say(f"for each, with configs/{config}. The first start makes two databases: half a minute.")
     tally = summary.Tally(batch)
     with watching.watching(tally) as watch:
         start.evaluate(batch, watch.ended, on_turn=watch.turn)

@@ -14,14 +14,17 @@ from flows import cases
 from flows.batch import Crew, Job, batch_of
 from flows.chain import Ending
 from flows.evaluate import drive
+from sgcad_core import settings
 
 
 @flow(name="generate", flow_run_name="generate {report}", persist_result=False)
 def generate_flow(
-    report: str, config: str = "template.yaml", out: str = "runs", overrides: list[str] | None = None
+    report: str, config: str | None = None, out: str = "runs", overrides: list[str] | None = None
 ) -> dict[str, Any]:
     """Turn one report into a scenario; the content of its result.json."""
-    batch = batch_of(cases.cases_of([Path(report)]), [Path(config)], Path(out), overrides or (), jobs=1)
+    batch = batch_of(
+        cases.cases_of([Path(report)]), [Path(config or settings.default_config())], Path(out), overrides or (), jobs=1
+    )
     plan, crew = batch.plan(), Crew(batch)
     results: list[dict[str, Any]] = []
 

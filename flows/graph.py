@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
-from uuid import UUID, uuid4, uuid5
+from uuid import UUID, uuid5
 
 from prefect.events import emit_event
 
@@ -30,7 +30,11 @@ class Graph:
     """False: attempts only, for a server that writes every state by itself."""
 
     def tell(self, step: Step) -> None:
-        """Show that a step begins or has ended (an `OnStep`)."""
+        """Show that a step begins or has ended (an `OnStep`).
+
+        What is told twice, as the beginning of a step that is gone on with, has one id: a server takes a task run's
+        states of one moment for a fault, and loses all others that it writes with them.
+        """
         if not self.shows(step):
             return
         state = "Running" if step.ended is None else step.state
@@ -45,7 +49,7 @@ class Graph:
         now = _when(step.began if step.ended is None else step.ended)
         emit_event(
             event=f"prefect.task-run.{state}",
-            id=uuid4(),
+            id=uuid5(UUID(self.id_of(step.name)), f"{kind} {now.isoformat()}"),
             occurred=now,
             resource=self._resource(step, about, now),
             related=[{"prefect.resource.id": f"prefect.flow-run.{self.flow_run}", "prefect.resource.role": "flow-run"}],

@@ -38,6 +38,11 @@ def quiet_libraries() -> None:
         os.environ.setdefault(name, value)
 
 
+def default_config() -> str:
+    """The config of commands that are given none."""
+    return environment("SGCAD_CONFIG") or "fused.yaml"
+
+
 def environment(name: str) -> str:
     """A variable that a config names, such as an API key's; empty if it is not set."""
     return os.environ.get(name, "")

@@ -7,6 +7,8 @@ torch and its like would start as many threads in each as there are cores, and w
 Compiled modules are kept, also where the environment forbids it, as images for containers do: each worker and each
 program that a test starts would compile the project anew.
 
+Commands that are given no config take the rules alone here, which load no model; tests of the default say so.
+
 Property tests draw the same examples in every run, so that a verdict depends on the change, not on luck or load; `make
 test-thorough` draws new ones, and more.
 """
@@ -21,6 +23,8 @@ from tests.effort import THOROUGH
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+os.environ["SGCAD_CONFIG"] = "template.yaml"
 
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

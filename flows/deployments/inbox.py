@@ -1,6 +1,6 @@
 """The `inbox` deployment: reports that have come in since become scenarios, as one flow run.
 
-    python -m flows.deployments.inbox s3://reports/new --config template.yaml --out runs
+    python -m flows.deployments.inbox s3://reports/new --config fused.yaml --out runs
 
 does by hand what the schedule does. Several may run at once, on one machine or many. Import after
 `settings.quiet_libraries()`.
@@ -25,6 +25,7 @@ from flows.deployments.intake import Do, Intake, OnResult
 from flows.deployments.place import Place
 from flows.evaluate import drive
 from flows.tasks import threads
+from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.scratch import scratch
 
@@ -35,7 +36,7 @@ PORTION = 48
 @flow(name="inbox", task_runner=threads(MAX_JOBS), persist_result=False)
 def inbox_flow(
     address: str | None = None,
-    config: str = "template.yaml",
+    config: str | None = None,
     out: str = "runs",
     overrides: list[str] | None = None,
     jobs: int | None = None,
@@ -51,7 +52,7 @@ def inbox_flow(
     nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
     when the inbox is empty or nothing could be taken for `wait_s`, but not before `watch_s` have passed.
     """
-    address, named = inbox_address(address), overrides_of(overrides)
+    address, named, config = inbox_address(address), overrides_of(overrides), config or settings.default_config()
     batch_of((), [Path(config)], Path(out), named, jobs)  # a faulty config claims nothing
     if min(settle_s, wait_s, watch_s) < 0 or lease_s <= 0 or portion < 1:
         raise ConfigError(
@@ -85,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """One run by hand, with a Prefect server for its length where none is named."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("address")
-    parser.add_argument("--config", default="template.yaml")
+    parser.add_argument("--config", default=settings.default_config())
     parser.add_argument("--out", default="runs")
     parser.add_argument("--jobs", type=int)
     parser.add_argument("--portion", type=int, default=PORTION)
@@ -99,7 +100,6 @@ if __name__ == "__main__":
     from prefect.settings import PREFECT_API_URL, temporary_settings
 
     from flows.server import prefect_server
-    from sgcad_core import settings
 
     # Prefect was imported before the server was named, and would start one that outlives a kill.
     with prefect_server() as server, temporary_settings({PREFECT_API_URL: settings.prefect_url()}):

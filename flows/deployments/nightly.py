@@ -34,6 +34,7 @@ from flows.results.reading import Study, load_study
 from flows.study.machine import git_commit
 from flows.study.plan import dataset_digest
 from flows.tasks import threads
+from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
 LATEST, ACCEPTED = "latest.json", "accepted.json"
@@ -71,7 +72,7 @@ def nightly_flow(
     what needs none is measured. Cases that nothing has changed for are not repeated unless `fresh`. `accept` makes this
     run the measure.
     """
-    paths = [Path(c) for c in configs or ["template.yaml"]]
+    paths = [Path(c) for c in configs or [settings.default_config()]]
     batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")

@@ -63,7 +63,7 @@ class Claim(NamedTuple):
     nats: float = 0.0
     also: tuple[Any, ...] = ()
     """Other values that what is told allows as well: a corner is two sides, who steers left in evasion also leaves his
-    lane to the left."""
+    lane to the left, and a lane on either edge is "left" or "right" however many lanes a reader sees."""
 
 
 Claims = dict[str, Claim]
@@ -137,10 +137,12 @@ def _ways(crash: CrashFacts, drawn: tuple[Leg, ...]) -> Claims:
             found[f"exit.{v.id}"] = Claim(out, v.exit_heading is not None or v.maneuver_stated)
         comes = legs.get(turned(v.heading, 180)) if v.heading else None
         if (lane := _lane(v, comes.lanes_in if comes else 0)) is not None:
-            found[f"lane.{v.id}"] = Claim(lane, v.lane is not None or v.lane_word is not None)
+            words = _EDGES.get(v.lane_word or "", ()) if v.lane is None else ()
+            found[f"lane.{v.id}"] = Claim(lane, v.lane is not None or v.lane_word is not None, also=words)
     return found
 
 
+_EDGES = {"left": ("left",), "left_turn": ("left",), "right": ("right",), "right_turn": ("right",)}
 _TURN_DEG = {**QUARTER_DEG, "u_turn": 180}
 
 
@@ -194,6 +196,8 @@ def model_claims(said: Answered) -> Claims:
     for i, actor in enumerate(said.behavior.actors):
         at = f"crash.actors[{i}]"
         found |= {key: sure.claim(value, f"{at}.{name}") for key, name, value in _actor(actor)}
+        if (lane := f"lane.{actor.id}") in found:
+            found[lane] = found[lane]._replace(also=_edges_of(actor, said.layout.legs))
     found |= dict(_met(said.behavior, sure))
     for key in ("light", "weather", "surface"):
         if (value := getattr(said.behavior, key)) is not None:
@@ -232,6 +236,13 @@ def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
         yield f"lane.{actor.id}", "lane", actor.lane
     if actor.speed_mph:
         yield f"speed.{actor.id}", "speed_mph", actor.speed_mph
+
+
+def _edges_of(actor: Actor, legs: tuple[Leg, ...]) -> tuple[str, ...]:
+    """On which edge of its approach a vehicle drives."""
+    bearing = actor.road.removesuffix("_outer")
+    lanes = next((leg.lanes_in for leg in legs if leg.bearing == bearing), 0)
+    return ("right",) * (actor.lane == 1) + ("left",) * (actor.lane == lanes)
 
 
 def _heading(road: str) -> Compass | None:

@@ -98,7 +98,7 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
         ours, theirs = ({leg: rest for leg, *rest in claim.value} for claim in (rule, said))
         common = ours.keys() & theirs.keys()
         return bool(common) and all(ours[leg] == theirs[leg] for leg in common)
-    return any(same(key, value, said.value) for value in (rule.value, *rule.also))
+    return any(same(key, value, said.value) for value in (rule.value, *rule.also)) or bool({*rule.also} & {*said.also})
 
 
 def _fact(key: str, one: Taken) -> Fact:

@@ -22,7 +22,7 @@ DEG = 57.29578
 def shown(tmp_path_factory):
     """Folders of the three cases under the default config."""
     out = tmp_path_factory.mktemp("demo")
-    config = load("template.yaml", ("tracker=none",))
+    config = load("fused.yaml", ("tracker=none",))
     found = {}
     for source in sorted(p for p in demo.REPORTS.iterdir() if p.is_dir()):
         run_case(config, Case(source, source.name), out, "digest")
@@ -77,10 +77,12 @@ def test_both_rest_facing_east_in_the_right_lane(shown):
         assert abs(turn) < 5
 
 
-def test_the_demo_ends_with_three_pictures_and_two_commands(tmp_path):
+def test_the_demo_ends_with_three_pictures_and_two_commands(tmp_path, monkeypatch):
+    monkeypatch.delenv("SGCAD_CONFIG")
     done = subprocess.run([sys.executable, "-m", "flows.demo", tmp_path / "out"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Reads 3 crash reports in ")
+    assert "configs/fused.yaml" in done.stdout
     assert done.stdout.count("as the report tells") == 3
     pictures = [line.strip() for line in done.stdout.splitlines() if line.endswith("picture.png")]
     assert [Path(p).is_file() for p in pictures] == [True] * 3

@@ -1,7 +1,9 @@
 """What Prefect shows of a case, and what a flow run is called."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from uuid import uuid4
 
 import pytest
 
@@ -46,6 +48,18 @@ def test_a_flow_run_is_called_by_what_it_does(configs, cases, name):
 def test_what_is_shown_of_a_case_can_be_decided(monkeypatch, asked, every):
     monkeypatch.setenv("SGCAD_PREFECT_STEPS", asked)
     assert shows_every_step() is every
+
+
+def test_a_step_that_is_gone_on_with_begins_once_for_the_server(monkeypatch):
+    sent = []
+    monkeypatch.setattr("flows.graph.emit_event", lambda **event: sent.append(event["id"]))
+    graph, other = (Graph("3e9c5a0e-1c1f-4a34-b7f3-2f6a53a1a0f1", str(uuid4())) for _ in range(2))
+    begun = Step("simulate", 10.0)
+    for told in (begun, replace(begun, ended=11.0), begun, replace(begun, ended=12.0), Step("measure", 10.0)):
+        graph.tell(told)
+    other.tell(begun)
+    assert sent[0] == sent[2]
+    assert len(set(sent)) == 5
 
 
 def test_a_plain_server_is_shown_attempts_only():

@@ -130,6 +130,18 @@ def test_what_the_rules_read_may_allow_the_models_value_as_well(text: str, key: 
     assert not agree(key, rules[key], Claim("backing"))
 
 
+def test_a_lane_on_an_edge_is_the_same_however_many_lanes_a_reader_sees() -> None:
+    text = "V1 was traveling north in the left lane of a six-lane road. V2 was traveling south on the same road. "
+    rules = rules_claim(read(text + "The front of V1 struck the front of V2."))["lane.V1"]
+    two = legs(Leg(bearing="N", lanes_in=2, lanes_out=2), Leg(bearing="S", lanes_in=2, lanes_out=2))
+    said = {lane: model_claims(answered(two, lane=lane))["lane.V1"] for lane in (1, 2)}
+    assert rules.value == 3
+    assert agree("lane.V1", rules, said[2])
+    assert not agree("lane.V1", rules, said[1])
+    counted = rules._replace(also=())  # "the third lane": a number
+    assert not agree("lane.V1", counted, said[2])
+
+
 def test_lanes_agree_by_the_legs_that_both_have() -> None:
     ours = Claim((("N", 1, 2), ("S", 2, 1)))
     assert agree("lanes.N", ours, Claim((("S", 2, 1),)))
