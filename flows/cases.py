@@ -109,8 +109,9 @@ def safe_id(name: str) -> str:
 def digest_of(case: Case, config: Config) -> str:
     """Fingerprint of everything a result depends on: report, config, prompts, plugin versions, code.
 
-    The code's own text counts only where no model is asked: there a new run costs a second, and a stale
-    result misleads; with a model it costs hours, and plugin versions tell when a result would change.
+    The code's own text counts only where no model writes: there a new run costs seconds, and a stale result
+    misleads; where one does it costs hours, and plugin versions tell when a result would change. A second opinion
+    does not write: the rules' code still makes the result.
     """
     return job_digest(source_digest(case.source), config_digest(config))
 
@@ -129,7 +130,7 @@ def config_digest(config: Config) -> str:
         "plugins": {qualified(p): identity(p) for p in _plugins(config)},
         "files": sorted({*named_digests(raw), *opinion_digests(config)}),
         "package": version("sg-cadvlm"),
-        "code": code_digest(asks_model=config.backbone is not None),
+        "code": code_digest(config.road_writer.asks_model or config.scenario_writer.asks_model),
     }
     return hashlib.sha256(json.dumps(about, sort_keys=True, default=str).encode()).hexdigest()
 
@@ -145,7 +146,7 @@ def _plugins(config: Config) -> Iterator[Plugin]:
 
 
 def code_digest(asks_model: bool) -> str:
-    """Of the prompts and, where no model is asked, of the code; see `digest_of` for why."""
+    """Of the prompts and, where no model writes, of the code; see `digest_of` for why."""
     return _prompts_digest() if asks_model else _code_digest()
 
 

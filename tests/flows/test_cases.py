@@ -178,6 +178,15 @@ def test_other_weights_in_the_same_folder_change_the_digest(reports, config_file
     assert digest(folder, file) != before
 
 
+@pytest.mark.parametrize(("config", "counts"), [("template.yaml", True), ("fused.yaml", True), ("mini.yaml", False)])
+def test_changed_code_changes_results_unless_a_model_writes_them(monkeypatch, config, counts):
+    digests = set()
+    for code in ("before", "after"):
+        monkeypatch.setattr(cases, "_code_digest", lambda code=code: code)
+        digests.add(cases.config_digest(load(config)))
+    assert (len(digests) == 2) is counts
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root reads everything")
 def test_an_unreadable_report_has_a_digest(reports, config_file):
     folder = reports(c1="") / "c1"
