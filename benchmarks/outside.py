@@ -34,7 +34,8 @@ from sgcad_core.asking.opinion import TAKES, load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
 from sgcad_core.metrics.statistics import mcnemar
-from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, model_claims, rules_claim
+from sgcad_core.narrative.answered_claims import model_claims
+from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, rules_claim
 from sgcad_core.narrative.compass import COMPASS
 from sgcad_core.narrative.fusion import model_right, terms
 from sgcad_core.narrative.reading import Reading, read

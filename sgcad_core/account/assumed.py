@@ -1,6 +1,6 @@
 """What the scenario has and nobody told: defaults, and what only follows from what is told, by the field.
 
-Knows facts; what a model answered is its own opinion and no assumption, unless the evidence does not carry it.
+Knows facts; what a model answered is its own opinion and no assumption, unless the evidence does not tell it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def _reason(fact: Fact) -> str:
     if fact.basis == "text" and fact.status == "inferred" and _FOLLOWS.match(fact.field):
         return f"follows from what is told ({fact.rule.replace('_', ' ')})"
     if fact.basis == "model" and fact.status == "inferred":
-        return "answered by the model, and the report does not carry it"
+        return "answered by the model, and the evidence does not tell it"
     return ""
 
 

@@ -109,11 +109,12 @@ def _fact(key: str, one: Decided) -> Fact:
     return model_fact(f"gist.{key}", one.value, one.p)
 
 
-def model_fact(field: str, value: Value | int, p: float) -> Fact:
-    """A value of the second reader's that is taken."""
+def model_fact(field: str, value: Value | int, p: float, told: bool = False, nats: float | None = None) -> Fact:
+    """A value of the second reader's that is taken; `told`: it holds that the evidence tells it; `nats`: grounding."""
     return Fact(
-        field=field, value=value, basis="model", status="inferred", rule="second opinion", confidence=round(p, 3)
-    )
+        field=field, value=value, basis="model", status="stated" if told else "inferred", rule="second opinion",
+        confidence=round(p, 3), nats=None if nats is None else round(nats, 3),
+    )  # fmt: skip
 
 
 def _touched(crash: CrashFacts, one: Decided) -> CrashFacts:

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
-from sgcad_core.narrative.claims import Claim, Claims, kind_of, model_claims, rules_claim, vehicles_of
+from sgcad_core.narrative.answered_claims import model_claims
+from sgcad_core.narrative.claims import UNKNOWN_P, Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.fusion import FILLS, TURNS, model_fact, model_right
@@ -41,10 +42,12 @@ _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 
 
 class Taken(NamedTuple):
-    """A value of the model's that is taken, and how likely it is right."""
+    """A value of the model's that is taken, how likely it is right, and what the model says of the evidence for it."""
 
     value: Any
     p: float
+    told: float
+    nats: float
 
 
 def whole(reading: Reading, opinion: Opinion) -> Reading:
@@ -82,7 +85,7 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
             continue
         p = model_right(weight, said.p, rule.told if rule is not None else 0.0, said.nats, said.told)
         if p >= (takes if rule is not None else FILLS):
-            found[key] = Taken(said.value, p)
+            found[key] = Taken(said.value, p, said.told, said.nats)
     return found
 
 
@@ -104,7 +107,8 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
 def _fact(key: str, one: Taken) -> Fact:
     name, _, of = key.partition(".")
     field = f"vehicles.{of}.{_NAMES.get(name, name)}" if name in _VEHICLE else f"answered.{key}"
-    return model_fact(field, one.value if isinstance(one.value, str | int | bool) else str(one.value), one.p)
+    value = one.value if isinstance(one.value, str | int | bool) else str(one.value)
+    return model_fact(field, value, one.p, told=one.told >= UNKNOWN_P, nats=one.nats)
 
 
 _NAMES = {"exit": "exit_heading", "speed": "speed_mph"}
@@ -130,7 +134,11 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
         ContactFacts(c.striker, c.struck, c.striker_area, c.struck_area, True) for c in said.behavior.contacts
     )
     crash = replace(crash, vehicles=vehicles, others=others, contacts=contacts, oriented=True, gap=None)
-    return _told(reading, crash, reading.roads, [_fact(key, Taken(heard[key].value, heard[key].p)) for key in sure])
+    return _told(reading, crash, reading.roads, [_fact(key, _as_heard(heard[key])) for key in sure])
+
+
+def _as_heard(said: Claim) -> Taken:
+    return Taken(said.value, said.p, said.told, said.nats)
 
 
 def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Taken]) -> VehicleFacts:

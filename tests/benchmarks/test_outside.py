@@ -21,7 +21,8 @@ from benchmarks.outside import (
     versus,
 )
 from mini.generator.written import Written, load, report_of, shipped
-from sgcad_core.narrative.claims import Claim, kind_of, model_claims
+from sgcad_core.narrative.answered_claims import model_claims
+from sgcad_core.narrative.claims import Claim, kind_of
 from sgcad_core.opinion import Answered, Opinion, Weights
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 

@@ -132,7 +132,7 @@ def test_a_contact_that_happens_is_there_and_one_that_cannot_lacks(made):
 @pytest.mark.parametrize(("given", "reason"), [
     ({"status": "default", "basis": "default"}, "not told"),
     ({"status": "inferred", "rule": "left_turn"}, "follows from what is told (left turn)"),
-    ({"status": "inferred", "basis": "model"}, "answered by the model, and the report does not carry it"),
+    ({"status": "inferred", "basis": "model"}, "answered by the model, and the evidence does not tell it"),
     ({"status": "stated"}, None),
     ({"status": "stated", "basis": "person"}, None),
 ])  # fmt: skip

@@ -1,6 +1,7 @@
 """What rules and a model claim of one crash, in the same terms."""
 
-from sgcad_core.narrative.claims import KINDS, by_axis, kind_of, model_claims, rules_claim
+from sgcad_core.narrative.answered_claims import model_claims
+from sgcad_core.narrative.claims import KINDS, by_axis, kind_of, rules_claim
 from sgcad_core.narrative.reading import read
 from sgcad_core.opinion import Answered
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, Claim, model_claims, rules_claim
+from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, Claim, rules_claim
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import SURE, agree, decided, same, whole
@@ -62,6 +63,14 @@ def test_a_believed_value_is_taken_and_is_a_fact_of_the_model() -> None:
     assert facts["vehicles.V1.maneuver"].value == "turn_left"
     assert sum(fact.field == "vehicles.V1.maneuver" for fact in found.facts) == 1, "one value, one fact"
     assert found.roads.crash is found.crash
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.9, "stated"), (0.2, "inferred")])
+def test_a_taken_value_is_a_guess_unless_the_evidence_tells_it(share: float, status: str) -> None:
+    path = "crash.actors[0].maneuver"
+    said = answered(maneuver="turn_left").model_copy(update={"told": {path: share}, "nats": {path: 1.25}})
+    (fact,) = (fact for fact in told(TEXT, said).facts if fact.field == "vehicles.V1.maneuver")
+    assert (fact.basis, fact.status, fact.nats) == ("model", status, 1.25)
 
 
 def test_a_value_that_is_not_believed_is_left() -> None:
