@@ -55,7 +55,7 @@ class _Sure(NamedTuple):
         server that gives no probabilities.
         """
         some = [self.p.get(path, 1.0) if self.p else UNKNOWN_P for path in paths] or [1.0]
-        told = min([self.told.get(path, UNKNOWN_P) for path in paths], default=UNKNOWN_P)
+        told = min((self.told[path] for path in paths if path in self.told), default=UNKNOWN_P)
         return Claim(value, told, prod(some) if joint else min(some), sum(self.nats.get(path, 0.0) for path in paths))
 
 

@@ -65,6 +65,13 @@ def test_a_believed_value_is_taken_and_is_a_fact_of_the_model() -> None:
     assert found.roads.crash is found.crash
 
 
+def test_a_claim_of_several_values_is_told_as_far_as_the_least_of_those_with_a_head() -> None:
+    told_ = {"road.legs[0].bearing": 0.9, "road.legs[1].bearing": 0.7}
+    claims = model_claims(answered().model_copy(update={"told": told_}))
+    assert claims["legs"].told == 0.7, "the length of the list has no head"
+    assert claims["lanes.N"].told == UNKNOWN_P
+
+
 @pytest.mark.parametrize(("share", "status"), [(0.9, "stated"), (0.2, "inferred")])
 def test_a_taken_value_is_a_guess_unless_the_evidence_tells_it(share: float, status: str) -> None:
     path = "crash.actors[0].maneuver"
