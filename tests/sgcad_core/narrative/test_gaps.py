@@ -50,9 +50,9 @@ def test_who_crashes_alone_needs_no_direction() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "V1, Audi p/u: NB on Oak fr S, turning L to go W on Elm. V2, Kia: SB on Oak fr N. V1 & V2 crash. Dry, st lamps. "
+        "V1, Audi p/u: NB on Oak fr S, turning L to go W on Elm. V2, Kia: SB on Oak fr N. V1 & V2 crash. Dry. "
         "V2 drvr sts no inj, V1 drvr cited.",
-        "Insd = V1, Jeep. EB on Mill Rd fr W, stopped for traf. V2 hit V1, front to back. Wx clear, rd wet. PD rpt ordered.",
+        "Insd = V1, Jeep. EB on Mill Rd fr W, stopped for traf. V2 hit V1, front to back. Wx clear, rd wet.",
     ],
 )
 def test_a_note_full_of_short_hand_is_english(text: str) -> None:
@@ -64,10 +64,10 @@ def test_a_note_full_of_short_hand_is_english(text: str) -> None:
     [
         "V1 viajaba rumbo norte carril derecho. V2 viajaba rumbo sur. V2 gir\u00f3 izquierda. V1 choc\u00f3 V2. "
         "Pavimento seco, noche oscura, V1 V2 da\u00f1ados frente.",
-        "V1 fuhr auf der Hauptstrasse nach Norden, als V2 von links kam und V1 mit der Front traf. Die Strasse war trocken.",
-        "V1 Nordfahrt rechter Fahrstreifen. V2 Gegenrichtung, bog links ab. Zusammenstoss V1 V2 frontal. Fahrbahn trocken, "
+        "V1 fuhr auf der Hauptstrasse nach Norden, als V2 von links kam und V1 mit der Front traf.",
+        "V1 Nordfahrt rechter Fahrstreifen. V2 Gegenrichtung, bog links ab. Zusammenstoss V1 V2 frontal. Fahrbahn nass, "
         "Nacht. V1 V2 Totalschaden, Fahrer verletzt.",
-        "V1 roulait vers le nord sur la rue Principale quand V2 a tourne a gauche et a heurte V1. La chaussee etait seche.",
+        "V1 roulait vers le nord sur la rue Principale quand V2 a tourne a gauche et a heurte V1. Elle etait seche.",
     ],
 )
 def test_other_languages_are_refused_though_they_number_vehicles(text: str) -> None:
