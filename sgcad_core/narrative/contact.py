@@ -219,8 +219,7 @@ def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str |
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, who, told), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
-        side = rule("contact.area_of_thing").match(scope)
-        return thing["object"].lower(), area_of(side["area"]) if side else None
+        return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
         only = says.THE_AREA.match(scope)
         return _the_other(told, actor, who), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
