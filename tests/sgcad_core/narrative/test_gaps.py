@@ -65,7 +65,7 @@ def test_a_note_full_of_short_hand_is_english(text: str) -> None:
         "V1 viajaba rumbo norte carril derecho. V2 viajaba rumbo sur. V2 gir\u00f3 izquierda. V1 choc\u00f3 V2. "
         "Pavimento seco, noche oscura, V1 V2 da\u00f1ados frente.",
         "V1 fuhr auf der Hauptstrasse nach Norden, als V2 von links kam und V1 mit der Front traf.",
-        "V1 Nordfahrt rechter Fahrstreifen. V2 Gegenrichtung, bog links ab. Zusammenstoss V1 V2 frontal. Fahrbahn nass, "
+        "V1 Nordfahrt rechter Fahrstreifen. V2 Gegenrichtung, bog links ab. Zusammenstoss V1 V2 frontal. Strasse nass, "
         "Nacht. V1 V2 Totalschaden, Fahrer verletzt.",
         "V1 roulait vers le nord sur la rue Principale quand V2 a tourne a gauche et a heurte V1. Elle etait seche.",
     ],
