@@ -182,7 +182,9 @@ class Clauses:
         last = self.items[-1]
         shares = bool(last.uses) and bool(rule("approaches.sharing").fullmatch(gap))
         soft = bool(rule("approaches.soft").search(gap))
-        single = last.count == 1 or last.which or not rule("approaches.lists").search(gap)
+        between = self.text[last.end : part.start]
+        listed = rule("approaches.lists").search(gap) or rule("approaches.list_opens").search(between)
+        single = last.count == 1 or last.which or not listed
         first = not last.uses and not last.bare and single
         if first or (shares and not (soft and last.bare)):
             last.uses.extend(part.use)

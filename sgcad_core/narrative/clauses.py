@@ -132,7 +132,14 @@ def _cut(told: Statement, who: Roster) -> list[Segment]:
         for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
         if subjects
     ]
-    return [*_opening(told, starts), *found]
+    return [*_opening(told, starts), *found, *(also for one in found for also in _alike(one, who))]
+
+
+def _alike(segment: Segment, who: Roster) -> Iterator[Segment]:
+    """The same of somebody else: "V2 was southbound, and so was V1"."""
+    same = rule("clauses.so_was").search(segment.text)
+    if same and (vehicle := same["v"].upper()) in who.ids:
+        yield segment._replace(subjects=(vehicle,), text=segment.text[: same.start()])
 
 
 def _own(text: str, before: int) -> str:
@@ -157,6 +164,8 @@ def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[s
     if pronoun and told.subject:
         everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
         starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
+    elif told.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
+        starts.append((0, 0, (told.subject,)))
     inside = 0
     for m in _subjects(text):
         if m.start() < inside:
@@ -215,6 +224,8 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
     behind = _ASIDE.sub("", text[match.end() :])
+    if rule("clauses.driver_told").search(before) and rule("clauses.tells_of_himself").match(behind):
+        return True
     if _BESIDE.search(before):
         if rule("clauses.of_neighbor").search(before) and behind.startswith(" that "):
             return False

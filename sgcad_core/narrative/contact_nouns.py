@@ -42,6 +42,9 @@ def touches(text: str) -> Iterator[Touch]:
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or front, _maybe(m["a2"]) or front, "between")
+    for m in rule("contact_nouns.between_thing").finditer(text):
+        if not _NOTHING.search(text[: m.start()]):
+            yield Touch(m["v"] or m["v2"], m["object"].lower(), _maybe(m["area"] or m["area2"]), None, "between")
     for m in says.PUSHED.finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield Touch(a, b, "front", _maybe(area) or "back", "pushed")

@@ -17,6 +17,8 @@ _FEWEST_WORDS = 12
 """Below, the share of small words says nothing."""
 _ENGLISH = 0.10
 """Share of small words in a text below which it is hardly English; reports of crashes have 0.2 and more."""
+_NOTE = 0.20
+"""The same with short-hand and words of traffic, of which notes have 0.4."""
 
 
 class Gap(NamedTuple):
@@ -35,8 +37,10 @@ _NO_CRASH = Gap("the narrative tells no crash", ("a crash: who touched whom or w
 
 def foreign(text: str) -> Gap | None:
     """Whether a text is in another language."""
-    words = rule("gaps.word").findall(text)
-    if len(words) < _FEWEST_WORDS or len(rule("gaps.english").findall(text)) >= _ENGLISH * len(words):
+    words, small = len(rule("gaps.word").findall(text)), len(rule("gaps.english").findall(text))
+    short, other = len(rule("gaps.short_english").findall(text)), len(rule("gaps.other_language").findall(text))
+    english = (small >= _ENGLISH * words or small + short >= _NOTE * words) and other <= small + short
+    if words < _FEWEST_WORDS or english:
         return None
     return Gap("the narrative is not in English", ("an English narrative",), True)
 

@@ -21,13 +21,17 @@ _EXIT = rule("headings.exit")
 _TURN_BEFORE = rule("headings.turn_before")
 
 
+_WAYS = ("dir", "dir2", "dir3", "dir4")
+"""Groups of the way in alternatives of a rule."""
+
+
 def read_heading(motion: Motion, text: str, weight: int) -> None:
     told = [(m, by) for by in (_HEADING, _HEADING_BARE) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
         gap = words.get("gap") or words.get("gap2") or ""
         if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
-            _note_heading(motion, words.get("dir") or words.get("dir2") or words.get("dir3") or "", weight, by.id)
+            _note_heading(motion, next(filter(None, map(words.get, _WAYS)), ""), weight, by.id)
             if way := compass_of(words.get("dir") or ""):
                 _note_sense(motion, m, way)
     for m in _CAME_WAY.finditer(text):

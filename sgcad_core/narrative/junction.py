@@ -66,6 +66,9 @@ def junction_of(
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
     listed = approaches or Approaches()
     story = [t for t in told if t.role in STORY_ROLES]
+    heard = [t for t in told if t.role in STORY_ROLES or t.role == "interview"]
+    if _named(story)[0] == "none" and (_named(heard)[0] != "none" or _one_sided(heard, roads)):
+        story = heard
     kind, stated = _kind(story, told, vehicles, roads)
     kind = _kind_listed(kind, stated, listed)
     if kind == "none":
@@ -188,7 +191,11 @@ _SIDE_STREET = rule("junction.side_street")
 
 def _one_sided(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
     """Whether a side road is told to lie on one side or to end."""
-    return any(SIDE_ROAD.search(t.text) or (ENDS.search(t.text) and _JUNCTION.search(t.text)) for t in story)
+    ends = rule("junction.ends_at")
+    return any(
+        SIDE_ROAD.search(t.text) or ends.search(t.text) or (ENDS.search(t.text) and _JUNCTION.search(t.text))
+        for t in story
+    )
 
 
 def _turning(vehicles: Sequence[VehicleFacts]) -> bool:

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 
 from sgcad_core.language import rule
 from sgcad_core.narrative.clauses import Statement
-from sgcad_core.narrative.compass import compass_of
+from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.roles import STORY_ROLES
 from sgcad_core.specs import Compass
@@ -53,6 +53,14 @@ def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]
 def _curves_by_way(told: Statement) -> Iterator[Curve]:
     """The sides that a curve has for directions of travel that are named with them."""
     if not rule("road_details.curve_word").search(told.text):
+        return
+    coming = rule("road_details.curve_from")
+    ways = [(m, m["hand"] or m["hand2"], compass_of(m["from"] or m["from2"])) for m in coming.finditer(told.text)]
+    for m, hand, way in ways:
+        if way:
+            side: Literal["left", "right"] = "left" if hand.lower() == "left" else "right"
+            yield Curve(side, turned(way, 180), Cue(told.number, m[0], coming.id))
+    if ways:
         return
     for by in (rule("road_details.curve_for"), rule("road_details.curve_as")):
         found = [(m, way) for m in by.finditer(told.text) if (way := compass_of(m["way"]))]

@@ -40,6 +40,10 @@ _DRIVEN = rule("roles.driven")
 _ACTED = rule("roles.acted")
 
 
+_BESIDE: tuple[Role, ...] = ("factors", "police", "towing", "health", "injury", "restraint")
+"""Noise in whose sentences a crash may be told too."""
+
+
 def role_of(text: str) -> Role:
     """The role of one normalized sentence. A sentence of two roles gets the one that misleads least."""
     text = rule("roles.attribution").sub("", text)
@@ -47,6 +51,8 @@ def role_of(text: str) -> Role:
         return "opening"
     noise = _noise(text)
     if noise in ("restraint", "injury", "health") and _DRIVEN.search(text):
+        return "impact" if is_impact(text) else "approach"
+    if noise in _BESIDE and (rule("roles.struck_plainly").search(text) or rule("roles.came_from").search(text)):
         return "impact" if is_impact(text) else "approach"
     if noise == "interview" and _ACTED.search(text):
         return "approach"

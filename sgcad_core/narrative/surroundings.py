@@ -45,6 +45,10 @@ def read_lane(motion: Motion, text: str) -> None:
             motion.lane = counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
         elif number:
             motion.lane = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
+        elif m.group("beside") or m.group("curb"):
+            motion.lane = -1 if (m.group("beside") or "").lower() == "left" else 1
+        elif m.group("inner"):
+            motion.lane = -1
         elif m.group("ord"):
             motion.lane = values("ordinal")[m.group("ord").lower()]
         else:

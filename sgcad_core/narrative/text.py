@@ -151,7 +151,8 @@ def _split(block: Traced) -> list[Traced]:
     pieces: list[Traced] = []
     for part in block.split(_END):
         last = pieces[-1].text[-_TAIL:] if pieces else ""
-        joins = pieces and _ABBREVIATION.search(last) and not last.lower().endswith((" dr.", " st."))
+        ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
+        joins = pieces and _ABBREVIATION.search(last) and not ended
         if pieces and joins:
             pieces[-1] = joined([pieces[-1], part], " ")
         else:
