@@ -30,14 +30,14 @@ from benchmarks.opinions import calibration_error, logistic
 from flows.chain import ask_of
 from mini.generator.report import Report
 from mini.generator.written import Written, load, report_of
-from sgcad_core.asking.opinion import TAKES, load_weights, whole
+from sgcad_core.asking.opinion import load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
 from sgcad_core.metrics.statistics import mcnemar
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, rules_claim
 from sgcad_core.narrative.compass import COMPASS
-from sgcad_core.narrative.fusion import model_right, terms
+from sgcad_core.narrative.fusion import FILLS, model_right, terms
 from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import agree, decided, same
 from sgcad_core.narrative.whole_fusion import whole as fused
@@ -165,7 +165,7 @@ def untold(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) -
     changed = count = 0
     for case in some:
         rules, model = case.claims
-        taken = decided(rules, model, weights[case.id], TAKES)
+        taken = decided(rules, model, weights[case.id], FILLS)
         for key in (rules.keys() & model.keys()) - case.truth.keys():
             differ = not agree(key, rules[key], model[key])
             count, changed = count + differ, changed + (differ and key in taken)
@@ -178,7 +178,7 @@ def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) ->
     sure: dict[str, list[tuple[float, bool]]] = defaultdict(list)
     for case in some:
         rules, model = case.claims
-        opinion = Opinion(weights=weights[case.id], answered=case.answered, takes=TAKES)
+        opinion = Opinion(weights=weights[case.id], answered=case.answered, takes=FILLS)
         both = fused(case.reading, opinion)
         after = rules_claim(both)
         for key, want in case.truth.items():

@@ -19,16 +19,13 @@ from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
 from sgcad_core.narrative import learned
 from sgcad_core.narrative.claims import KINDS, UNKNOWN_P
+from sgcad_core.narrative.fusion import FILLS
 from sgcad_core.narrative.gist import FIELDS, Gist
 from sgcad_core.opinion import WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records import Context, CrashReport, Query, Token
 from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.specs import BehaviorSpec, RoadLayout
-
-TAKES = 2 / 3
-"""How likely right an answer to the whole report must be to replace the rules' value: to spoil one costs as much as to
-mend two, since the rules name the sentence of each value and read known writers nearly without errors."""
 
 
 def seconded(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
@@ -63,7 +60,7 @@ def whole(report: CrashReport, ask: Ask) -> CrashReport:
         answered = _answered(context, report.case, ask)
     except (Refused, InvalidOutput) as fault:
         return report.model_copy(update={"notes": (*report.notes, f"no second opinion: {fault}")})
-    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered, takes=TAKES)})
+    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered, takes=FILLS)})
 
 
 def _answered(context: Context, case: str, ask: Ask) -> Answered:

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from sgcad_core.narrative.reading import Reading
 
 FILLS = 0.6
-"""From which probability on a value stands where the rules have none."""
+"""From which probability on a value stands where the rules have none; of answers to the whole report also where they
+have one, since the rules name the sentence of each value."""
 _EDGE = 1e-6
 _VEHICLES = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle")
 _PARTNER = "V2"

@@ -1,7 +1,7 @@
 """What rules and a model claim of one crash, in the same terms."""
 
 from sgcad_core.narrative.answered_claims import model_claims
-from sgcad_core.narrative.claims import KINDS, by_axis, kind_of, rules_claim
+from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, by_axis, kind_of, rules_claim
 from sgcad_core.narrative.reading import read
 from sgcad_core.opinion import Answered
 from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
@@ -57,7 +57,7 @@ def test_a_model_claims_its_values_with_their_probabilities() -> None:
     }  # fmt: skip
     found = model_claims(Answered(layout=LAYOUT, behavior=BEHAVIOR, p=p))
     assert found["contact"].p == 0.25
-    assert found["heading.V1"][:3] == ("N", True, 0.9)
+    assert found["heading.V1"][:3] == ("N", UNKNOWN_P, 0.9)
     assert found["heading.V2"].value == "S", "the outer piece of a leg is that leg"
     assert found["exit.V1"].value == "N"
     assert "exit.V2" not in found
