@@ -63,8 +63,8 @@ def test_a_model_claims_its_values_with_their_probabilities() -> None:
     assert "exit.V2" not in found
     assert "lane.V1" not in found
     assert "heading.O1" not in found
-    assert found["lanes.N"][:3] == ((("N", 2, 1), ("S", 1, 1)), True, 0.7)
-    assert found["turns.N"][:3] == ((("N", ("through", "left")),), True, 0.6)
+    assert found["lanes.N"][:3] == ((("N", 2, 1), ("S", 1, 1)), UNKNOWN_P, 0.7)
+    assert found["turns.N"][:3] == ((("N", ("through", "left")),), UNKNOWN_P, 0.6)
     assert "lanes.E" not in found, "a driveway is no street"
     assert found["legs"].value == ("E", "N", "S")
 
