@@ -73,7 +73,8 @@ def road_facts_written(
         for way, end in (("forward", "in"), ("backward", "out")):
             path = f"legs[{leg}].lanes_{end}" if leg is not None else f"roads[{number}].lanes_{way}"
             names = ("lanes_total", "lanes_each_way", "one_way")
-            sources = tuple(f"roads.{told}.{name}" for name in names) if told else ()
+            answered = f"{at}.lanes_{way}"  # of a second opinion, which names legs
+            sources = (answered, *(f"roads.{told}.{name}" for name in names)) if told else (answered,)
             value = road.lanes_forward if way == "forward" else road.lanes_backward
             yield grounds.fact(f"{at}.lanes_{way}", value, path, sources, "one lane each way unless told")
         if road.speed_limit_mph is not None:

@@ -18,6 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from sgcad_core.facts import Fact
+from sgcad_core.facts import Value as FactValue
 from sgcad_core.kinds import FOUR_LEG, Maneuver
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.gist import FIELDS, SUBJECT, alike, areas, meeting, partner, rules_say
@@ -110,7 +111,7 @@ def _fact(key: str, one: Decided) -> Fact:
     return model_fact(f"gist.{key}", one.value, one.p)
 
 
-def model_fact(field: str, value: Value | int, p: float, told: bool = False, nats: float | None = None) -> Fact:
+def model_fact(field: str, value: FactValue, p: float, told: bool = False, nats: float | None = None) -> Fact:
     """A value of the second reader's that is taken; `told`: it holds that the evidence tells it; `nats`: grounding."""
     return Fact(
         field=field, value=value, basis="model", status="stated" if told else "inferred", rule="second opinion",

@@ -13,15 +13,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.answered_claims import model_claims
-from sgcad_core.narrative.claims import UNKNOWN_P, Claim, Claims, kind_of, rules_claim, vehicles_of
+from sgcad_core.narrative.answered_facts import Taken, facts_of
+from sgcad_core.narrative.claims import Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.fusion import FILLS, TURNS, model_fact, model_right
+from sgcad_core.narrative.fusion import FILLS, TURNS, model_right
 from sgcad_core.narrative.lanes import LaneFacts
 from sgcad_core.narrative.layout_facts import layout_of_facts
 from sgcad_core.narrative.mentions import axis_of
@@ -41,15 +42,6 @@ _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 """Kinds of junctions whose layouts the embedded model has learned; of a ramp without the lane in which one merges."""
 
 
-class Taken(NamedTuple):
-    """A value of the model's that is taken, how likely it is right, and what the model says of the evidence for it."""
-
-    value: Any
-    p: float
-    told: float
-    nats: float
-
-
 def whole(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
@@ -60,12 +52,13 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
         reading = _filled(reading, opinion.answered, heard) if gap.unread else reading
         if reading.crash.gap is not None:
             return reading
-    taken = decided(rules_claim(reading), heard, opinion.weights, opinion.takes)
+    rules = rules_claim(reading)
+    taken = fitting(decided(rules, heard, opinion.weights, opinion.takes), rules, heard)
     crash, used = _crash(reading.crash, taken)
     roads, laid = _roads(replace(reading.roads, crash=crash), taken, opinion.answered)
     if not (used | laid):
         return reading
-    facts = [_fact(key, taken[key]) for key in taken if key in used | laid]
+    facts = [fact for key in taken if key in used | laid for fact in facts_of(key, taken[key], crash)]
     return _told(reading, crash, roads, facts)
 
 
@@ -89,6 +82,24 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
     return found
 
 
+def fitting(taken: Mapping[str, Taken], rules: Claims, model: Claims) -> dict[str, Taken]:
+    """Without lanes and ways out of vehicles that both readers have on other ways: they are of the model's way."""
+    headings = {of: taken.get(f"heading.{of}", rules.get(f"heading.{of}")) for of in {*map(_whose, taken)}}
+    elsewhere = {
+        of
+        for of, ours in headings.items()
+        if ours is not None and (theirs := model.get(f"heading.{of}")) is not None and ours.value != theirs.value
+    }
+    return {
+        key: one for key, one in taken.items() if kind_of(key) not in ("exit", "lane") or _whose(key) not in elsewhere
+    }
+
+
+def _whose(key: str) -> str:
+    """ "V1" of "lane.V1"."""
+    return key.partition(".")[2]
+
+
 def same(key: str, one: Any, other: Any) -> bool:
     """Whether two values of a field are the same; a speed to one mph, since it is told in ranges and in km/h."""
     return abs(one - other) <= 1 if kind_of(key) == "speed" else bool(one == other)
@@ -102,16 +113,6 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
         common = ours.keys() & theirs.keys()
         return bool(common) and all(ours[leg] == theirs[leg] for leg in common)
     return any(same(key, value, said.value) for value in (rule.value, *rule.also)) or bool({*rule.also} & {*said.also})
-
-
-def _fact(key: str, one: Taken) -> Fact:
-    name, _, of = key.partition(".")
-    field = f"vehicles.{of}.{_NAMES.get(name, name)}" if name in _VEHICLE else f"answered.{key}"
-    value = one.value if isinstance(one.value, str | int | bool) else str(one.value)
-    return model_fact(field, value, one.p, told=one.told >= UNKNOWN_P, nats=one.nats)
-
-
-_NAMES = {"exit": "exit_heading", "speed": "speed_mph"}
 
 
 # ------------------------------------------------------------------ where the rules can read no crash
@@ -134,7 +135,8 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
         ContactFacts(c.striker, c.struck, c.striker_area, c.struck_area, True) for c in said.behavior.contacts
     )
     crash = replace(crash, vehicles=vehicles, others=others, contacts=contacts, oriented=True, gap=None)
-    return _told(reading, crash, reading.roads, [_fact(key, _as_heard(heard[key])) for key in sure])
+    facts = [fact for key in sure for fact in facts_of(key, _as_heard(heard[key]), crash)]
+    return _told(reading, crash, reading.roads, facts)
 
 
 def _as_heard(said: Claim) -> Taken:

@@ -1,10 +1,13 @@
 """Whom a numbered report is believed: rules or model, field by field, and what becomes of the roads."""
 
+from functools import partial
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.narrative.answered_claims import model_claims
+from sgcad_core.narrative.answered_facts import Taken, facts_of
 from sgcad_core.narrative.behavior import behavior_of_facts
 from sgcad_core.narrative.claims import KINDS, UNKNOWN_P, Claim, rules_claim
 from sgcad_core.narrative.layout_facts import layout_of_facts
@@ -94,6 +97,38 @@ def test_what_the_text_tells_outright_weighs() -> None:
     assert "maneuver.V1" not in decided(rules, model_claims(said), stubborn, 0.5)
     untold = {key: claim._replace(told=False) for key, claim in rules.items()}
     assert decided(untold, model_claims(said), stubborn, 0.5)["maneuver.V1"].value == "turn_left"
+
+
+def test_lane_and_way_out_of_a_vehicle_on_another_way_are_not_taken() -> None:
+    said = answered(lane=1, exit_road="S", road="N")  # the model has V1 come from the north
+    believed = {kind: BELIEVED[kind] for kind in ("lane", "exit")}
+    assert whole(read(TEXT), Opinion(answered=said, weights=believed)) == read(TEXT)
+    with_heading = told(TEXT, said, believed | {"heading": BELIEVED["heading"]}).crash.vehicle("V1")
+    assert with_heading is not None
+    assert (with_heading.heading, with_heading.exit_heading) == ("S", "S")
+
+
+def test_taken_values_are_facts_by_the_names_of_the_rules() -> None:
+    tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1, turns_in=("right", "left"), control="stop"))
+    found = {fact.field: fact.value for fact in told(TEXT, answered(tee, kind="bus")).facts if fact.basis == "model"}
+    assert found["junction.legs"] == ("E", "N", "S")
+    assert (found["junction.control"], found["junction.stopped"]) == ("stop", ("E",))
+    assert (found["roads.E.lanes_forward"], found["roads.E.lanes_backward"]) == (2, 1)
+    assert found["roads.E.turn_lanes"] == ("right", "left")
+    assert found["vehicles.V1.kind"] == "bus"
+
+
+def test_facts_of_a_contact_name_who_and_with_which_side() -> None:
+    crash = read(TEXT).crash
+    one = partial(Taken, p=0.9, told=0.9, nats=1.0)
+    found = [*facts_of("contact", one(("V2", "V1")), crash), *facts_of("areas", one((("V1", "left"),)), crash)]
+    assert [(fact.field, fact.value) for fact in found] == [
+        ("contacts.0.striker", "V2"), ("contacts.0.struck", "V1"), ("contacts.0.striker_area", "left"),
+    ]  # fmt: skip
+    assert [fact.field for fact in facts_of("weather", one("rain"), crash)] == ["conditions.weather"]
+    assert [(f.field, f.value) for f in facts_of("curve.N", one(()), crash)] == [("roads.N.curve", "none")]
+    assert [(f.field, f.value) for f in facts_of("limit.N", one(35), crash)] == [("roads.N.speed_limit_mph", 35)]
+    assert [(f.field, f.value) for f in facts_of("control", one(()), crash)] == [("junction.control", "none")]
 
 
 def test_lanes_of_the_answer_become_the_road() -> None:

@@ -1,0 +1,69 @@
+"""Values that are taken of a model's answers, as facts under the names that the rules give theirs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sgcad_core.narrative.claims import UNKNOWN_P
+from sgcad_core.narrative.fusion import model_fact
+
+if TYPE_CHECKING:
+    from sgcad_core.facts import Fact, Value
+    from sgcad_core.narrative.facts import CrashFacts
+
+_OF_VEHICLES = {
+    "kind": "kind", "heading": "heading", "maneuver": "maneuver", "exit": "exit_heading", "lane": "lane",
+    "speed": "speed_mph",
+}  # fmt: skip
+
+
+class Taken(NamedTuple):
+    """A value of the model's that is taken, how likely it is right, and what the model says of the evidence for it."""
+
+    value: Any
+    p: float
+    told: float
+    nats: float
+
+
+def facts_of(key: str, one: Taken, crash: CrashFacts) -> Iterator[Fact]:
+    """The facts of a taken value (`sgcad_core.narrative.claims` names it); `crash`: with all that is taken."""
+    name, _, of = key.partition(".")
+    for field, value in _named(name, of, one.value, crash):
+        yield model_fact(field, value, one.p, told=one.told >= UNKNOWN_P, nats=one.nats)
+
+
+def _named(name: str, of: str, value: Any, crash: CrashFacts) -> Iterator[tuple[str, Value]]:
+    if name in _OF_VEHICLES:
+        yield f"vehicles.{of}.{_OF_VEHICLES[name]}", value
+    elif name in ("light", "weather", "surface"):
+        yield f"conditions.{name}", value
+    elif name == "contact":
+        yield from zip(("contacts.0.striker", "contacts.0.struck"), value, strict=True)
+    elif name == "areas":
+        sides = dict(value)
+        roles = {"striker": crash.contacts[0].striker, "struck": crash.contacts[0].struck} if crash.contacts else {}
+        yield from ((f"contacts.0.{role}_area", sides[id]) for role, id in roles.items() if id in sides)
+    else:
+        yield from _of_roads(name, of, value)
+
+
+def _of_roads(name: str, of: str, value: Any) -> Iterator[tuple[str, Value]]:
+    if name == "legs":
+        yield "junction.legs", value
+    elif name == "control":
+        kinds = Counter(kind for _, kind in value)
+        yield "junction.control", kinds.most_common(1)[0][0] if kinds else "none"
+        if kinds and not {"stop", "yield"}.isdisjoint(kinds):
+            yield "junction.stopped", tuple(leg for leg, _ in value)
+    elif name == "lanes":
+        for leg, toward, away in value:
+            yield f"roads.{leg}.lanes_forward", toward
+            yield f"roads.{leg}.lanes_backward", away
+    elif name in ("turns", "curve"):
+        field = {"turns": "turn_lanes", "curve": "curve"}[name]
+        yield from ((f"roads.{leg}.{field}", found) for leg, found in value or ((of, "none"),))
+    else:
+        yield f"roads.{of}.{'speed_limit_mph' if name == 'limit' else name}", value
