@@ -73,7 +73,9 @@ class Halves:
         states = self.below(example.ids)
         halves = self.head(self.upper(inputs_embeds=states[None], use_cache=False).last_hidden_state[0]).float()
         if (off := float((whole - halves).abs().mean() / whole.std())) > CLOSE:
-            raise ValueError(f"{type(self.whole).__name__}: cut in two it answers otherwise (by {off:.2g}); use Llama's")
+            raise ValueError(
+                f"{type(self.whole).__name__}: cut in two it answers otherwise (by {off:.2g}); use Llama's"
+            )
 
     def save(self, folder: Path, base: str) -> None:
         """The adapter in PEFT's format, in bfloat16; each file is replaced whole."""
