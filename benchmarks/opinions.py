@@ -74,10 +74,10 @@ def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None =
 def _case(incident: Incident, heard: dict[str, Heard]) -> Case:
     reading = read(incident.text)
     gap = reading.crash.gap
-    return Case(incident.id, _codes(incident.truth), rules_say(reading), heard, bool(gap and not gap.unread))
+    return Case(incident.id, codes(incident.truth), rules_say(reading), heard, bool(gap and not gap.unread))
 
 
-def _codes(truth: Any) -> dict[str, tuple[Value, ...]]:
+def codes(truth: Any) -> dict[str, tuple[Value, ...]]:
     """What codes allow, without those that writers take loosely: a place that is coded as none of a junction."""
     found = allowed(truth)
     if found.get("junction") == (False,):
