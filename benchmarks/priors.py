@@ -29,7 +29,7 @@ import numpy as np
 import torch
 
 from benchmarks.gist_heard import GistListener
-from benchmarks.incidents import Incident, of_dev, of_pool
+from benchmarks.incidents import Incident, by_hash, of_dev, of_pool
 from benchmarks.opinions import codes
 from benchmarks.opinions import right as is_right
 from benchmarks.options import Heard, Listener, decode
@@ -282,14 +282,14 @@ def main() -> None:
     parser.add_argument("--model", required=True)
     parser.add_argument("--adapter", help="folder of a LoRA adapter")
     parser.add_argument("--gist", metavar="PROMPT", help="ask as this prompt of configs/prompts does")
-    parser.add_argument("--most", type=int, help="development reports at most")
+    parser.add_argument("--most", type=int, help="development reports at most, as their hashes fall")
     parser.add_argument("--dev", nargs=2, type=Path, metavar=("CASES", "TRUTH"))
     parser.add_argument("--pool", type=Path)
     parser.add_argument("--count", type=int, default=200, help="reports of the pool that nobody reads (0 = all)")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--rows", type=Path, help="file of answers, made or gone on with")
     given = parser.parse_args()
-    incidents = of_dev(*given.dev)[: given.most] if given.dev else []
+    incidents = sorted(of_dev(*given.dev), key=lambda one: by_hash(one.id))[: given.most] if given.dev else []
     blind = [i for i in of_pool(given.pool, 0) if i.group == "blind"] if given.pool else []
     incidents += blind[: given.count or None]
     place = str(unpacked(given.model)) if is_gguf(given.model) else given.model
