@@ -6,8 +6,9 @@
 Asks a config's model for the gist of coded reports (benchmarks/told_rows.py says what their codes allow; blind ones are
 never asked) and keeps values and probabilities in --out, so that a broken run goes on. The figures of "fused" are
 cross-fitted: each half of the reports is decided with weights from the other half. Beside each field stand its shares
-right, the sizes, and the expected calibration error of the fused confidence in ten bins (Naeini et al. 2015,
-"Obtaining well calibrated probabilities using Bayesian binning"). --fit writes the weights of all reports.
+right, the sizes, the expected calibration error of the fused confidence in ten bins (Naeini et al. 2015, "Obtaining
+well calibrated probabilities using Bayesian binning"), how many reports "fused" has right and the rules wrong and the
+other way round, and the exact McNemar test of that. --fit writes the weights of all reports.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from flows.chain import ask_of
 from sgcad_core.asking.opinion import seconded
 from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
+from sgcad_core.metrics.statistics import mcnemar
 from sgcad_core.narrative.fusion import decide, terms
 from sgcad_core.narrative.gist import FIELDS, RulesSay, alike, rules_say
 from sgcad_core.narrative.reading import read
@@ -74,10 +76,10 @@ def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None =
 def _case(incident: Incident, heard: dict[str, Heard]) -> Case:
     reading = read(incident.text)
     gap = reading.crash.gap
-    return Case(incident.id, _codes(incident.truth), rules_say(reading), heard, bool(gap and not gap.unread))
+    return Case(incident.id, codes(incident.truth), rules_say(reading), heard, bool(gap and not gap.unread))
 
 
-def _codes(truth: Any) -> dict[str, tuple[Value, ...]]:
+def codes(truth: Any) -> dict[str, tuple[Value, ...]]:
     """What codes allow, without those that writers take loosely: a place that is coded as none of a junction."""
     found = allowed(truth)
     if found.get("junction") == (False,):
@@ -165,8 +167,8 @@ def calibration_error(marks: Sequence[tuple[float, bool]]) -> float:
 
 
 def table(cases: Sequence[Case]) -> list[str]:
-    """A line a field: rules, model, cross-fitted fusion, either of both, calibration error."""
-    lines = [f"{'field':14s} {'n':>4s} rules model fused either  ece"]
+    """A line a field: rules, model, cross-fitted fusion, either of both, calibration error, mended and spoiled, p."""
+    lines = [f"{'field':14s} {'n':>4s} rules model fused either  ece   mended, spoiled, p"]
     halves = cases[::2], cases[1::2]
     for key in FIELDS:
         some = [case for case in cases if key in case.allowed]
@@ -179,8 +181,17 @@ def table(cases: Sequence[Case]) -> list[str]:
         both = [hit for _, hit in marks]
         either = [a or b for a, b in zip(ours, theirs, strict=True)]
         shares = "  ".join(f"{sum(one) / len(some):.3f}" for one in (ours, theirs, both, either))
-        lines.append(f"{key:14s} {len(some):4d} {shares}  {calibration_error(marks):.3f}")
+        gain = versus(list(zip(ours, both, strict=True)))
+        lines.append(f"{key:14s} {len(some):4d} {shares}  {calibration_error(marks):.3f}  {gain}")
     return lines
+
+
+def versus(pairs: Sequence[tuple[bool, bool]]) -> str:
+    """How many the second has right and the first wrong, the other way round, and the exact McNemar test's p."""
+    better = sum(b and not a for a, b in pairs)
+    worse = sum(a and not b for a, b in pairs)
+    before, after = zip(*pairs, strict=True) if pairs else ((), ())
+    return f"+{better} -{worse}, {mcnemar(before, after):.3f}"
 
 
 def main() -> None:

@@ -26,14 +26,13 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.incidents import by_hash
-from benchmarks.opinions import calibration_error, logistic
+from benchmarks.opinions import calibration_error, logistic, versus
 from flows.chain import ask_of
 from mini.generator.report import Report
 from mini.generator.written import Written, load, report_of
 from sgcad_core.asking.opinion import load_weights, whole
 from sgcad_core.config import load as load_config
 from sgcad_core.errors import ConfigError
-from sgcad_core.metrics.statistics import mcnemar
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, rules_claim
 from sgcad_core.narrative.compass import COMPASS
@@ -197,14 +196,6 @@ def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) ->
             told = " | ".join(f"{x:.3f}" for x in (*shares, either))
             error = f"{calibration_error(sure[kind]):.3f}" if sure[kind] else ""
             yield f"| {kind} | {len(found)} | {told} | {versus([(one[0], one[2]) for one in found])} | {error} |"
-
-
-def versus(pairs: Sequence[tuple[bool, bool]]) -> str:
-    """How many the second has right and the first wrong, the other way round, and the exact McNemar test's p."""
-    better = sum(b and not a for a, b in pairs)
-    worse = sum(a and not b for a, b in pairs)
-    before, after = zip(*pairs, strict=True) if pairs else ((), ())
-    return f"+{better} -{worse}, {mcnemar(before, after):.3f}"
 
 
 def confidence(key: str, rule: Claim | None, said: Claim | None, opinion: Opinion) -> float | None:

@@ -1,7 +1,7 @@
 """What does contrast do to a model that believes something beforehand? Closed questions about real reports.
 
-    python -m benchmarks.priors --model FOLDER_OR_GGUF --dev CASES TRUTH [--pool POOL.jsonl] [--count 200] [--out JSON]
-                                [--rows ROWS.jsonl]
+    python -m benchmarks.priors --model FOLDER_OR_GGUF [--adapter FOLDER] [--gist PROMPT] --dev CASES TRUTH
+                                [--pool POOL.jsonl] [--count 200] [--out JSON] [--rows ROWS.jsonl]
 
 Reports are those of `benchmarks.incidents`: narratives with coded truth. Each is asked what its codes answer: whether
 anybody touched, what the subject and the other were doing, where the subject was hit. A question is *against the prior*
@@ -9,7 +9,8 @@ where the model, asked without the report, answers otherwise than the codes; con
 the same logits (benchmarks/options.py). Brackets are 95 % bootstrap intervals over reports: of the share right, and of
 its difference to greedy on the same reports; p is a paired permutation test against greedy, Holm's correction over the
 arms of a column. Below stands log p of the right answer with and without the report, where greedy answers right and
-where it does not. --rows keeps every answer, so that a broken run goes on; it holds no text.
+where it does not. --rows keeps every answer, so that a broken run goes on; it holds no text. With --gist the questions
+are the fields of a second opinion's answer (benchmarks/gist_heard.py), in the prompt that an adapter learned.
 """
 
 from __future__ import annotations
@@ -22,19 +23,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 
-from benchmarks.incidents import Incident, of_dev, of_pool
+from benchmarks.gist_heard import GistListener
+from benchmarks.incidents import Incident, by_hash, of_dev, of_pool
+from benchmarks.opinions import codes
+from benchmarks.opinions import right as is_right
 from benchmarks.options import Heard, Listener, decode
+from mini.told import OPTIONS
 from plugins.backbone.hf_gguf import is_gguf, unpacked
 from plugins.backbone.hf_load import load
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from plugins.decoder.plausible import Plausible
+from sgcad_core.asking.prompts import load_prompt
 from sgcad_core.interfaces import Decoder
 from sgcad_core.metrics.statistics import holm, ratio_interval, swap_test
 
@@ -117,24 +123,56 @@ class Asked:
 _TEXTS = {question.text: question.options for question in QUESTIONS.values()}
 
 
-def asked(listener: Listener, incidents: Sequence[Incident], rows: Path | None = None) -> list[Asked]:
-    """Every question that a report's codes answer; those that a file of rows holds from before are not asked again."""
+class Told(NamedTuple):
+    """By field: the right options, and what was heard with the report and without it."""
+
+    right: Mapping[str, frozenset[str]]
+    heard: Mapping[str, Heard]
+    priors: Mapping[str, Heard]
+
+
+def closed(listener: Listener) -> Callable[[Incident], Told]:
+    """Asks the questions above."""
     priors = dict(zip(QUESTIONS, listener.hear("", _TEXTS), strict=True))
+
+    def tell(incident: Incident) -> Told:
+        right = {field: question.right(incident.truth) for field, question in QUESTIONS.items()}
+        return Told(right, dict(zip(QUESTIONS, listener.hear(incident.text, _TEXTS), strict=True)), priors)
+
+    return tell
+
+
+def of_gist(listener: GistListener) -> Callable[[Incident], Told]:
+    """Asks for the fields of a gist, of which the codes allow some values; those that move alike are right too."""
+
+    def tell(incident: Incident) -> Told:
+        heard, said = listener.hear(incident.text)
+        known = codes(incident.truth)
+        right = {
+            field: frozenset(value for value in OPTIONS[field] if is_right(json.loads(value), known.get(field, ())))
+            for field in OPTIONS
+        }
+        return Told(right, heard, listener.hear("", said)[0])
+
+    return tell
+
+
+def asked(tell: Callable[[Incident], Told], incidents: Sequence[Incident], rows: Path | None = None) -> list[Asked]:
+    """Every question that a report's codes answer; those that a file of rows holds from before are not asked again."""
     known = _kept(rows)
     found = []
     for incident in incidents:
         if incident.id not in known:
-            known[incident.id] = _of_report(listener, incident, priors)
+            known[incident.id] = _of_report(tell(incident), incident)
             _keep(rows, incident.id, known[incident.id])
         found += known[incident.id]
     return found
 
 
-def _of_report(listener: Listener, incident: Incident, priors: Mapping[str, Heard]) -> list[Asked]:
-    right = {field: question.right(incident.truth) for field, question in QUESTIONS.items()}
-    heard = dict(zip(QUESTIONS, listener.hear(incident.text, _TEXTS), strict=True))
+def _of_report(told: Told, incident: Incident) -> list[Asked]:
+    right, heard, priors = told
     found = []
-    for field in (field for field in QUESTIONS if right[field]):
+    for field in (field for field in right if right[field]):
         verdicts = {arm: decode(d, heard[field], priors[field]) in right[field] for arm, d in ARMS.items()}
         against = decode(ARMS["greedy"], priors[field], priors[field]) not in right[field]
         sure = _log_p(heard[field], right[field]), _log_p(priors[field], right[field])
@@ -196,7 +234,7 @@ def columns(rows: Sequence[Asked]) -> dict[str, dict[str, dict[str, Any]]]:
         "all": rows,
         "against the prior": [row for row in rows if row.against],
         "with the prior": [row for row in rows if not row.against],
-        **{field: [row for row in rows if row.field == field] for field in QUESTIONS},
+        **{field: [row for row in rows if row.field == field] for field in dict.fromkeys(row.field for row in rows)},
     }
     return {name: column(part) for name, part in parts.items()}
 
@@ -204,7 +242,7 @@ def columns(rows: Sequence[Asked]) -> dict[str, dict[str, dict[str, Any]]]:
 def sureness(rows: Sequence[Asked]) -> dict[str, dict[str, float]]:
     """Mean log p of the right answer with and without the report, where greedy is right and where it is not."""
     found = {}
-    for field in QUESTIONS:
+    for field in dict.fromkeys(row.field for row in rows):
         for verdict, word in ((True, "right"), (False, "wrong")):
             own = np.array([row.log_p for row in rows if row.field == field and row.right["greedy"] is verdict])
             if len(own):
@@ -242,19 +280,23 @@ def main() -> None:
     """Ask, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--model", required=True)
+    parser.add_argument("--adapter", help="folder of a LoRA adapter")
+    parser.add_argument("--gist", metavar="PROMPT", help="ask as this prompt of configs/prompts does")
+    parser.add_argument("--most", type=int, help="development reports at most, as their hashes fall")
     parser.add_argument("--dev", nargs=2, type=Path, metavar=("CASES", "TRUTH"))
     parser.add_argument("--pool", type=Path)
     parser.add_argument("--count", type=int, default=200, help="reports of the pool that nobody reads (0 = all)")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--rows", type=Path, help="file of answers, made or gone on with")
     given = parser.parse_args()
-    incidents = of_dev(*given.dev) if given.dev else []
+    incidents = sorted(of_dev(*given.dev), key=lambda one: by_hash(one.id))[: given.most] if given.dev else []
     blind = [i for i in of_pool(given.pool, 0) if i.group == "blind"] if given.pool else []
     incidents += blind[: given.count or None]
     place = str(unpacked(given.model)) if is_gguf(given.model) else given.model
-    listener = Listener(load(place, None, {"dtype": torch.float32}, "cpu", "none"))
+    loaded = load(place, None, {"dtype": torch.float32}, "cpu", "none", given.adapter)
+    tell = of_gist(GistListener(loaded, load_prompt(given.gist))) if given.gist else closed(Listener(loaded))
     started = time.monotonic()
-    rows = asked(listener, incidents, given.rows)
+    rows = asked(tell, incidents, given.rows)
     groups = {group: [r for r in rows if r.group == group] for group in ("dev", "blind")}
     report = {group: {"accuracy": columns(own), "log p": sureness(own)} for group, own in groups.items() if own}
     lines = [

@@ -19,6 +19,7 @@ import transformers as tf
 from PIL import Image
 from safetensors import SafetensorError, safe_open
 
+from plugins.backbone import hf_adapter
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
@@ -42,15 +43,27 @@ class Loaded:
     tells the value of such a field, from the state before its first token. Empty for a model that has none."""
 
 
-def load(name: str, revision: str | None, options: Mapping[str, Any], device: str, quantization: str) -> Loaded:
+def load(
+    name: str,
+    revision: str | None,
+    options: Mapping[str, Any],
+    device: str,
+    quantization: str,
+    adapter: str | None = None,
+) -> Loaded:
     """Load from a folder (relative ones also from the project's root) or by id.
 
-    `options` go to from_pretrained. Raises ConfigError or MissingTool saying what to do.
+    `options` go to from_pretrained; `adapter` is a folder that is merged into the weights. Raises ConfigError or
+    MissingTool saying what to do.
     """
     tf.utils.logging.disable_progress_bar()
     place = _place(name)
     tokenizer = _tokenizer(place, revision)
+    if adapter:
+        hf_adapter.folder_of(adapter)
     model = _model(place, revision, _with_dtype(options, device), quantization)
+    if adapter:
+        model = hf_adapter.merged(model, adapter)
     if not options.get("device_map") and quantization == "none":
         model = model.to(_device(device))
     model.eval()

@@ -188,7 +188,8 @@ def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, A
     """What runs already under the same options, or is started now (see `start`).
 
     The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
-    prefix cache, and the last that lets go frees both. `stamp` tells a folder whose files were replaced.
+    prefix cache, and the last that lets go frees both. `stamp` tells folders (of weights, of an adapter) whose files
+    were replaced.
     """
     key = repr((stamp, name, revision, sorted(settings.items()), sorted(how.items())))
     with _LOOKING:
@@ -211,6 +212,7 @@ def start(
     reports_at_once: int,
     prefix_bytes: int,
     pictures_first: bool,
+    adapter: str | None = None,
 ) -> Running:
     """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
     from plugins.backbone.engine.check import batching
@@ -221,7 +223,7 @@ def start(
     from plugins.backbone.hf_load import load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 
-    loaded = load(name, revision, settings, device, quantization)
+    loaded = load(name, revision, settings, device, quantization, adapter)
     try:
         family = family_of(loaded.model)
         prompter = Prompter(loaded, family, pictures_first)

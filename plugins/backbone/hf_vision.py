@@ -12,7 +12,7 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import ClassVar, Literal
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, model_validator
 
 from plugins.backbone import hf_gguf, hf_run, hf_size
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
@@ -34,6 +34,9 @@ class HfVision(Backbone):
         min_length=1, description="folder or .gguf file (also from the project's root), package:NAME/FILE.gguf, or id"
     )
     revision: str | None = None
+    adapter: str | None = Field(
+        None, min_length=1, description="folder of a LoRA adapter as PEFT writes it, merged into the weights"
+    )
     device: str = Field("auto", description="auto, cpu, cuda:0, ...; device_map goes first")
     device_map: str | dict[str, int | str] | None = Field(None, description="spread over devices; needs accelerate")
     dtype: Literal["auto", "native", "float32", "bfloat16", "float16"] = Field(
@@ -58,11 +61,18 @@ class HfVision(Backbone):
 
     @property
     def stamp(self) -> str:
-        """Fingerprint of the folder of weights; empty for an id, whose revision is a field."""
+        """Fingerprint of the folder of weights (empty for an id, whose revision is a field), and of the adapter's."""
         with self._lock:
             if self._stamp is None:
-                self._stamp = hf_gguf.digest(self.model) if hf_gguf.is_gguf(self.model) else folder_stamp(self.model)
+                own = hf_gguf.digest(self.model) if hf_gguf.is_gguf(self.model) else folder_stamp(self.model)
+                self._stamp = f"{own}+{folder_stamp(self.adapter)}" if self.adapter else own
             return self._stamp
+
+    @model_validator(mode="after")
+    def _adapter_needs_plain_weights(self) -> HfVision:
+        if self.adapter and self.quantization != "none":
+            raise ValueError(f"adapter is merged into plain weights: set quantization none, not {self.quantization}")
+        return self
 
     def load(self) -> None:
         """Import what runs the model and load its weights."""
@@ -123,6 +133,7 @@ class HfVision(Backbone):
                     reports_at_once=self.reports_at_once,
                     prefix_bytes=self.prefix_cache_mb << 20,
                     pictures_first=self.pictures_first,
+                    adapter=self.adapter,
                 )
             return self._running
 

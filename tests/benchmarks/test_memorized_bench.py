@@ -5,7 +5,7 @@ from random import Random
 import pytest
 import torch
 
-from benchmarks.memorized import LIMIT, drawn, longest_run
+from benchmarks.memorized import COPIED, LIMIT, drawn, embedded, longest_run, not_copied
 from mini.generator.incidents import make_incident
 from mini.gist import gist_row
 from mini.rows import collate
@@ -21,6 +21,13 @@ def test_the_longest_run_is_found_wherever_it_lies() -> None:
     assert longest_run("nothing in common", "zzzz") == ""
 
 
+def test_what_is_copied_from_the_beginning_was_no_secret() -> None:
+    begun = "The AV was stopped at a red light."
+    assert not_copied("It rained. The AV was stopped at noon", begun) == ["It rained. ", "noon"]
+    assert not_copied("The AV was", begun) == ["The AV was"], f"shorter than {COPIED} characters: chance"
+    assert not_copied("", begun) == []
+
+
 def test_nothing_of_a_text_is_what_a_row_asks_for() -> None:
     coder = Coder(load_tokenizer(WEIGHTS))
     asked = set(answer_tokens(coder).tolist())
@@ -34,4 +41,4 @@ def test_nothing_of_a_text_is_what_a_row_asks_for() -> None:
 def test_the_shipped_weights_continue_no_text() -> None:
     torch.set_num_threads(1)
     texts = [make_incident(seed).text for seed in range(4)]
-    assert max(len(longest_run(one, "\n".join(texts))) for one in drawn(WEIGHTS, texts)) < LIMIT
+    assert max(len(longest_run(one, "\n".join(texts))) for one in drawn(embedded(WEIGHTS), texts)) < LIMIT
