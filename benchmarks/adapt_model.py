@@ -18,6 +18,7 @@ from safetensors.torch import save_file
 from torch import Tensor, nn
 
 from benchmarks.adapt_rows import Example
+from plugins.backbone.hf_adapter import library
 
 TARGETS = ("q_proj", "k_proj", "v_proj", "o_proj", "gate_proj", "up_proj", "down_proj")
 CONFIG, WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
@@ -29,8 +30,7 @@ class Halves:
     """`below(ids)` are states (tokens, width) in front of the upper layers; `loss` is of an example behind them."""
 
     def __init__(self, model: Any, first: int, rank: int, dropout: float) -> None:
-        import peft
-
+        peft = library("benchmarks.adapt")
         layers = model.config.num_hidden_layers
         if not 0 <= first < layers:
             raise ValueError(f"layer {first} is none of the model's {layers}; use 0 to {layers - 1}")
@@ -79,10 +79,8 @@ class Halves:
 
     def save(self, folder: Path, base: str) -> None:
         """The adapter in PEFT's format, in bfloat16; each file is replaced whole."""
-        import peft
-
         folder.mkdir(parents=True, exist_ok=True)
-        weights = peft.get_peft_model_state_dict(self.peft)
+        weights = library("benchmarks.adapt").get_peft_model_state_dict(self.peft)
         fresh = folder / f".{WEIGHTS}"
         save_file({key: value.to(torch.bfloat16).contiguous() for key, value in weights.items()}, fresh)
         os.replace(fresh, folder / WEIGHTS)

@@ -38,9 +38,7 @@ def merged(model: Any, name: str) -> Any:
     """The model with the adapter in its weights. Raises MissingTool, or ConfigError saying what does not fit."""
     folder = folder_of(name)
     _check_kind(name, folder)
-    if find_spec("peft") is None:
-        raise MissingTool(f"backbone.adapter {name} needs the package peft: pip install 'sg-cadvlm[adapters]'")
-    import peft
+    peft = library(f"backbone.adapter {name}")
     from safetensors import SafetensorError
     from safetensors.torch import load_file
 
@@ -55,6 +53,15 @@ def merged(model: Any, name: str) -> Any:
     if left:
         raise _does_not_fit(name, type(model).__name__, f"{len(left)} weights have no counterpart: {_few(left)}")
     return with_adapter.merge_and_unload()
+
+
+def library(wanted_by: str) -> Any:
+    """PEFT, imported now. Raises MissingTool with the command that installs it."""
+    if find_spec("peft") is None:
+        raise MissingTool(f"{wanted_by} needs the package peft: pip install 'sg-cadvlm[adapters]'")
+    import peft
+
+    return peft
 
 
 def _check_kind(name: str, folder: Path) -> None:
