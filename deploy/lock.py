@@ -24,8 +24,8 @@ CONSTRAINTS, LOCK = DEPLOY / "constraints.txt", DEPLOY / "requirements.lock"
 OF_THE_CARD = {"torch", "accelerate", "bitsandbytes", "setuptools", "pip"}
 OF_TESTS = {
     "boto3", "execnet", "grimp", "hypothesis", "import-linter", "iniconfig", "lxml-stubs", "moto", "mypy",
-    "mypy_extensions", "py-partiql-parser", "pytest", "pytest-xdist", "responses", "ruff", "s3transfer", "types-psutil",
-    "types-pyyaml", "xmltodict",
+    "mypy_extensions", "peft", "py-partiql-parser", "pytest", "pytest-xdist", "responses", "ruff", "s3transfer",
+    "types-psutil", "types-pyyaml", "xmltodict",
 }  # fmt: skip
 LEFT_OUT = OF_THE_CARD | OF_TESTS
 """What goes by the card or the environment, and what only tests need."""
