@@ -19,7 +19,7 @@ from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.answered_facts import Taken, facts_of
-from sgcad_core.narrative.claims import Claim, Claims, kind_of, rules_claim, vehicles_of
+from sgcad_core.narrative.claims import UNKNOWN_P, Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.fusion import FILLS, TURNS, model_right
@@ -117,12 +117,13 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
 
 # ------------------------------------------------------------------ where the rules can read no crash
 def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
-    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove."""
+    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove,
+    and holds none of these for a guess."""
     if not said.behavior.contacts or reading.roads.junction.kind not in _LEARNED:
         return reading
     first = said.behavior.contacts[0]
     sure = ("contact", "areas", *(f"heading.{id}" for id in (first.striker, first.struck) if id.startswith("V")))
-    if any(key not in heard or heard[key].p < SURE for key in sure):
+    if any(key not in heard or heard[key].p < SURE or heard[key].told < UNKNOWN_P for key in sure):
         return reading
     crash, known = reading.crash, {v.id: v for v in reading.crash.vehicles}
     vehicles = tuple(

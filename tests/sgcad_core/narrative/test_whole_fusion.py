@@ -274,6 +274,8 @@ def test_a_crash_that_the_rules_cannot_read_is_the_models_if_that_is_sure() -> N
 @pytest.mark.parametrize("path", ["crash.contacts[0].striker", "crash.contacts[0].struck_area", "crash.actors[1].road"])
 def test_a_crash_that_nobody_can_read_stays_refused(path: str) -> None:
     found = told(THIN, answered(p={path: SURE - 0.05}))
+    guessed = told(THIN, answered().model_copy(update={"told": {path: 0.3}}))
+    assert guessed.crash.gap is not None, "sure of a guess"
     assert found.crash.gap is not None
     assert not [fact for fact in found.facts if fact.basis == "model"]
 
