@@ -9,7 +9,7 @@ from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.specs import Leg, RoadLayout
 
 if TYPE_CHECKING:
-    from sgcad_core.narrative.roads import RoadFacts
+    from sgcad_core.narrative.roads import RoadFact, RoadFacts
 
 
 def answered_layout(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
@@ -23,6 +23,44 @@ def answered_layout(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
     else:
         legs = [_with(leg, theirs.get(bearing), facts.taken) for bearing, leg in ours.items()]
     return layout.model_copy(update={"legs": tuple(legs)})
+
+
+def short_of_told(facts: RoadFacts, ours: RoadLayout, answered: RoadLayout) -> frozenset[str]:
+    """Axes of streets that the answer draws with less than the text tells and ours has: with fewer lanes than are
+    counted of an undivided one, or without turn lanes that are named.
+
+    More lanes are no contradiction: turn lanes at the junction may stand beside those that are named.
+    """
+    short = set()
+    for road in facts.streets:
+        if road.axis is None:
+            continue
+        told = _counted(road)
+        named = {use for uses in road.lanes.turns.values() for use in uses} & _turning(ours, road.axis)
+        if _most(answered, road.axis) < told <= _most(ours, road.axis) or named - _turning(answered, road.axis):
+            short.add(road.axis)
+    return frozenset(short)
+
+
+def _turning(layout: RoadLayout, axis: str) -> set[str]:
+    """For which turns alone there is a lane on an axis."""
+    return {
+        use for leg in layout.legs if axis_of(leg.bearing) == axis for use in leg.turns_in if use in ("left", "right")
+    }
+
+
+def _counted(road: RoadFact) -> int:
+    """Lanes of both directions as the text counts them; 0 where it does not, or where one carriageway may be meant."""
+    lanes = road.lanes
+    if lanes.one_way or lanes.one_way_toward or lanes.divided:
+        return 0
+    return lanes.total or 2 * (lanes.each_way or 0)
+
+
+def _most(layout: RoadLayout, axis: str) -> int:
+    """Lanes of the widest leg on an axis, its center turn lane among them."""
+    here = [leg for leg in layout.legs if axis_of(leg.bearing) == axis]
+    return max((leg.lanes_in + leg.lanes_out + leg.center_turn_lane for leg in here), default=0)
 
 
 def _as_told(ours: Leg | None, theirs: Leg, taken: frozenset[str]) -> Leg:

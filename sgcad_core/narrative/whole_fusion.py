@@ -19,7 +19,8 @@ from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.answered_facts import Taken, facts_of
-from sgcad_core.narrative.claims import UNKNOWN_P, Claim, Claims, kind_of, rules_claim, vehicles_of
+from sgcad_core.narrative.answered_layout import short_of_told
+from sgcad_core.narrative.claims import Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.fusion import FILLS, TURNS, model_right
@@ -117,13 +118,12 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
 
 # ------------------------------------------------------------------ where the rules can read no crash
 def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
-    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove,
-    and holds none of these for a guess."""
+    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove."""
     if not said.behavior.contacts or reading.roads.junction.kind not in _LEARNED:
         return reading
     first = said.behavior.contacts[0]
     sure = ("contact", "areas", *(f"heading.{id}" for id in (first.striker, first.struck) if id.startswith("V")))
-    if any(key not in heard or heard[key].p < SURE or heard[key].told < UNKNOWN_P for key in sure):
+    if any(key not in heard or heard[key].p < SURE for key in sure):
         return reading
     crash, known = reading.crash, {v.id: v for v in reading.crash.vehicles}
     vehicles = tuple(
@@ -213,14 +213,7 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     """The roads with the values that fit, and their fields."""
     if facts.junction.kind not in _LEARNED or facts.closed or facts.opening or facts.crash.gore:
         return facts, set()
-    used = {key for key in taken if kind_of(key) in _ROAD}
-    if facts.junction.kind == RAMP:
-        used = {key for key in used if kind_of(key) not in ("lanes", "turns")}
-    if used and not _carries(said.layout, facts.crash):
-        used = set()
-    added = _added(facts, said.layout)
-    if "legs" not in used:
-        used, added = {key for key in used if f"lanes.{key.partition('.')[2]}" not in added}, frozenset()
+    used, added = _laid(facts, {key for key in taken if kind_of(key) in _ROAD}, said.layout)
     if "legs" in used:
         facts = replace(facts, junction=_junction(facts, said.layout))
     if "control" in taken:
@@ -235,9 +228,23 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     return (replace(facts, answered=said.layout, taken=laid | added) if laid else facts), used
 
 
-def _added(facts: RoadFacts, layout: RoadLayout) -> frozenset[str]:
+def _laid(facts: RoadFacts, keys: set[str], layout: RoadLayout) -> tuple[set[str], frozenset[str]]:
+    """Which of these fields of the answered layout can be laid, and what comes with its legs."""
+    ours = layout_of_facts(facts)
+    short = short_of_told(facts, ours, layout)
+    ramp = facts.junction.kind == RAMP
+    keys = {key for key in keys if kind_of(key) not in ("lanes", "turns") or not (ramp or _whose(key) in short)}
+    if keys and not _carries(layout, facts.crash):
+        return set(), frozenset()
+    added = _added(ours, layout)
+    if "legs" in keys:
+        return keys, added
+    return {key for key in keys if f"lanes.{_whose(key)}" not in added}, frozenset()
+
+
+def _added(ours: RoadLayout, layout: RoadLayout) -> frozenset[str]:
     """Lanes and turns of the roads that the text does not have: they come with the answer's legs."""
-    own = {axis_of(leg.bearing) for leg in layout_of_facts(facts).legs}
+    own = {axis_of(leg.bearing) for leg in ours.legs}
     axes = {axis_of(leg.bearing) for leg in layout.legs} - own
     return frozenset(f"{name}.{axis}" for axis in axes for name in ("lanes", "turns"))
 
