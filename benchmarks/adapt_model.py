@@ -18,10 +18,9 @@ from safetensors.torch import save_file
 from torch import Tensor, nn
 
 from benchmarks.adapt_rows import Example
-from plugins.backbone.hf_adapter import library
+from plugins.backbone.hf_adapter import CONFIG, WEIGHTS, library
 
 TARGETS = ("q_proj", "k_proj", "v_proj", "o_proj", "gate_proj", "up_proj", "down_proj")
-CONFIG, WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
 CLOSE = 0.05
 """How far, in logits' standard deviations, the two halves may be from the whole in bfloat16."""
 

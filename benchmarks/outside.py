@@ -20,8 +20,9 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -52,7 +53,8 @@ _FACTS = {"maneuver": "man", "contact": "contact.0", "areas": "areas.0"}
 """Kinds of fields whose facts the generator calls otherwise."""
 
 
-class Case(NamedTuple):
+@dataclass(frozen=True)
+class Case:
     """One text: what it tells, how the rules read it, what the model answers (None: nothing)."""
 
     id: str
@@ -60,7 +62,7 @@ class Case(NamedTuple):
     reading: Reading
     answered: Answered | None
 
-    @property
+    @cached_property
     def claims(self) -> tuple[Claims, Claims]:
         """Those of the rules and of the model."""
         return rules_claim(self.reading), model_claims(self.answered) if self.answered else {}

@@ -18,8 +18,8 @@ from torch import Tensor
 
 from mini import eye, told_heads
 from mini.grow import deepened, depth
+from mini.told_heads import MODEL as MODEL
 
-MODEL = "model.safetensors"
 STACKS = ("model.layers.", "visual.blocks.")
 """What a saved model calls its text layers and the blocks of its vision tower."""
 

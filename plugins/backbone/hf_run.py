@@ -74,7 +74,6 @@ class Running:
                 self.eos,
                 call.draft,
                 views=views,
-                keep_states=bool(self.told),
             )
             found = self.engine.generate(request)
         except records.DoesNotFit as fault:

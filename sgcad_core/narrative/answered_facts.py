@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sgcad_core.narrative.claims import UNKNOWN_P
+from sgcad_core.narrative.claims import UNKNOWN_P, Claim
 from sgcad_core.narrative.fusion import model_fact
 
 if TYPE_CHECKING:
     from sgcad_core.facts import Fact, Value
+    from sgcad_core.narrative.control import Control
     from sgcad_core.narrative.facts import CrashFacts
+    from sgcad_core.specs import Compass
 
 _OF_VEHICLES = {
     "kind": "kind", "heading": "heading", "maneuver": "maneuver", "exit": "exit_heading", "lane": "lane",
@@ -26,6 +28,19 @@ class Taken(NamedTuple):
     p: float
     told: float
     nats: float
+
+
+def as_taken(said: Claim, p: float) -> Taken:
+    """A claim that is right with this probability."""
+    return Taken(said.value, p, said.told, said.nats)
+
+
+def controlled(legs: Sequence[tuple[Compass, Control]]) -> tuple[Control, tuple[Compass, ...]]:
+    """A junction's control and the legs that it stops, of what controls each leg that is controlled."""
+    if not legs:
+        return "none", ()
+    kind = Counter(kind for _, kind in legs).most_common(1)[0][0]
+    return kind, tuple(leg for leg, _ in legs) if kind in ("stop", "yield") else ()
 
 
 def facts_of(key: str, one: Taken, crash: CrashFacts) -> Iterator[Fact]:
@@ -54,10 +69,10 @@ def _of_roads(name: str, of: str, value: Any) -> Iterator[tuple[str, Value]]:
     if name == "legs":
         yield "junction.legs", value
     elif name == "control":
-        kinds = Counter(kind for _, kind in value)
-        yield "junction.control", kinds.most_common(1)[0][0] if kinds else "none"
-        if kinds and not {"stop", "yield"}.isdisjoint(kinds):
-            yield "junction.stopped", tuple(leg for leg, _ in value)
+        kind, stopped = controlled(value)
+        yield "junction.control", kind
+        if stopped:
+            yield "junction.stopped", stopped
     elif name == "lanes":
         for leg, toward, away in value:
             yield f"roads.{leg}.lanes_forward", toward

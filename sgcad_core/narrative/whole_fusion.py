@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sgcad_core.facts import Fact
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
 from sgcad_core.narrative.answered_claims import model_claims
-from sgcad_core.narrative.answered_facts import Taken, facts_of
+from sgcad_core.narrative.answered_facts import Taken, as_taken, controlled, facts_of
 from sgcad_core.narrative.answered_layout import short_of_told
 from sgcad_core.narrative.claims import Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.narrative.compass import turned
@@ -79,7 +79,7 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
             continue
         p = model_right(weight, said.p, rule.told if rule is not None else 0.0, said.nats, said.told)
         if p >= (takes if rule is not None else FILLS):
-            found[key] = Taken(said.value, p, said.told, said.nats)
+            found[key] = as_taken(said, p)
     return found
 
 
@@ -136,12 +136,8 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
         ContactFacts(c.striker, c.struck, c.striker_area, c.struck_area, True) for c in said.behavior.contacts
     )
     crash = replace(crash, vehicles=vehicles, others=others, contacts=contacts, oriented=True, gap=None)
-    facts = [fact for key in sure for fact in facts_of(key, _as_heard(heard[key]), crash)]
+    facts = [fact for key in sure for fact in facts_of(key, as_taken(heard[key], heard[key].p), crash)]
     return _told(reading, crash, reading.roads, facts)
-
-
-def _as_heard(said: Claim) -> Taken:
-    return Taken(said.value, said.p, said.told, said.nats)
 
 
 def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Taken]) -> VehicleFacts:
@@ -217,7 +213,8 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
     if "legs" in used:
         facts = replace(facts, junction=_junction(facts, said.layout))
     if "control" in taken:
-        facts = replace(facts, junction=replace(facts.junction, **_controlled(taken["control"].value)))
+        kind, stopped = controlled(taken["control"].value)
+        facts = replace(facts, junction=replace(facts.junction, control=kind, stopped=stopped))
         used.add("control")
     for key in taken:
         name, _, axis = key.partition(".")
@@ -230,6 +227,8 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
 
 def _laid(facts: RoadFacts, keys: set[str], layout: RoadLayout) -> tuple[set[str], frozenset[str]]:
     """Which of these fields of the answered layout can be laid, and what comes with its legs."""
+    if not keys:
+        return set(), frozenset()
     ours = layout_of_facts(facts)
     short = short_of_told(facts, ours, layout)
     ramp = facts.junction.kind == RAMP
@@ -270,15 +269,6 @@ def _junction(facts: RoadFacts, layout: RoadLayout) -> Any:
     axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
     alone = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
     return replace(facts.junction, kind=kind, stem=alone if count == 3 else None, stated=False, stem_stated=False)
-
-
-def _controlled(value: Any) -> dict[str, Any]:
-    """A junction's control and the legs that it stops."""
-    controls = dict(value)
-    if not controls:
-        return {"control": "none", "stopped": ()}
-    kind = Counter(controls.values()).most_common(1)[0][0]
-    return {"control": kind, "stopped": tuple(controls) if kind in ("stop", "yield") else ()}
 
 
 def _with_road(facts: RoadFacts, axis: Compass, change: Callable[[RoadFact, Any], RoadFact], value: Any) -> RoadFacts:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -61,7 +62,7 @@ def test_reports_that_leave_out_much_leave_out_sides_lanes_and_maneuvers() -> No
 def test_what_is_not_told_and_given_up_is_counted() -> None:
     told = next(case for case in cases(TEXTS, PERFECT) if any(same_field(case)))
     key = next(key for key, differ in zip(told.claims[1], same_field(told), strict=True) if differ)
-    less = told._replace(truth={k: v for k, v in told.truth.items() if k != key})
+    less = replace(told, truth={k: v for k, v in told.truth.items() if k != key})
     for differ, taken in ((9.0, 1), (-9.0, 0)):
         weights = {less.id: {kind_of(key): Weights(differ=differ, slope=0.0)}}
         line = untold([less], weights)

@@ -34,8 +34,8 @@ class Said:
     picked: list[int]
     picked_with: list[float]
     picked_without: list[float]
-    states: torch.Tensor | None = None
-    """(chunk, hidden) of the row with context, where they are kept."""
+    states: Sequence[torch.Tensor] = ()
+    """Of the first row with context at every position, (hidden,); empty where nobody watches them."""
 
 
 @dataclass(eq=False)
@@ -146,7 +146,7 @@ class Job:
         DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
         """
         known = len(said.known_with)
-        self._note(said.known_with, said.known_without, said.states, range(known))
+        self._note(said.known_with, said.known_without, said.states[:known])
         if self.closing:
             return self._finish()
         guesses = self.guesses
@@ -161,8 +161,8 @@ class Job:
             if choices and choices[i] == 0:
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
             self._accept(said.picked[i], bool(choices) and choices[i] == 1)
-            at = range(known + i, known + i + 1)
-            self._note(said.picked_with[i : i + 1], said.picked_without[i : i + 1], said.states, at)
+            one = slice(i, i + 1)
+            self._note(said.picked_with[one], said.picked_without[one], said.states[known + i : known + i + 1])
             if i == right and not self._take(said.picked[i]):
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
         for row in self.rows:
@@ -218,16 +218,11 @@ class Job:
         self.draft.note(token)
 
     def _note(
-        self,
-        with_context: Sequence[float],
-        without_context: Sequence[float],
-        states: torch.Tensor | None,
-        places: range,
+        self, with_context: Sequence[float], without_context: Sequence[float], states: Sequence[torch.Tensor]
     ) -> None:
         self.answer.with_context += with_context
         self.answer.without_context += without_context
-        if states is not None:
-            self.answer.states += states[places.start : places.stop].float().cpu().unbind()
+        self.answer.states += states
 
     def _finish(self, complete: bool = True) -> None:
         self.answer.finished = complete

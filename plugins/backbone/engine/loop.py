@@ -40,7 +40,7 @@ class Engine:
         prefix_bytes: int = 1 << 30,
         watched: bool = False,
     ) -> None:
-        """`watched`: requests may keep states."""
+        """`watched`: answers keep the states that their tokens were chosen from."""
         self.model = model
         self.runner = Runner(model, family, apart, prefix_bytes)
         if watched:
@@ -181,8 +181,9 @@ class Engine:
             job.answer.model_calls += self.runner.calls - before
         found = heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
         for job, one in zip(jobs, found, strict=True):
-            if one.said is not None and job.request.keep_states:
-                one.said.states = self.runner.states.get(id(job.rows[0]))
+            states = self.runner.states.get(id(job.rows[0]))
+            if one.said is not None and states is not None:
+                one.said.states = states.float().cpu().unbind()
         return found
 
     def _vocabulary(self) -> int:

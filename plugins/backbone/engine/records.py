@@ -102,8 +102,6 @@ class Request:
     jump_forward: bool = True
     views: Sequence[Prompt] = ()
     """The evidence with its pictures laid out otherwise: what these rows predict is averaged with the first's."""
-    keep_states: bool = False
-    """Keep the state that each token was chosen from; the loop must watch them (`Engine`'s `watched`)."""
 
     @property
     def prompts(self) -> list[Prompt]:
@@ -122,7 +120,7 @@ class Answer:
     forced: list[bool] = field(default_factory=list)
     states: list[Any] = field(default_factory=list)
     """What the output embedding got of the first row with context before each token, (hidden,) in fp32 on the host;
-    empty unless asked for."""
+    empty unless the loop watches them."""
     finished: bool = False
     """False: max_new_tokens was reached, which only happens without a grammar."""
     prompt_tokens: int = 0

@@ -78,10 +78,18 @@ def plain_loop(name: str, rows: tuple[Prompt, Prompt], decoder: Decoder, limit: 
     return ids, seen
 
 
-def run(name: str, count: int, decoder: Decoder, limit: int, grammar: Grammar | None = None, **fields: Any) -> Any:
+def run(
+    name: str,
+    count: int,
+    decoder: Decoder,
+    limit: int,
+    grammar: Grammar | None = None,
+    watched: bool = False,
+    **fields: Any,
+) -> Any:
     """`count` reports at once through the engine: prompts, answers and recorded rows."""
     model, family, apart = model_of(name)
-    engine = Engine(model, family, apart, reports_at_once=8, watched=fields.get("keep_states", False))
+    engine = Engine(model, family, apart, reports_at_once=8, watched=watched)
     reports = [tiny.prompts(name, family, seed) for seed in range(count)]
     recorders = [Recorder(decoder) for _ in reports]
     requests = [
@@ -123,7 +131,7 @@ def test_a_batch_of_reports_equals_two_forwards_without_cache(name: str, alpha: 
 def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, held: bool) -> None:
     grammar = maker().grammar(tiny.SCHEMA) if held else None
     _, (first, *_), _ = run(name, 1, Cad(alpha=0.7), 60, grammar)
-    _, answers, _ = run(name, 3, Cad(alpha=0.7), 60, grammar, keep_states=True, draft=first.ids)
+    _, answers, _ = run(name, 3, Cad(alpha=0.7), 60, grammar, watched=True, draft=first.ids)
     embedding = model_of(name)[0].get_output_embeddings()
     for answer in answers:
         assert len(answer.states) == len(answer.ids) == len(answer.with_context)
