@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flows.chain import ask_of
+from flows.asking import ask_of
 from sgcad_core.config import Config
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask

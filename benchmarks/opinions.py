@@ -16,20 +16,19 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from benchmarks import kept
 from benchmarks.incidents import Incident
 from benchmarks.told_rows import WAYS, allowed, of_part
-from flows.chain import ask_of
+from benchmarks.weighing import calibration_error, logistic, versus
+from flows.asking import ask_of
 from sgcad_core.asking.opinion import seconded
 from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
-from sgcad_core.metrics.statistics import mcnemar
 from sgcad_core.narrative.fusion import decide, terms
 from sgcad_core.narrative.gist import FIELDS, RulesSay, alike, rules_say
 from sgcad_core.narrative.reading import read
@@ -37,10 +36,6 @@ from sgcad_core.opinion import Heard, Opinion, Value, Weights
 from sgcad_core.records import CrashReport
 
 AT_ONCE = 12
-BINS = 10
-RIDGE = 1.0
-"""Strength with which the fit holds to the weights of no knowledge: as much as one report of each kind."""
-STEPS = 200
 
 
 class Case(NamedTuple):
@@ -56,21 +51,17 @@ class Case(NamedTuple):
 
 def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None = None) -> list[Case]:
     """Every report of a part, or the first so many, asked or remembered; a model that can answers several at once."""
-    incidents = list(of_part(pool, part))[:most]
-    ask, known = ask_of(config), _remembered(out)
+    incidents = {one.id: one for one in list(of_part(pool, part))[:most]}
+    ask = ask_of(config)
 
-    def heard(incident: Incident) -> tuple[str, dict[str, Heard]]:
+    def heard(incident: Incident) -> dict[str, Any]:
         report = CrashReport(case=incident.id, narrative=incident.text)
         opinion = seconded(report, config.second_opinion, ask).opinion
-        return incident.id, dict(opinion.heard) if opinion else {}
+        return {key: one.model_dump() for key, one in opinion.heard.items()} if opinion else {}
 
-    with out.open("a", encoding="utf-8") as file, ThreadPoolExecutor(AT_ONCE) as pool_of_threads:
-        for id, found in pool_of_threads.map(heard, (one for one in incidents if one.id not in known)):
-            known[id] = found
-            row = {"id": id, "heard": {key: one.model_dump() for key, one in found.items()}}
-            file.write(json.dumps(row) + "\n")
-            file.flush()
-    return [_case(one, known[one.id]) for one in incidents]
+    known = kept.answers(incidents, heard, "heard", out, AT_ONCE)
+    said = {id: {key: Heard(**one) for key, one in row.items()} for id, row in known.items()}
+    return [_case(one, said[id]) for id, one in incidents.items()]
 
 
 def _case(incident: Incident, heard: dict[str, Heard]) -> Case:
@@ -87,12 +78,6 @@ def codes(truth: Any) -> dict[str, tuple[Value, ...]]:
     if truth["subject"]["manoeuvre"] == "parked":
         found["subject"] = (*WAYS["parked"], "stopped")
     return found
-
-
-def _remembered(out: Path) -> dict[str, dict[str, Heard]]:
-    lines = out.read_text(encoding="utf-8").splitlines() if out.is_file() else []
-    rows = [json.loads(line) for line in lines]
-    return {row["id"]: {key: Heard(**one) for key, one in row["heard"].items()} for row in rows}
 
 
 def right(value: Value | None, some: Iterable[Value]) -> bool:
@@ -123,28 +108,6 @@ def fit(cases: Sequence[Case], key: str) -> Weights:
     return Weights(differ=differ, slope=slope, told=told, agree=round(float(agree), 3))
 
 
-def logistic(rows: NDArray[np.float64], marks: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Newton's steps, halved while they lead up, for a ridge about (0, 1, 0, ...); columns: 1, logit of p, told, ..."""
-    begun = np.zeros(rows.shape[1])
-    begun[1] = 1.0
-
-    def cost(at: NDArray[np.float64]) -> float:
-        return float(np.logaddexp(0, rows @ at).sum() - marks @ (rows @ at) + RIDGE / 2 * ((at - begun) ** 2).sum())
-
-    found = begun.copy()
-    for _ in range(STEPS if len(rows) else 0):
-        share = 1 / (1 + np.exp(-np.clip(rows @ found, -30, 30)))
-        slope = rows.T @ (share - marks) + RIDGE * (found - begun)
-        bend = (rows * (share * (1 - share))[:, None]).T @ rows + RIDGE * np.eye(len(begun))
-        step = np.linalg.solve(bend, slope)
-        while np.abs(step).max() > 1e-8 and cost(found - step) > cost(found):
-            step /= 2
-        if np.abs(step).max() <= 1e-8:
-            break
-        found -= step
-    return found
-
-
 # ------------------------------------------------------------------ table
 def fused_marks(cases: Sequence[Case], key: str, weights: Callable[[int], Weights]) -> list[tuple[float, bool]]:
     """Confidence of the fused value and whether it is right, of every report with a code."""
@@ -155,15 +118,6 @@ def fused_marks(cases: Sequence[Case], key: str, weights: Callable[[int], Weight
             one = decide(opinion, case.rules).get(key)
             found.append((one.p, right(one.value, case.allowed[key])) if one and not case.refused else (0.0, False))
     return found
-
-
-def calibration_error(marks: Sequence[tuple[float, bool]]) -> float:
-    """Expected calibration error over `BINS` bins of equal width."""
-    total = 0.0
-    for low in range(BINS):
-        inside = [(p, hit) for p, hit in marks if min(int(p * BINS), BINS - 1) == low]
-        total += abs(sum(p for p, _ in inside) - sum(hit for _, hit in inside))
-    return total / max(1, len(marks))
 
 
 def table(cases: Sequence[Case]) -> list[str]:
@@ -184,14 +138,6 @@ def table(cases: Sequence[Case]) -> list[str]:
         gain = versus(list(zip(ours, both, strict=True)))
         lines.append(f"{key:14s} {len(some):4d} {shares}  {calibration_error(marks):.3f}  {gain}")
     return lines
-
-
-def versus(pairs: Sequence[tuple[bool, bool]]) -> str:
-    """How many the second has right and the first wrong, the other way round, and the exact McNemar test's p."""
-    better = sum(b and not a for a, b in pairs)
-    worse = sum(a and not b for a, b in pairs)
-    before, after = zip(*pairs, strict=True) if pairs else ((), ())
-    return f"+{better} -{worse}, {mcnemar(before, after):.3f}"
 
 
 def main() -> None:

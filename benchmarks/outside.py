@@ -1,16 +1,20 @@
 """Reports that other writers told from fact sheets: what share is read right by the rules, the model and both?
 
     python -m benchmarks.outside [--config fused.yaml] [--answers FILE.jsonl] [--fit configs/prompts/whole.json]
+    python -m benchmarks.outside --drawings ...      each report also with a made drawing of its crash
     python -m benchmarks.outside --rules [--folder mini/generator/written] [--show KIND]
 
 `benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
 nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
-only totals are. The reports in `sparse/` leave out much of their crash on purpose: sides, lanes, maneuvers. `--fit`
-fits the weights of the combiner on the seen half; its own row there is cross-fitted. Fields are those of
-`sgcad_core.narrative.claims`; those that the text does not tell do not count. "fused, p": how many the combiner has
-right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected calibration
-error of the combiner where both have a value, in ten bins. The model's answers are kept in --answers. `--rules` asks no
-model; with `--show` it prints the texts in which the rules have a kind of field wrong.
+only totals are. The reports in `sparse/` leave out much of their crash on purpose: sides, lanes, maneuvers. Those in
+`late/` do so in part, and no rule was mended on them. With `--drawings` every report is read a second time, with a made
+drawing of its crash (`mini.renderer`); what the drawing shows then counts as told.
+
+Fields are those of `sgcad_core.narrative.claims`; those that are not told do not count. "fused, p": how many the
+combiner has right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected
+calibration error of the combiner where both have a value, in ten bins. `--fit` fits the combiner's weights on the seen
+half, on all that is read; its own rows there are cross-fitted. The model's answers are kept in --answers. `--rules`
+asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
 """
 
 from __future__ import annotations
@@ -19,109 +23,26 @@ import argparse
 import json
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.incidents import by_hash
-from benchmarks.opinions import calibration_error, logistic, versus
-from flows.chain import ask_of
-from mini.generator.report import Report
-from mini.generator.written import Written, load, report_of
-from sgcad_core.asking.opinion import load_weights, whole
-from sgcad_core.config import load as load_config
+from benchmarks.outside_cases import DRAWN, Case, asked, cases, with_drawing
+from benchmarks.weighing import SIGNS, calibration_error, logistic, versus
+from mini.generator.written import Written, load
+from sgcad_core.asking.opinion import load_weights
 from sgcad_core.errors import ConfigError
-from sgcad_core.narrative.answered_claims import model_claims
-from sgcad_core.narrative.claims import KINDS, Claim, Claims, kind_of, rules_claim
-from sgcad_core.narrative.compass import COMPASS
+from sgcad_core.narrative.claims import KINDS, Claim, kind_of, rules_claim
 from sgcad_core.narrative.fusion import FILLS, model_right, terms
-from sgcad_core.narrative.reading import Reading, read
 from sgcad_core.narrative.whole_fusion import agree, decided, same
 from sgcad_core.narrative.whole_fusion import whole as fused
-from sgcad_core.opinion import WHOLE, Answered, Opinion, Weights
-from sgcad_core.records import CrashReport
-from sgcad_core.specs import BehaviorSpec, RoadLayout
+from sgcad_core.opinion import WHOLE, Opinion, Weights
 
 FOLDER = Path(__file__).parent / "outside"
-SPARSE = "sparse"
-"""Folder within it: reports that leave out much of their crash."""
-AT_ONCE = 8
-_FACTS = {"maneuver": "man", "contact": "contact.0", "areas": "areas.0"}
-"""Kinds of fields whose facts the generator calls otherwise."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """One text: what it tells, how the rules read it, what the model answers (None: nothing)."""
-
-    id: str
-    truth: Claims
-    reading: Reading
-    answered: Answered | None
-
-    @cached_property
-    def claims(self) -> tuple[Claims, Claims]:
-        """Those of the rules and of the model."""
-        return rules_claim(self.reading), model_claims(self.answered) if self.answered else {}
-
-    @property
-    def blind(self) -> bool:
-        """Whether only totals of it are looked at."""
-        return by_hash(self.id) % 2 == 1
-
-
-# ------------------------------------------------------------------ cases
-def truth_of(one: Written) -> Claims:
-    """What the text tells, of all that the crash has."""
-    report = report_of(one, 0)
-    answered = Answered(layout=RoadLayout(**report.road), behavior=BehaviorSpec(**(report.behavior or {})))
-    return {key: claim for key, claim in model_claims(answered).items() if _told(key, report)}
-
-
-def _told(key: str, report: Report) -> bool:
-    kind, _, of = key.partition(".")
-    if kind in ("contact", "areas", "legs", "curve", "control", "light", "weather", "surface"):
-        return _FACTS.get(kind, kind) in report.stated
-    if of in COMPASS:
-        axis = str(COMPASS.index(of) % 4)
-        turning = any(leg.turns_in for leg in report.crash.legs if leg.bearing % 4 == int(axis))
-        needed = {f"{kind}.{axis}"} | ({f"turns.{axis}"} if kind == "lanes" and turning else set())
-        return needed <= report.stated
-    return f"{_FACTS.get(kind, kind)}.{of}" in report.stated
-
-
-def cases(texts: Sequence[Written], answers: Mapping[str, Answered | None]) -> list[Case]:
-    """Texts with both readers' claims."""
-    return [Case(one.id, truth_of(one), read(one.text), answers.get(one.id)) for one in texts]
-
-
-def asked(
-    texts: Sequence[Written], config: str, overrides: Sequence[str], kept: Path | None
-) -> dict[str, Answered | None]:
-    """The model's answers by id; those in the file `kept` are not asked for again."""
-    built = load_config(config, tuple(overrides))
-    ask, known = ask_of(built), _remembered(kept)
-
-    def answer(one: Written) -> tuple[str, Answered | None]:
-        opinion = whole(CrashReport(case=one.id, narrative=one.text), ask).opinion
-        return one.id, opinion.answered if opinion else None
-
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        for id, found in pool.map(answer, [one for one in texts if one.id not in known]):
-            known[id] = found
-            if kept is not None:
-                with kept.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps({"id": id, "answered": found and found.model_dump(mode="json")}) + "\n")
-    return known
-
-
-def _remembered(kept: Path | None) -> dict[str, Answered | None]:
-    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.is_file() else []
-    rows = map(json.loads, lines)
-    return {row["id"]: Answered(**row["answered"]) if row["answered"] else None for row in rows}
+PARTS = {"": "", "sparse": ", reports that leave out much", "late": ", reports that no rule was mended on"}
+"""Folders within it and what is in them."""
+WITH_DRAWING = ", with drawings"
 
 
 # ------------------------------------------------------------------ weights
@@ -150,7 +71,7 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
 
 
 def _weights(rows: Sequence[tuple[float, ...]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
-    differ, slope, told, nats, tells = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks)))
+    differ, slope, told, nats, tells = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks), SIGNS))
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
     return Weights(differ=differ, slope=slope, told=told, nats=nats, tells=tells, agree=round(agree, 3))
 
@@ -231,9 +152,22 @@ def rules_alone(texts: Sequence[Written], show: str | None) -> Iterator[str]:
 
 def crossed(some: Sequence[Case]) -> dict[str, dict[str, Weights]]:
     """For each case weights that were fitted without its fold, five folds by the hash of the id."""
-    folds = {case.id: by_hash(case.id + "fold") % 5 for case in some}
+    folds = {case.id: by_hash(case.id.removesuffix(DRAWN) + "fold") % 5 for case in some}
     fitted = {k: fit(case for case in some if folds[case.id] != k) for k in range(5)}
     return {id: fitted[k] for id, k in folds.items()}
+
+
+def texts_of(folder: Path) -> dict[str, tuple[Written, ...]]:
+    """What is in a folder of reports and in its PARTS, by what they are."""
+    return {name: load(folder / part) for part, name in PARTS.items() if (folder / part).is_dir()}
+
+
+def by_part(some: Sequence[Case], texts: Mapping[str, Sequence[Written]]) -> Iterator[tuple[str, list[Case]]]:
+    """Texts alone by what they are, and all that are read with drawings."""
+    for name, found in texts.items():
+        ids = {one.id for one in found}
+        yield name, [case for case in some if case.id in ids]
+    yield WITH_DRAWING, [case for case in some if case.id.endswith(DRAWN)]
 
 
 def main() -> None:
@@ -244,31 +178,29 @@ def main() -> None:
     parser.add_argument("--set", action="append", default=[], dest="overrides", help="key=value, as for sgcad")
     parser.add_argument("--answers", type=Path, help="a file that keeps the model's answers")
     parser.add_argument("--fit", type=Path, help="write the weights here")
+    parser.add_argument("--drawings", action="store_true", help="each report also with a drawing of its crash")
     parser.add_argument("--rules", action="store_true", help="the rules alone")
     parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
     options = parser.parse_args()
     try:
-        sparse = load(options.folder / SPARSE) if (options.folder / SPARSE).is_dir() else ()
-        texts = (*load(options.folder), *sparse)
+        parts = texts_of(options.folder)
+        texts = tuple(one for some in parts.values() for one in some)
         if options.rules:
             print("\n".join(rules_alone(texts, options.show)))  # noqa: T201 - a command prints
             return
+        texts = (*texts, *map(with_drawing, texts if options.drawings else ()))
         all_cases = cases(texts, asked(texts, options.config, options.overrides, options.answers))
     except (ConfigError, ValueError) as fault:
         raise SystemExit(str(fault)) from fault
     seen, blind = ([case for case in all_cases if case.blind == half] for half in (False, True))
     shipped = load_weights(WHOLE, KINDS) if options.fit is None else fit(seen)
-    leaving_out = {one.id for one in sparse}
-    parts = (
+    halves = (
         ("seen half, weights cross-fitted", seen, crossed(seen)),
         ("blind half", blind, {case.id: shipped for case in blind}),
     )
-    for name, some, weights in parts:
-        for kind, part in (
-            (name, [case for case in some if case.id not in leaving_out]),
-            (f"{name}, reports that leave out much", [case for case in some if case.id in leaving_out]),
-        ):
-            lines = [f"{kind}: {len(part)} texts", *table(part, weights), "", untold(part, weights), ""]
+    for half, some, weights in halves:
+        for name, part in by_part(some, parts):
+            lines = [f"{half}{name}: {len(part)} texts", *table(part, weights), "", untold(part, weights), ""]
             print("\n".join(lines if part else []))  # noqa: T201 - a command prints
     if options.fit is not None:
         weights = {kind: one.model_dump() for kind, one in shipped.items()}

@@ -25,8 +25,8 @@ from scipy.optimize import minimize
 from scipy.sparse import csr_matrix, hstack
 
 from benchmarks.incidents import Incident, by_hash
-from benchmarks.opinions import calibration_error
 from benchmarks.told_rows import allowed, of_part
+from benchmarks.weighing import calibration_error
 from sgcad_core.narrative.gist import shown_alike
 from sgcad_core.narrative.learned import (
     READING_WEIGHT,

@@ -43,6 +43,8 @@ MIXED = {"text": 35.0, "image": 28.0, "both": 24.0, "none": 7.0, "thin": 2.5, "n
 """More rows of one source than are measured (`MODES`): where both tell a value, there is least left to learn."""
 WORDS = {"text": 66.0, "both": 14.0, "image": 8.0, "none": 5.0, "thin": 3.0, "no_crash": 2.0, "conflict": 2.0}
 """Mostly narratives, with so many drawings that these are not unlearned."""
+DRAWN = {"image": 52.0, "both": 20.0, "text": 14.0, "none": 7.0, "thin": 3.0, "no_crash": 2.0, "conflict": 2.0}
+"""Mostly drawings."""
 STAGES: dict[str, dict[str, float]] = {
     "text": TEXT_MODES,
     "pictures": {"image": 1.0},
@@ -50,13 +52,20 @@ STAGES: dict[str, dict[str, float]] = {
     "all": MIXED,
     "gist": WORDS,
     "written": MIXED,
+    "drawings": DRAWN,
 }
 """Weights of the modes that a stage of training shows."""
 GISTS = {"told": 0.52, "incident": 0.2, "made": 0.16}
 """Shares of the rows of the stage "gist" that ask the gist alone: of told texts, made incidents and made narratives."""
 
-WRITTEN = 0.5
-"""Share of the rows of the stage "written" that are narratives of writers; the others are made ones of every kind."""
+WRITTEN = {"written": 0.5, "drawings": 0.12}
+"""Shares of the rows of a stage that are narratives of writers; the others are made ones."""
+RARE = 0.6
+"""Share of the drawings of the stage "drawings" that show what few do: turn lanes, center turn lanes, or an actor of a
+kind that is seldom seen."""
+RARE_TRIES = 12
+RARE_STEP = 1_000_000_000
+"""Seeds from one try to the next, above all that are counted through."""
 
 PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))
 """Shares of the budget of a run that goes through the stages by itself."""
@@ -96,13 +105,35 @@ def one_row(coder: Coder, seed: int, progress: float, stage: str = "all", told: 
 def _report(rng: Random, seed: int, progress: float, stage: str) -> Report:
     """The report of a seed: a writer's, or a made one that is not too long."""
     length = length_for(rng, stage, progress)
-    if stage == "written" and Random(f"{seed} writer").random() < WRITTEN:
+    if Random(f"{seed} writer").random() < WRITTEN.get(stage, 0.0):
         return some_report(shipped(), seed)
+    if stage == "drawings" and Random(f"{seed} rare").random() < RARE:
+        seed = _rare(seed)
     while True:
         report = make_report(seed, False, length, STAGES[stage])
         if len(report.narrative) < MAX_TEXT * 4.6 or length < 0.05:
             return report
         length *= 0.7
+
+
+def _rare(seed: int) -> int:
+    """A seed, made from this one, whose drawing shows something rare or whose report has no drawing at all; the last
+    one tried where none does."""
+    tried = seed
+    for number in range(RARE_TRIES):
+        tried = seed + number * RARE_STEP
+        report = make_report(tried, False, 0.0, DRAWN)
+        if not report.has_image or shows_rare(report):
+            break
+    return tried
+
+
+def shows_rare(report: Report) -> bool:
+    """Whether a report's drawing shows turn lanes, center turn lanes, or a kind of actor that is seldom seen."""
+    crash = report.shown or report.crash
+    arrows = any(leg.turns_in and f"turns.{leg.bearing % 4}" in report.drawn for leg in crash.legs)
+    seldom = any(actor.vehicle and f"kind.{actor.id}" in report.drawn for actor in crash.actors)
+    return arrows or seldom or any(leg.twltl for leg in crash.legs)
 
 
 def _gist(rng: Random, seed: int, told: Sequence[Told]) -> Told | None:

@@ -41,7 +41,8 @@ class Options:
     """Share of the budget with the full learning rate."""
     stage: str = "auto"
     """What is shown: "pictures" (drawings, no answers: the tower alone), "text" (narratives), "all", these in turn
-    ("auto"), "words" (everything, but mostly narratives), "written" (half of it narratives of writers), or "gist" (the
+    ("auto"), "words" (everything, but mostly narratives), "written" (half of it narratives of writers), "drawings"
+    (mostly drawings, most of which show turn lanes or kinds of vehicles that are seldom seen), or "gist" (the
     gist of told texts, made incidents and made narratives, beside a quarter of "words")."""
     told: str = ""
     """File of texts of which a part is known (`mini.gist.load`), for the stage "gist"."""
@@ -59,7 +60,7 @@ class Options:
 
 CHOICES = {
     "dtype": ("", "bfloat16", "float32"),
-    "stage": ("auto", "pictures", "text", "words", "written", "all", "gist"),
+    "stage": ("auto", "pictures", "text", "words", "written", "drawings", "all", "gist"),
 }
 
 

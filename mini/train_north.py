@@ -21,6 +21,7 @@ from mini.generator.report import make_report
 from mini.north import FILE, SHEET, STRIDE, Floats, NorthFinder, load, sheet
 from mini.renderer.draw import Drawing, draw_labeled
 from mini.tags import PICTURE
+from plugins.precision import native_dtype
 
 NORTHS = {index for name, index in PICTURE.items() if name.startswith("north=")}
 SEEDS, HELD_OUT = 70_000_000, 60_000_000
@@ -93,12 +94,13 @@ def train(out: Path, budget: float, batch: int = 16, peak: float = 4e-3, steps: 
     """Train for `budget` seconds or `steps`, from the weights in `out` if there are some; written at the end."""
     torch.manual_seed(0)
     finder, begun, step = load(out) or NorthFinder(), time.monotonic(), 0
-    feed = lessons(SEEDS + int(finder.seen))
-    finder.train()
+    feed, fast = lessons(SEEDS + int(finder.seen)), native_dtype("cpu") == torch.bfloat16
+    finder.to(memory_format=torch.channels_last).train()  # type: ignore[call-overload]
     optimizer = torch.optim.AdamW(finder.parameters(), lr=peak, weight_decay=1e-4)
     while (spent := (time.monotonic() - begun) / budget) < 1 and step < steps:
         sheets, wanted = zip(*(next(feed) for _ in range(batch)), strict=True)
-        loss = loss_of(finder, torch.from_numpy(np.stack(sheets)), torch.from_numpy(np.stack(wanted)))
+        with torch.autocast("cpu", torch.bfloat16, enabled=fast):
+            loss = loss_of(finder, torch.from_numpy(np.stack(sheets)), torch.from_numpy(np.stack(wanted)))
         optimizer.zero_grad()
         loss.backward()
         for group in optimizer.param_groups:
@@ -109,7 +111,7 @@ def train(out: Path, budget: float, batch: int = 16, peak: float = 4e-3, steps: 
         if step % 25 == 0:
             sys.stderr.write(json.dumps({"step": step, "spent": round(spent, 3), "loss": round(loss.item(), 4)}) + "\n")
     finder.eval()
-    save_file(finder.state_dict(), out / FILE)
+    save_file({k: v.contiguous() for k, v in finder.state_dict().items()}, out / FILE)
     return finder
 
 

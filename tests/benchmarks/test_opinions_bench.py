@@ -9,8 +9,9 @@ import yaml
 
 from benchmarks import opinions
 from benchmarks.incidents import Incident, is_blind
-from benchmarks.opinions import Case, calibration_error, fit, table
+from benchmarks.opinions import Case, fit, table
 from benchmarks.told_rows import allowed, of_part, row
+from benchmarks.weighing import calibration_error
 from mini.told import load
 from sgcad_core.narrative.fusion import model_right
 from sgcad_core.narrative.gist import RulesSay

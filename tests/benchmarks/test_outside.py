@@ -7,20 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import outside
-from benchmarks.outside import (
-    Case,
-    cases,
-    confidence,
-    crossed,
-    fit,
-    right,
-    rules_alone,
-    table,
-    truth_of,
-    untold,
-    versus,
-)
+from benchmarks import outside, outside_cases
+from benchmarks.outside import confidence, crossed, fit, right, rules_alone, table, untold
+from benchmarks.outside_cases import Case, cases, truth_of
+from benchmarks.weighing import versus
 from mini.generator.written import Written, load, report_of, shipped
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.claims import Claim, kind_of
@@ -46,13 +36,13 @@ def rows(lines: list[str]) -> Mapping[str, list[float]]:
 
 
 def test_measured_narratives_are_others_than_those_that_train() -> None:
-    measured = [one.id for one in (*load(outside.FOLDER), *load(outside.FOLDER / outside.SPARSE))]
+    measured = [one.id for some in outside.texts_of(outside.FOLDER).values() for one in some]
     assert len(set(measured)) == len(measured)
     assert not set(measured) & {one.id for one in shipped()}
 
 
 def test_reports_that_leave_out_much_leave_out_sides_lanes_and_maneuvers() -> None:
-    found = load(outside.FOLDER / outside.SPARSE)
+    found = load(outside.FOLDER / "sparse")
     lacking = {fact: sum(fact not in one.told for one in found) for fact in ("areas.0", "contact.0", "man.V1")}
     assert min(lacking.values()) > len(found) / 4
     sides = [case for case in cases([one for one in found if "areas.0" not in one.told], {}) if not case.blind]
@@ -146,8 +136,8 @@ def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkey
         asked.append(report.case)
         return report.model_copy(update={"opinion": Opinion(answered=answer(some[report.narrative]))})
 
-    monkeypatch.setattr(outside, "whole", whole)
-    monkeypatch.setattr(outside, "ask_of", lambda config: None)
+    monkeypatch.setattr(outside_cases, "whole", whole)
+    monkeypatch.setattr(outside_cases, "ask_of", lambda config: None)
     kept, weights = tmp_path / "answers.jsonl", tmp_path / "weights.json"
     argv = ["outside", "--folder", str(folder), "--answers", str(kept), "--fit", str(weights)]
     monkeypatch.setattr("sys.argv", argv)

@@ -1,0 +1,42 @@
+"""Answers of a model that a benchmark keeps in a file of JSON lines, so that a broken run goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+def answers(
+    asked: Mapping[str, T], answer: Callable[[T], Any], key: str, file: Path | None, at_once: int
+) -> dict[str, Any]:
+    """What `answer` says of each, by id; JSON values. Those that stand in the file, as {"id": ..., key: ...}, are not
+    asked for again; the others are, so many at once, and are written there as they come. No file: nothing is kept."""
+    known = _remembered(file, key)
+    new = [id for id in asked if id not in known]
+    with ThreadPoolExecutor(at_once) as pool:
+        for id, found in zip(new, pool.map(lambda id: answer(asked[id]), new), strict=True):
+            known[id] = found
+            if file is not None:
+                with file.open("a", encoding="utf-8") as lines:
+                    lines.write(json.dumps({"id": id, key: found}) + "\n")
+    return known
+
+
+def _remembered(file: Path | None, key: str) -> dict[str, Any]:
+    """Raises ValueError with file and line for a line that is not of this form."""
+    found = {}
+    lines = file.read_text(encoding="utf-8").splitlines() if file is not None and file.is_file() else []
+    for number, line in enumerate(lines, 1):
+        try:
+            row = json.loads(line)
+            found[row["id"]] = row[key]
+        except (ValueError, KeyError, TypeError) as fault:
+            raise ValueError(
+                f"{file}, line {number}: no kept answer ({fault!r}); delete the line and it is asked for again"
+            ) from fault
+    return found
