@@ -18,6 +18,7 @@ from pathlib import Path
 
 from sgcad_core import settings
 from sgcad_core.config import Config
+from sgcad_core.digest import file_sha256
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.interfaces import Plugin
 from sgcad_core.opinion import LEARNED, WEIGHTS
@@ -223,8 +224,7 @@ def _files_digest(files: Iterable[Path], root: Path, most: float = math.inf) -> 
                 raise OSError("no regular file")
             if file.stat().st_size > most:  # no reader takes it
                 raise OSError(f"{file.stat().st_size} bytes")
-            with file.open("rb") as content:
-                found.update(hashlib.file_digest(content, "sha256").digest())
+            found.update(bytes.fromhex(file_sha256(file)))
         except OSError as fault:  # the reader will say what is wrong with it
             found.update(str(fault).encode())
     return found.hexdigest()

@@ -120,7 +120,7 @@ def _batch(
     """Check everything, then start."""
     from flows import batch as batches
 
-    made = batches.batch_of(found, config or [Path(settings.default_config())], out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
+    made = batches.batch_of(found, settings.configs_or_default(config), out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
     from flows import start
 
     raise typer.Exit(_carry_out(made, lambda watch: start.evaluate(made, watch.ended, on_turn=watch.turn))[0])

@@ -133,7 +133,7 @@ def evaluate_flow(
     jobs: int | None = None,
 ) -> dict[str, int]:
     """A batch from plain parameters, for deployments; how many cases ended in which status."""
-    paths = [Path(c) for c in configs or [settings.default_config()]]
+    paths = settings.configs_or_default(configs)
     batch = batch_of(cases.cases_in([Path(f) for f in folders]), paths, Path(out), overrides or (), jobs)
     plan, crew = batch.plan(), Crew(batch)
     counts: dict[str, int] = {}

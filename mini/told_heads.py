@@ -6,7 +6,6 @@ constant last. The file names the weights of the model that it was fitted on, si
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -15,6 +14,8 @@ from safetensors.torch import save_file
 from torch import Tensor
 from torch.nn import functional as F
 
+from sgcad_core.digest import file_sha256
+
 FILE = "told.safetensors"
 MODEL = "model.safetensors"
 DECAY = 1e-3
@@ -22,9 +23,7 @@ DECAY = 1e-3
 
 def save(heads: Mapping[str, Tensor], folder: Path) -> None:
     """Write the heads beside the weights that they were fitted on."""
-    with (folder / MODEL).open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-    save_file(dict(heads), folder / FILE, metadata={"format": "pt", "model": digest})
+    save_file(dict(heads), folder / FILE, metadata={"format": "pt", "model": file_sha256(folder / MODEL)})
 
 
 def fit(seen: Tensor, told: Tensor) -> Tensor:

@@ -9,7 +9,7 @@ import importlib.util
 import os
 import shutil
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -41,6 +41,11 @@ def quiet_libraries() -> None:
 def default_config() -> str:
     """The config of commands that are given none."""
     return environment("SGCAD_CONFIG") or "fused.yaml"
+
+
+def configs_or_default(configs: Sequence[str | Path] | None) -> list[Path]:
+    """The configs that a command is given, else the default one."""
+    return [Path(config) for config in configs or [default_config()]]
 
 
 def environment(name: str) -> str:

@@ -72,7 +72,7 @@ def nightly_flow(
     what needs none is measured. Cases that nothing has changed for are not repeated unless `fresh`. `accept` makes this
     run the measure.
     """
-    paths = [Path(c) for c in configs or [settings.default_config()]]
+    paths = settings.configs_or_default(configs)
     batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")

@@ -7,7 +7,6 @@ digest, so that only the first start pays for it. Knows no prompt and no decoder
 
 from __future__ import annotations
 
-import hashlib
 import os
 import shutil
 import struct
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from sgcad_core import settings
+from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
 
 PACKAGE = "package:"
@@ -48,8 +48,7 @@ def digest(name: str) -> str:
         file = file_of(name)
     except (ConfigError, MissingTool):
         return ""
-    with file.open("rb") as opened:
-        return hashlib.file_digest(opened, "sha256").hexdigest()[:16]
+    return file_sha256(file)[:16]
 
 
 def unpacked(name: str) -> Path:

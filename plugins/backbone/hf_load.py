@@ -6,7 +6,6 @@ which ask for it on behalf of videos, are not used. Knows no prompt and no decod
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -21,6 +20,7 @@ from safetensors import SafetensorError, safe_open
 
 from plugins.backbone import hf_adapter
 from sgcad_core import settings
+from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
 
@@ -142,10 +142,7 @@ def _told(place: str, model: Any) -> dict[str, torch.Tensor]:
 
 
 def _digest(file: Path) -> str:
-    if not file.is_file():
-        return ""
-    with file.open("rb") as opened:
-        return hashlib.file_digest(opened, "sha256").hexdigest()
+    return file_sha256(file) if file.is_file() else ""
 
 
 def _quantization(name: str) -> Any:

@@ -6,7 +6,6 @@ and no database.
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import importlib.util
 import time
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core import settings
+from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
 
 Vectors = NDArray[np.float32]
@@ -118,8 +118,7 @@ def minilm_folder() -> Path:
 def check_digest(file: Path, sha256: str) -> None:
     """Raises MissingTool where a file is absent or not the one that was published."""
     try:
-        with file.open("rb") as content:
-            found = hashlib.file_digest(content, "sha256").hexdigest()
+        found = file_sha256(file)
     except OSError as fault:
         raise MissingTool(f"{file}: cannot be read ({fault.strerror}); install the package again") from fault
     if found != sha256:
