@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import torch
@@ -26,12 +27,15 @@ from plugins.precision import native_dtype
 NORTHS = {index for name, index in PICTURE.items() if name.startswith("north=")}
 SEEDS, HELD_OUT = 70_000_000, 60_000_000
 """Where the seeds of its drawings begin; the model's own are far below."""
+SHRUNK = (0.6, 1.0)
+"""Drawings that train are shrunk by that much, since real ones are several times as large as made ones."""
 
 
-def lesson(drawing: Drawing, turned: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Sheet and class of every place (4: no arrow, -1: too near to tell) of a drawing, turned a further `turned`."""
+def lesson(drawing: Drawing, turned: int, shrink: float = 1.0) -> tuple[Floats, NDArray[np.int64]]:
+    """Sheet and class of every place (4: no arrow, -1: too near to tell) of a drawing, turned a further `turned` and
+    shrunk."""
     image = picture.turn_upright(drawing.image, turned)
-    ink, scale = sheet(image)
+    ink, scale = sheet(image, shrink)
     wanted = np.full((SHEET // STRIDE, SHEET // STRIDE), 4)
     quarters = picture.quarters_of(drawing.turn - turned * np.pi / 2)
     for shape in drawing.shapes:
@@ -51,7 +55,7 @@ def lessons(seed: int) -> Iterator[tuple[Floats, NDArray[np.int64]]]:
     while True:
         drawing = draw_labeled(make_report(seed, modes={"image": 1.0}))
         for turned in (seed % 4, (seed + 2) % 4):
-            yield lesson(drawing, turned)
+            yield lesson(drawing, turned, Random(f"{seed} {turned}").uniform(*SHRUNK))
         seed += 1
 
 

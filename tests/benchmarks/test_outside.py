@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks import outside, outside_cases
 from benchmarks.outside import confidence, crossed, fit, right, rules_alone, table, untold
-from benchmarks.outside_cases import Case, cases, truth_of
+from benchmarks.outside_cases import Case, cases, evidence_of, truth_of, with_drawing
 from benchmarks.weighing import versus
 from mini.generator.written import Written, load, report_of, shipped
 from sgcad_core.narrative.answered_claims import model_claims
@@ -47,6 +47,26 @@ def test_reports_that_leave_out_much_leave_out_sides_lanes_and_maneuvers() -> No
     assert min(lacking.values()) > len(found) / 4
     sides = [case for case in cases([one for one in found if "areas.0" not in one.told], {}) if not case.blind]
     assert not any(case.claims[0]["areas"].told for case in sides if "areas" in case.claims[0])
+
+
+def test_with_its_drawing_a_report_tells_what_the_drawing_shows_too() -> None:
+    for one in TEXTS:
+        alone, both = truth_of(one), truth_of(with_drawing(one))
+        assert alone.keys() <= both.keys()
+        assert {"legs", *(f"heading.{a.id}" for a in one.crash.actors if a.vehicle)} <= both.keys()
+        assert not {"light", "weather"} & (both.keys() - alone.keys())
+    assert any(truth_of(one).keys() < truth_of(with_drawing(one)).keys() for one in TEXTS)
+
+
+def test_a_drawing_follows_from_the_report_and_stays_in_its_half() -> None:
+    one = with_drawing(TEXTS[0])
+    drawn, again = evidence_of(one).diagrams, evidence_of(one).diagrams
+    assert len(drawn) == 1
+    assert drawn == again
+    assert not evidence_of(TEXTS[0]).diagrams
+    of_alone, of_drawn = cases([TEXTS[0], one], {})
+    assert of_alone.blind == of_drawn.blind
+    assert set(map(str, crossed([of_alone, of_drawn]))) == {of_alone.id, of_drawn.id}
 
 
 def test_what_is_not_told_and_given_up_is_counted() -> None:

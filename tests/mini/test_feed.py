@@ -1,0 +1,34 @@
+"""Rows of a stage: the same seed gives the same row, and the stage "drawings" shows what others rarely show."""
+
+from random import Random
+
+from mini import feed
+from mini.generator.report import Report, make_report
+
+SEEDS = range(31_000_000, 31_000_120)
+
+
+def reports(stage: str) -> list[Report]:
+    return [feed._report(Random(seed), seed, 0.0, stage) for seed in SEEDS]
+
+
+def test_the_stage_of_drawings_shows_mostly_drawings_of_rare_things() -> None:
+    shown = {stage: [r for r in reports(stage) if r.has_image] for stage in ("drawings", "all")}
+    assert len(shown["drawings"]) > len(SEEDS) / 2
+    share = {stage: sum(map(feed.shows_rare, some)) / len(some) for stage, some in shown.items()}
+    assert share["drawings"] > 0.6
+    assert share["drawings"] > 1.5 * share["all"]
+
+
+def test_a_seed_gives_the_same_report_again() -> None:
+    once, again = ([(r.seed, r.mode, r.narrative) for r in reports("drawings")] for _ in range(2))
+    assert once == again
+
+
+def test_rare_is_what_the_drawing_itself_shows() -> None:
+    drawn = [r for seed in SEEDS if (r := make_report(seed, modes={"image": 1.0})).has_image]
+    for report in drawn:
+        kinds = {a.kind for a in report.crash.actors if a.vehicle} & {"truck", "bus", "motorcycle", "bicycle"}
+        arrows = any(leg.turns_in for leg in report.crash.legs) and any(f.startswith("turns.") for f in report.drawn)
+        center = any(leg.twltl for leg in report.crash.legs)
+        assert feed.shows_rare(report) == bool(kinds or arrows or center)
