@@ -216,9 +216,17 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
     if match.group("stranger"):
         return ()
     if match.group("both"):
+        if len(who.ids) > 2 and rule("clauses.the_two").match(match.group()):
+            return _last_two(match, who)
         told = None if who.counted else rule("clauses.how_many").match(match.group())
         return who.ids if len(who.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(who.ids)) else ()
     return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
+
+
+def _last_two(both: re.Match[str], who: Roster) -> tuple[str, ...]:
+    """Whom "both" means where there are more: the two that are named last before it in its sentence."""
+    named = tuple(dict.fromkeys(v for v in MENTION.findall(both.string[: both.start()]) if v in who.ids))
+    return named[-2:] if len(named) > 1 else who.ids
 
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:

@@ -19,6 +19,7 @@ from sgcad_core.narrative.mentions import axis_in, axis_of
 from sgcad_core.narrative.motion import Cue
 from sgcad_core.narrative.road_merge import GatheredRoad
 from sgcad_core.narrative.roles import CRASH_ROLES, STORY_ROLES
+from sgcad_core.narrative.street_names import StreetNames, street_names
 from sgcad_core.specs import Compass
 
 Control = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
@@ -80,6 +81,8 @@ _WAY = rule("control.way")
 _FOR = rule("control.for")
 _SUBJECT = rule("control.subject")
 _SIDE_ROAD = rule("control.side_road")
+_NEAR = 40
+"""Characters behind a sign in which a direction may be told."""
 _ON_SIDE_ROAD = rule("control.on_side_road")
 
 
@@ -87,11 +90,12 @@ def signed_legs(
     told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], four_leg: bool
 ) -> tuple[Compass, ...]:
     """Bearings of the legs under a stop or yield sign: one axis, both its ends where the road crosses."""
+    names = street_names(told, {v.id: v.heading for v in vehicles if v.heading})
     votes: Counter[Compass] = Counter()
     for t in told:
         if t.role not in ("codes", "factors"):
             weight = 6 if t.role in CRASH_ROLES else 2
-            for legs in _signed(t, vehicles, roads):
+            for legs in _signed(t, vehicles, roads, names):
                 for leg in legs:
                     votes[leg] += weight // len(legs)
     if not votes:
@@ -104,14 +108,29 @@ def signed_legs(
 
 
 def _signed(
-    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], names: StreetNames
 ) -> Iterator[list[Compass]]:
     text = _NOT_CONTROL.sub(" ", told.text)
     last = 0
     for sign in _SIGN.finditer(text):
         before, behind = text[last : sign.start()], text[sign.end() :]
-        yield _legs_of_sign(before, behind, told, vehicles, roads)
+        axis = _street_of_sign(before, sign.group() + behind, sign.end() - sign.start(), names)
+        yield [axis, turned(axis, 180)] if axis else _legs_of_sign(before, behind, told, vehicles, roads)
         last = sign.end()
+
+
+def _street_of_sign(before: str, behind: str, sign: int, names: StreetNames) -> Compass | None:
+    """The axis of the street that is told by its name to have a sign; `behind` begins with the sign's own words."""
+    if _WAY.search(behind[sign : sign + _NEAR]):
+        return None
+    for one in names.in_text(behind):
+        if rule("control.signed_street").match(behind[sign : one.start]):
+            return names.axes.get(one.name)
+        break
+    for one in reversed(list(names.in_text(before))):
+        if rule("control.street_has").fullmatch(before[one.end :]):
+            return names.axes.get(one.name)
+    return None
 
 
 def _legs_of_sign(

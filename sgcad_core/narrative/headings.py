@@ -41,14 +41,21 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)
     for m in _FROM.finditer(text):
-        came = compass_of(m.group("dir"))
-        if came and rule("headings.came").search(text[: m.start()]):
-            motion.heard(motion.headings, max(1, weight - 1), turned(came, 180), m.group("dir"), _FROM.id)
+        _note_origin(motion, text, m, weight, _FROM.id)
+    for m in rule("headings.from_to").finditer(text):
+        _note_origin(motion, text, m, weight, "headings.from_to")
     for m in _EXIT.finditer(text):
         heading = compass_of(m.group("dir"))
         if heading:
             motion.exits.append(heading)
             motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
+
+
+def _note_origin(motion: Motion, text: str, told: re.Match[str], weight: int, by: str) -> None:
+    """Note the way of who comes from a side, where a verb of coming stands before it or nothing does."""
+    came = compass_of(told["dir"])
+    if came and (not text[: told.start()].strip() or rule("headings.came").search(text[: told.start()])):
+        motion.heard(motion.headings, max(1, weight - 1), turned(came, 180), told["dir"], by)
 
 
 def _note_sense(motion: Motion, told: re.Match[str], way: Compass) -> None:
@@ -58,6 +65,7 @@ def _note_sense(motion: Motion, told: re.Match[str], way: Compass) -> None:
             motion.read(f"{sense} {way}", told["dir"], words.id)
 
 
+_MANY = {"both": 2, "two": 2, "three": 3, "four": 4}
 _BOUND_VEHICLE = rule("headings.bound_vehicle")
 
 
@@ -67,6 +75,10 @@ def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
         vehicle = m["v"] or m["v2"] or m["v3"]
         if vehicle in found:
             _note_heading(found[vehicle], m["dir"] or m["dir2"] or m["dir3"], weight, _BOUND_VEHICLE.id)
+    for m in rule("headings.bound_all").finditer(text):
+        many = _MANY.get((m["many"] or m["number"] or "").lower(), len(found))
+        for motion in found.values() if many == len(found) else ():
+            _note_heading(motion, m["dir"] or m["dir2"], weight, "headings.bound_all")
 
 
 def _note_heading(motion: Motion, word: str, weight: int, by: str) -> None:

@@ -152,7 +152,8 @@ def _split(block: Traced) -> list[Traced]:
     for part in block.split(_END):
         last = pieces[-1].text[-_TAIL:] if pieces else ""
         ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
-        joins = pieces and _ABBREVIATION.search(last) and not ended
+        titled = rule("text.title").search(last)
+        joins = pieces and _ABBREVIATION.search(last) and (titled or not ended)
         if pieces and joins:
             pieces[-1] = joined([pieces[-1], part], " ")
         else:
