@@ -1,6 +1,6 @@
 """Reports that other writers told from fact sheets: what share is read right by the rules, the model and both?
 
-    python -m benchmarks.outside [--config fused.yaml] [--answers FILE.jsonl] [--fit configs/prompts/whole.json]
+    python -m benchmarks.outside [--config fused.yaml] [--answers FILE.jsonl] [--fit configs/prompts]
     python -m benchmarks.outside --drawings ...      each report also with a made drawing of its crash
     python -m benchmarks.outside --rules [--folder mini/generator/written] [--show KIND]
 
@@ -13,8 +13,9 @@ drawing of its crash (`mini.renderer`); what the drawing shows then counts as to
 Fields are those of `sgcad_core.narrative.claims`; those that are not told do not count. "fused, p": how many the
 combiner has right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected
 calibration error of the combiner where both have a value, in ten bins. `--fit` fits the combiner's weights on the seen
-half, on all that is read; its own rows there are cross-fitted. The model's answers are kept in --answers. `--rules`
-asks no model; with `--show` it prints the texts in which the rules have a kind of field wrong.
+half, those for reports with drawings where --drawings is given; its own rows there are cross-fitted. The model's
+answers are kept in --answers. `--rules` asks no model; with `--show` it prints the texts in which the rules have a kind
+of field wrong.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from sgcad_core.narrative.claims import KINDS, Claim, kind_of, rules_claim
 from sgcad_core.narrative.fusion import FILLS, model_right, terms
 from sgcad_core.narrative.whole_fusion import agree, decided, same
 from sgcad_core.narrative.whole_fusion import whole as fused
+from sgcad_core.opinion import DRAWN as OF_DRAWN
 from sgcad_core.opinion import WHOLE, Opinion, Weights
 
 FOLDER = Path(__file__).parent / "outside"
@@ -153,8 +155,23 @@ def rules_alone(texts: Sequence[Written], show: str | None) -> Iterator[str]:
 def crossed(some: Sequence[Case]) -> dict[str, dict[str, Weights]]:
     """For each case weights that were fitted without its fold, five folds by the hash of the id."""
     folds = {case.id: by_hash(case.id.removesuffix(DRAWN) + "fold") % 5 for case in some}
-    fitted = {k: fit(case for case in some if folds[case.id] != k) for k in range(5)}
-    return {id: fitted[k] for id, k in folds.items()}
+    fitted = {k: both_fits([case for case in some if folds[case.id] != k]) for k in range(5)}
+    return {id: fitted[k][_weights_for(id)] for id, k in folds.items()}
+
+
+def both_fits(some: Sequence[Case]) -> dict[str, dict[str, Weights]]:
+    """Weights for texts alone, of those alone, and for texts with drawings, of all: real drawings are harder to read
+    than made ones, so these weights are held back by what holds for texts."""
+    return {WHOLE: fit(case for case in some if not case.id.endswith(DRAWN)), OF_DRAWN: fit(some)}
+
+
+def _weights_for(id: str) -> str:
+    return OF_DRAWN if id.endswith(DRAWN) else WHOLE
+
+
+def shipped_weights() -> dict[str, dict[str, Weights]]:
+    """Those that the default config uses."""
+    return {name: dict(load_weights(name, KINDS)) for name in (WHOLE, OF_DRAWN)}
 
 
 def texts_of(folder: Path) -> dict[str, tuple[Written, ...]]:
@@ -177,7 +194,7 @@ def main() -> None:
     parser.add_argument("--config", default="fused.yaml")
     parser.add_argument("--set", action="append", default=[], dest="overrides", help="key=value, as for sgcad")
     parser.add_argument("--answers", type=Path, help="a file that keeps the model's answers")
-    parser.add_argument("--fit", type=Path, help="write the weights here")
+    parser.add_argument("--fit", type=Path, metavar="FOLDER", help="write the weights here")
     parser.add_argument("--drawings", action="store_true", help="each report also with a drawing of its crash")
     parser.add_argument("--rules", action="store_true", help="the rules alone")
     parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
@@ -193,18 +210,19 @@ def main() -> None:
     except (ConfigError, ValueError) as fault:
         raise SystemExit(str(fault)) from fault
     seen, blind = ([case for case in all_cases if case.blind == half] for half in (False, True))
-    shipped = load_weights(WHOLE, KINDS) if options.fit is None else fit(seen)
+    shipped = shipped_weights() if options.fit is None else both_fits(seen)
     halves = (
         ("seen half, weights cross-fitted", seen, crossed(seen)),
-        ("blind half", blind, {case.id: shipped for case in blind}),
+        ("blind half", blind, {case.id: shipped[_weights_for(case.id)] for case in blind}),
     )
     for half, some, weights in halves:
         for name, part in by_part(some, parts):
             lines = [f"{half}{name}: {len(part)} texts", *table(part, weights), "", untold(part, weights), ""]
             print("\n".join(lines if part else []))  # noqa: T201 - a command prints
     if options.fit is not None:
-        weights = {kind: one.model_dump() for kind, one in shipped.items()}
-        options.fit.write_text(json.dumps(weights, indent=1) + "\n", encoding="utf-8")
+        for name in (WHOLE, OF_DRAWN) if options.drawings else (WHOLE,):
+            weights = {kind: one.model_dump() for kind, one in shipped[name].items()}
+            (options.fit / f"{name}.json").write_text(json.dumps(weights, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from sgcad_core.narrative import learned
 from sgcad_core.narrative.claims import KINDS, UNKNOWN_P
 from sgcad_core.narrative.fusion import FILLS
 from sgcad_core.narrative.gist import FIELDS, Gist
-from sgcad_core.opinion import WHOLE, Answered, Heard, Opinion, Weights
+from sgcad_core.opinion import DRAWN, WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records import Context, CrashReport, Query, Token
 from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
@@ -54,7 +54,7 @@ def whole(report: CrashReport, ask: Ask) -> CrashReport:
     nobody is numbered. Raises ConfigError for weights that there are not."""
     if report.reading.crash.unnumbered:
         return report
-    weights = load_weights(WHOLE, KINDS)
+    weights = load_weights(DRAWN if report.diagrams else WHOLE, KINDS)
     context = Context(narrative=report.narrative, diagrams=report.diagrams)
     try:
         answered = _answered(context, report.case, ask)
@@ -85,7 +85,7 @@ def _answered(context: Context, case: str, ask: Ask) -> Answered:
 def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:
     """configs/prompts/<prompt>.json: field -> its weights. Raises ConfigError with what to mend."""
     file = settings.PROMPTS / f"{prompt}.json"
-    remedy = f"fit them with `python -m benchmarks.{'outside' if prompt == WHOLE else 'opinions'}`"
+    remedy = f"fit them with `python -m benchmarks.{'outside' if prompt in (WHOLE, DRAWN) else 'opinions'}`"
     if not file.is_file():
         raise ConfigError(f"second_opinion {prompt!r}: its file of weights {file} is missing; {remedy}")
     try:

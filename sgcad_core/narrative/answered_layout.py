@@ -3,12 +3,17 @@ answer is taken is decided elsewhere (`sgcad_core.narrative.whole_fusion`)."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
 
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
+from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.mentions import axis_of
 from sgcad_core.specs import Leg, RoadLayout
 
 if TYPE_CHECKING:
+    from sgcad_core.narrative.facts import CrashFacts
     from sgcad_core.narrative.roads import RoadFact, RoadFacts
 
 
@@ -61,6 +66,36 @@ def _most(layout: RoadLayout, axis: str) -> int:
     """Lanes of the widest leg on an axis, its center turn lane among them."""
     here = [leg for leg in layout.legs if axis_of(leg.bearing) == axis]
     return max((leg.lanes_in + leg.lanes_out + leg.center_turn_lane for leg in here), default=0)
+
+
+def carries(layout: RoadLayout, crash: CrashFacts) -> bool:
+    """Whether everybody who moves can come in as they head, and go out where they turn to."""
+    ways_in = {leg.bearing for leg in layout.legs if leg.lanes_in}
+    ways_out = {leg.bearing for leg in layout.legs if leg.lanes_out}
+    comes = {turned(v.heading, 180) for v in crash.vehicles if v.heading and v.maneuver != "backing"}
+    goes = {v.exit_heading for v in crash.vehicles if v.exit_heading}
+    both = ways_in | ways_out  # who is on the wrong side comes in where others go out
+    return comes <= both and goes <= both
+
+
+def legs_added(ours: RoadLayout, layout: RoadLayout) -> frozenset[str]:
+    """Lanes and turns of the roads that the text does not have: they come with the answer's legs."""
+    own = {axis_of(leg.bearing) for leg in ours.legs}
+    axes = {axis_of(leg.bearing) for leg in layout.legs} - own
+    return frozenset(f"{name}.{axis}" for axis in axes for name in ("lanes", "turns"))
+
+
+def junction_of(facts: RoadFacts, layout: RoadLayout) -> Any:
+    """The junction of a layout's legs."""
+    kinds = Counter(leg.kind for leg in layout.legs)
+    joining = next((leg for leg in layout.legs if leg.kind in (DRIVEWAY, RAMP)), None)
+    count = len(layout.legs)
+    kind: JunctionKind = "none" if count < 3 else FOUR_LEG if count > 3 else T
+    if joining is not None and count == 3 and kinds[joining.kind] == 1:
+        kind = cast("JunctionKind", joining.kind)
+    axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
+    alone = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
+    return replace(facts.junction, kind=kind, stem=alone if count == 3 else None, stated=False, stem_stated=False)
 
 
 def _as_told(ours: Leg | None, theirs: Leg, taken: frozenset[str]) -> Leg:

@@ -10,18 +10,16 @@ the model's legs or lanes only if everybody can drive on it as read. Every value
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from sgcad_core.facts import Fact
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, JunctionKind, T
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.answered_facts import Taken, as_taken, controlled, facts_of
-from sgcad_core.narrative.answered_layout import short_of_told
+from sgcad_core.narrative.answered_layout import carries, junction_of, legs_added, short_of_told
 from sgcad_core.narrative.claims import Claim, Claims, kind_of, rules_claim, vehicles_of
-from sgcad_core.narrative.compass import turned
 from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.narrative.fusion import FILLS, TURNS, model_right
 from sgcad_core.narrative.lanes import LaneFacts
@@ -59,8 +57,35 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
     roads, laid = _roads(replace(reading.roads, crash=crash), taken, opinion.answered)
     if not (used | laid):
         return reading
+    crash, seated = _seated(roads, taken, rules, heard, opinion.weights)
+    taken |= seated
+    roads, used = replace(roads, crash=crash), used | seated.keys()
     facts = [fact for key in taken if key in used | laid for fact in facts_of(key, taken[key], crash)]
     return _told(reading, crash, roads, facts)
+
+
+def _seated(
+    roads: RoadFacts,
+    taken: Mapping[str, Taken],
+    rules: Claims,
+    heard: Claims,
+    weights: Mapping[str, Weights],
+) -> tuple[CrashFacts, dict[str, Taken]]:
+    """The crash with lanes on roads that the model's answer lays: the rules' lane there, if no text tells it, was of a
+    road with as many lanes as they had assumed. Both may have the same lane for other reasons."""
+    found, weight = dict[str, Taken](), weights.get("lane")
+    for v in roads.crash.vehicles:
+        key = f"lane.{v.id}"
+        rule, said = rules.get(key), heard.get(key)
+        if weight is None or key in taken or said is None or v.heading is None or (rule is not None and rule.told):
+            continue
+        if f"lanes.{axis_of(v.heading)}" not in roads.taken:
+            continue
+        p = model_right(weight, said.p, 0.0, said.nats, said.told)
+        if p >= FILLS:
+            found[key] = as_taken(said, p)
+    found = fitting(found, rules, heard)
+    return replace(roads.crash, vehicles=tuple(_with_values(v, found) for v in roads.crash.vehicles)), found
 
 
 def _told(reading: Reading, crash: CrashFacts, roads: RoadFacts, facts: Sequence[Fact]) -> Reading:
@@ -211,7 +236,7 @@ def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tupl
         return facts, set()
     used, added = _laid(facts, {key for key in taken if kind_of(key) in _ROAD}, said.layout)
     if "legs" in used:
-        facts = replace(facts, junction=_junction(facts, said.layout))
+        facts = replace(facts, junction=junction_of(facts, said.layout))
     if "control" in taken:
         kind, stopped = controlled(taken["control"].value)
         facts = replace(facts, junction=replace(facts.junction, control=kind, stopped=stopped))
@@ -233,42 +258,12 @@ def _laid(facts: RoadFacts, keys: set[str], layout: RoadLayout) -> tuple[set[str
     short = short_of_told(facts, ours, layout)
     ramp = facts.junction.kind == RAMP
     keys = {key for key in keys if kind_of(key) not in ("lanes", "turns") or not (ramp or _whose(key) in short)}
-    if keys and not _carries(layout, facts.crash):
+    if keys and not carries(layout, facts.crash):
         return set(), frozenset()
-    added = _added(ours, layout)
+    added = legs_added(ours, layout)
     if "legs" in keys:
         return keys, added
     return {key for key in keys if f"lanes.{_whose(key)}" not in added}, frozenset()
-
-
-def _added(ours: RoadLayout, layout: RoadLayout) -> frozenset[str]:
-    """Lanes and turns of the roads that the text does not have: they come with the answer's legs."""
-    own = {axis_of(leg.bearing) for leg in ours.legs}
-    axes = {axis_of(leg.bearing) for leg in layout.legs} - own
-    return frozenset(f"{name}.{axis}" for axis in axes for name in ("lanes", "turns"))
-
-
-def _carries(layout: RoadLayout, crash: CrashFacts) -> bool:
-    """Whether everybody who moves can come in as they head, and go out where they turn to."""
-    ways_in = {leg.bearing for leg in layout.legs if leg.lanes_in}
-    ways_out = {leg.bearing for leg in layout.legs if leg.lanes_out}
-    comes = {turned(v.heading, 180) for v in crash.vehicles if v.heading and v.maneuver != "backing"}
-    goes = {v.exit_heading for v in crash.vehicles if v.exit_heading}
-    both = ways_in | ways_out  # who is on the wrong side comes in where others go out
-    return comes <= both and goes <= both
-
-
-def _junction(facts: RoadFacts, layout: RoadLayout) -> Any:
-    """The junction of a layout's legs."""
-    kinds = Counter(leg.kind for leg in layout.legs)
-    joining = next((leg for leg in layout.legs if leg.kind in (DRIVEWAY, RAMP)), None)
-    count = len(layout.legs)
-    kind: JunctionKind = "none" if count < 3 else FOUR_LEG if count > 3 else T
-    if joining is not None and count == 3 and kinds[joining.kind] == 1:
-        kind = cast("JunctionKind", joining.kind)
-    axes = Counter(axis_of(leg.bearing) for leg in layout.legs)
-    alone = next((leg.bearing for leg in layout.legs if axes[axis_of(leg.bearing)] == 1), None)
-    return replace(facts.junction, kind=kind, stem=alone if count == 3 else None, stated=False, stem_stated=False)
 
 
 def _with_road(facts: RoadFacts, axis: Compass, change: Callable[[RoadFact, Any], RoadFact], value: Any) -> RoadFacts:

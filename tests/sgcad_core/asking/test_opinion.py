@@ -10,7 +10,7 @@ from sgcad_core.asking.opinion import load_weights, probabilities, seconded, who
 from sgcad_core.errors import ConfigError
 from sgcad_core.narrative.claims import KINDS
 from sgcad_core.narrative.gist import FIELDS
-from sgcad_core.opinion import WHOLE
+from sgcad_core.opinion import DRAWN, WHOLE
 from sgcad_core.records import Context, CrashReport, Diagram, Generation, Query, Token
 
 ANSWER = {
@@ -120,7 +120,7 @@ def test_the_whole_report_is_asked_in_two_questions_with_its_drawing() -> None:
     assert answered.p["road.legs[0].bearing"] == pytest.approx(0.75)
     assert answered.p["crash.actors[0].road"] == pytest.approx(0.75)
     assert min(sure for path, sure in answered.p.items() if path not in CHOSEN) == 1.0, "forced"
-    assert told.opinion.weights == load_weights(WHOLE, KINDS)
+    assert told.opinion.weights == load_weights(DRAWN, KINDS)
     (first, road), (second, crash) = asked
     assert first.diagrams == second.diagrams == NUMBERED.diagrams
     assert '"bearing":"N"' in crash.task
@@ -143,4 +143,4 @@ def test_without_an_answer_the_rules_stand_and_the_notes_say_so(answers: list[st
 
 
 def test_the_shipped_weights_are_of_kinds_of_fields() -> None:
-    assert set(load_weights(WHOLE, KINDS)) <= set(KINDS)
+    assert set(load_weights(WHOLE, KINDS)) == set(load_weights(DRAWN, KINDS)) == set(KINDS)
