@@ -7,7 +7,7 @@
 `benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
 nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
 only totals are. The reports in `sparse/` leave out much of their crash on purpose: sides, lanes, maneuvers. Those in
-`late/` do so in part, and no rule was mended on them. With `--drawings` every report is read a second time, with a made
+`late/`, written last, do so in part; the shipped weights were fitted before a rule was mended on them. With `--drawings` every report is read a second time, with a made
 drawing of its crash (`mini.renderer`); what the drawing shows then counts as told.
 
 Fields are those of `sgcad_core.narrative.claims`; those that are not told do not count. "fused, p": how many the
@@ -42,7 +42,7 @@ from sgcad_core.opinion import DRAWN as OF_DRAWN
 from sgcad_core.opinion import WHOLE, Opinion, Weights
 
 FOLDER = Path(__file__).parent / "outside"
-PARTS = {"": "", "sparse": ", reports that leave out much", "late": ", reports that no rule was mended on"}
+PARTS = {"": "", "sparse": ", reports that leave out much", "late": ", reports written last"}
 """Folders within it and what is in them."""
 WITH_DRAWING = ", with drawings"
 
@@ -199,6 +199,8 @@ def main() -> None:
     parser.add_argument("--rules", action="store_true", help="the rules alone")
     parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
     options = parser.parse_args()
+    if options.fit is not None and not options.fit.is_dir():
+        parser.error(f"--fit {options.fit}: no such folder; give the one for the weights, such as configs/prompts")
     try:
         parts = texts_of(options.folder)
         texts = tuple(one for some in parts.values() for one in some)

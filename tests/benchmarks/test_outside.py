@@ -158,16 +158,30 @@ def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkey
 
     monkeypatch.setattr(outside_cases, "whole", whole)
     monkeypatch.setattr(outside_cases, "ask_of", lambda config: None)
-    kept, weights = tmp_path / "answers.jsonl", tmp_path / "weights.json"
+    kept, weights = tmp_path / "answers.jsonl", tmp_path / "weights"
+    weights.mkdir()
     argv = ["outside", "--folder", str(folder), "--answers", str(kept), "--fit", str(weights)]
     monkeypatch.setattr("sys.argv", argv)
     outside.main()
     assert sorted(asked) == sorted(one.id for one in some.values())
     assert {json.loads(line)["id"] for line in kept.read_text().splitlines()} == set(asked)
     assert "blind half" in capsys.readouterr().out
-    assert set(json.loads(weights.read_text())) <= set(outside.KINDS)
+    assert set(json.loads((weights / "whole.json").read_text())) <= set(outside.KINDS)
+    assert not (weights / "whole_drawn.json").exists()
     outside.main()
     assert len(asked) == len(some), "kept answers are not asked for again"
+    monkeypatch.setattr("sys.argv", [*argv, "--drawings"])
+    outside.main()
+    assert len(asked) == 2 * len(some)
+    assert "blind half, with drawings" in capsys.readouterr().out
+    assert set(json.loads((weights / "whole_drawn.json").read_text())) <= set(outside.KINDS)
+
+
+def test_weights_go_into_a_folder(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setattr("sys.argv", ["outside", "--fit", str(tmp_path / "absent")])
+    with pytest.raises(SystemExit):
+        outside.main()
+    assert "absent: no such folder; give the one for the weights" in capsys.readouterr().err
 
 
 def test_a_case_is_blind_by_its_id() -> None:

@@ -137,6 +137,35 @@ def test_lanes_of_the_answer_become_the_road() -> None:
     assert {leg.bearing: (leg.lanes_in, leg.lanes_out) for leg in layout.legs} == {"N": (3, 2), "S": (2, 3)}
 
 
+UNCOUNTED = "V1 was traveling north. V2 was traveling south. The front of V1 struck the front of V2."
+WIDE = legs(Leg(bearing="N", lanes_in=2, lanes_out=2), Leg(bearing="S", lanes_in=2, lanes_out=2))
+
+
+@pytest.mark.parametrize("lane", [1, 2])
+def test_on_a_road_that_the_model_lays_it_also_says_who_drives_in_which_lane(lane: int) -> None:
+    assert rules_claim(read(UNCOUNTED))["lane.V1"][:2] == (1, False), "of the one lane that the rules assume"
+    found = told(UNCOUNTED, answered(WIDE, lane=lane))
+    driver = found.crash.vehicle("V1")
+    assert driver is not None
+    assert driver.lane == lane
+    assert [(f.value, f.basis) for f in found.facts if f.field == "vehicles.V1.lane"] == [(lane, "model")]
+
+
+@pytest.mark.parametrize(
+    ("text", "weights"),
+    [
+        (UNCOUNTED, BELIEVED | {"lanes": UNHEARD["lanes"]}),  # the rules' road stays
+        (UNCOUNTED, BELIEVED | {"lane": UNHEARD["lane"]}),
+        (UNCOUNTED.replace("traveling north", "traveling north in the right lane"), BELIEVED),
+    ],
+)
+def test_a_lane_stays_where_the_road_does_the_lane_is_told_or_the_model_is_unsure(text, weights) -> None:
+    before, found = read(text).crash.vehicle("V1"), told(text, answered(WIDE, lane=1), weights).crash.vehicle("V1")
+    assert before is not None
+    assert found is not None
+    assert (found.lane, found.lane_word) == (before.lane, before.lane_word)
+
+
 def test_a_junction_that_only_the_answer_has_is_drawn_and_the_told_lanes_stay() -> None:
     tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1, control="stop"))
     only = {"legs": BELIEVED["legs"], "control": BELIEVED["control"]}
