@@ -7,8 +7,9 @@
 `benchmarks/outside/*.jsonl` (the form of `mini.generator.written`) was written by people who had seen neither the rules
 nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be looked at; of the blind half
 only totals are. The reports in `sparse/` leave out much of their crash on purpose: sides, lanes, maneuvers. Those in
-`late/`, written last, do so in part; the shipped weights were fitted before a rule was mended on them. With `--drawings` every report is read a second time, with a made
-drawing of its crash (`mini.renderer`); what the drawing shows then counts as told.
+`late/`, written last, do so in part; the shipped weights were fitted before a rule was mended on them. With
+`--drawings` every report is read a second time, with a made drawing of its crash (`mini.renderer`); what the drawing
+shows then counts as told.
 
 Fields are those of `sgcad_core.narrative.claims`; those that are not told do not count. "fused, p": how many the
 combiner has right and the rules wrong, the other way round, and the exact McNemar test. The last column is the expected
