@@ -83,7 +83,7 @@ def rules_claim(reading: Reading) -> Claims:
     if first is not None:
         found["contact"] = Claim((first.striker, first.struck), first.stated)
         sides = {first.striker: first.striker_area, first.struck: first.struck_area}
-        found["areas"] = Claim(by_id(sides), first.areas_stated, also=_corners(first))
+        found["areas"] = Claim(by_id(sides), _sides_told(first), also=_corners(first))
     for key in ("light", "weather", "surface"):
         if (value := getattr(crash, key)) is not None:
             found[key] = Claim(value)
@@ -111,6 +111,11 @@ def _turned_from(v: VehicleFacts) -> bool:
     """Whether the heading follows from a told turn and the told way out."""
     turn = QUARTER_DEG.get(v.maneuver)
     return v.maneuver_stated and turn is not None and v.exit_heading == turned(v.heading or "N", turn)
+
+
+def _sides_told(contact: ContactFacts) -> bool:
+    """Whether the text tells a side or a corner of both."""
+    return contact.areas_stated or max(len(contact.striker_may), len(contact.struck_may)) < len(AREAS)
 
 
 def _corners(contact: ContactFacts) -> tuple[Any, ...]:

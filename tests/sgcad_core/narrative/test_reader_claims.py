@@ -90,3 +90,12 @@ def test_every_field_is_of_a_kind_that_can_be_weighed() -> None:
 
 def test_streets_go_by_axis() -> None:
     assert [(axis, [leg.bearing for leg in some]) for axis, some in by_axis(LAYOUT.legs)] == [("N", ["N", "S"])]
+
+
+def test_a_told_corner_is_told_and_its_other_side_is_allowed_as_well() -> None:
+    told = "V1 was traveling west. V2 was also traveling west ahead of V1. The right side of V1 struck the {} of V2."
+    corner = rules_claim(read(told.format("left rear corner")))["areas"]
+    assert corner.told
+    assert {dict(sides)["V2"] for sides in (corner.value, *corner.also)} == {"back", "left"}
+    untold = rules_claim(read("V1 was traveling west. V2 was traveling north. V1 and V2 collided."))
+    assert not untold["areas"].told
