@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,15 +16,32 @@ def answers(
     asked: Mapping[str, T], answer: Callable[[T], Any], key: str, file: Path | None, at_once: int
 ) -> dict[str, Any]:
     """What `answer` says of each, by id; JSON values. Those that stand in the file, as {"id": ..., key: ...}, are not
-    asked for again; the others are, so many at once, and are written there as they come. No file: nothing is kept."""
+    asked for again; the others are, so many at once, and are written there as they come. No file: nothing is kept.
+
+    What an answer raises is raised when all that were begun are written. Raises OSError for a file that cannot be
+    written, before anybody is asked.
+    """
     known = _remembered(file, key)
-    new = [id for id in asked if id not in known]
-    with ThreadPoolExecutor(at_once) as pool:
-        for id, found in zip(new, pool.map(lambda id: answer(asked[id]), new), strict=True):
-            known[id] = found
-            if file is not None:
-                with file.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps({"id": id, key: found}) + "\n")
+    faults = []
+    with (
+        nullcontext() if file is None else file.open("a", encoding="utf-8") as lines,
+        ThreadPoolExecutor(at_once) as pool,
+    ):
+        begun = {pool.submit(answer, one): id for id, one in asked.items() if id not in known}
+        pending = set(begun)
+        while pending:
+            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
+            for done in finished:
+                if fault := done.exception():
+                    faults.append(fault)
+                    pending = {other for other in pending if not other.cancel()}
+                    continue
+                known[begun[done]] = done.result()
+                if lines is not None:
+                    lines.write(json.dumps({"id": begun[done], key: done.result()}) + "\n")
+                    lines.flush()
+    if faults:
+        raise faults[0]
     return known
 
 

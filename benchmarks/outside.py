@@ -208,12 +208,13 @@ def main() -> None:
         if options.rules:
             print("\n".join(rules_alone(texts, options.show)))  # noqa: T201 - a command prints
             return
+        shipped = shipped_weights() if options.fit is None else {}
         texts = (*texts, *map(with_drawing, texts if options.drawings else ()))
         all_cases = cases(texts, asked(texts, options.config, options.overrides, options.answers))
     except (ConfigError, ValueError) as fault:
         raise SystemExit(str(fault)) from fault
     seen, blind = ([case for case in all_cases if case.blind == half] for half in (False, True))
-    shipped = shipped_weights() if options.fit is None else both_fits(seen)
+    shipped = shipped or both_fits(seen)
     halves = (
         ("seen half, weights cross-fitted", seen, crossed(seen)),
         ("blind half", blind, {case.id: shipped[_weights_for(case.id)] for case in blind}),

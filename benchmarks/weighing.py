@@ -26,13 +26,14 @@ def logistic(rows: Floats, marks: Floats, signs: Sequence[int] = ()) -> Floats:
     have the other sign is left out, the one furthest off first.
     """
     kept = list(range(rows.shape[1]))
-    while True:
+    while kept:
         found = np.zeros(rows.shape[1])
         found[kept] = _fitted(rows[:, kept], marks, np.array([float(column == 1) for column in kept]))
         wrong = {column: -sign * found[column] for column, sign in enumerate(signs) if sign * found[column] < 0}
         if not wrong:
             return found
         kept.remove(max(wrong, key=lambda column: wrong[column]))
+    return np.zeros(rows.shape[1])
 
 
 def _fitted(rows: Floats, marks: Floats, begun: Floats) -> Floats:

@@ -175,9 +175,10 @@ def measure(
     held_out: bool = True,
     base: int = HELD_OUT_BASE,
     views: int = 1,
+    modes: dict[str, float] = MODES,
 ) -> dict[str, Any]:
-    """All figures on `count` reports."""
-    reports = [make_report(base + i, held_out, 0.6, MODES) for i in range(count)]
+    """All figures on `count` reports; blind and sighted ones of those that have narrative and drawing."""
+    reports = [make_report(base + i, held_out, 0.6, modes) for i in range(count)]
     found = answers_of(forward, coder, sight, reports, views=views)
     figures: dict[str, Any] = tally(reports, found)
     seeing = [i for i, r in enumerate(reports) if r.mode == "both"]
@@ -207,9 +208,13 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seen", action="store_true", help="the trained phrase families, new crashes")
     parser.add_argument("--views", type=int, default=1, help="layouts of a drawing whose predictions are averaged")
+    parser.add_argument("--mode", choices=MODES, help="reports of this kind alone")
+    parser.add_argument("--skip", type=int, default=0, help="so many reports of the series are passed over")
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
-    figures = measure(*load(options.folder), options.count, not options.seen, views=options.views)
+    modes = {options.mode: 1.0} if options.mode else MODES
+    base = HELD_OUT_BASE + options.skip
+    figures = measure(*load(options.folder), options.count, not options.seen, base, options.views, modes)
     sys.stdout.write(table(figures) + "\n")
     if options.json:
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")

@@ -61,9 +61,9 @@ GISTS = {"told": 0.52, "incident": 0.2, "made": 0.16}
 WRITTEN = {"written": 0.5, "drawings": 0.12}
 """Shares of the rows of a stage that are narratives of writers; the others are made ones."""
 RARE = 0.6
-"""Share of the drawings of the stage "drawings" that show what few do: turn lanes, center turn lanes, or an actor of a
-kind that is seldom seen."""
-RARE_TRIES = 12
+"""Share of the drawings of the stage "drawings" that are chosen to show what few do: turn lanes, center turn lanes, or
+an actor of a kind that is seldom seen."""
+RARE_TRIES = 30
 RARE_STEP = 1_000_000_000
 """Seeds from one try to the next, above all that are counted through."""
 
@@ -117,15 +117,14 @@ def _report(rng: Random, seed: int, progress: float, stage: str) -> Report:
 
 
 def _rare(seed: int) -> int:
-    """A seed, made from this one, whose drawing shows something rare or whose report has no drawing at all; the last
-    one tried where none does."""
-    tried = seed
-    for number in range(RARE_TRIES):
-        tried = seed + number * RARE_STEP
-        report = make_report(tried, False, 0.0, DRAWN)
-        if not report.has_image or shows_rare(report):
-            break
-    return tried
+    """A seed, made from this one, whose report is of the same mode and whose drawing shows something rare; the seed
+    itself where it has no drawing or none that is tried shows that."""
+    own = make_report(seed, False, 0.0, DRAWN)
+    for number in range(RARE_TRIES if own.has_image else 0):
+        report = make_report(seed + number * RARE_STEP, False, 0.0, DRAWN)
+        if report.mode == own.mode and shows_rare(report):
+            return seed + number * RARE_STEP
+    return seed
 
 
 def shows_rare(report: Report) -> bool:

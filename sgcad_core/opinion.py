@@ -14,7 +14,8 @@ Value = bool | str
 MOST_NATS = 6.0
 """More grounding than that says no more: the report makes the value 400 times likelier."""
 DRAWN = "whole_drawn"
-"""Weights of the same model for reports with a drawing, which shows it much that their text does not tell."""
+"""Weights of the same model for reports with a drawing, which shows it much that their text does not tell. They suppose
+that the model sees drawings, as the embedded one does."""
 LEARNED = "learned"
 """In a config's `second_opinion`: the reader that learned where the rules err (`sgcad_core.narrative.learned`)."""
 WHOLE = "whole"

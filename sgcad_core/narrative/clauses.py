@@ -224,9 +224,11 @@ def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
 
 
 def _last_two(both: re.Match[str], who: Roster) -> tuple[str, ...]:
-    """Whom "both" means where there are more: the two that are named last before it in its sentence."""
-    named = tuple(dict.fromkeys(v for v in MENTION.findall(both.string[: both.start()]) if v in who.ids))
-    return named[-2:] if len(named) > 1 else who.ids
+    """Whom "both" means where there are more: the two that are named last before it in its sentence; all where fewer
+    than two are."""
+    named = [v for v in MENTION.findall(both.string[: both.start()]) if v in who.ids]
+    last = tuple(dict.fromkeys(reversed(named)))[:2]
+    return last if len(last) > 1 else who.ids
 
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:

@@ -71,20 +71,22 @@ def _seated(
     heard: Claims,
     weights: Mapping[str, Weights],
 ) -> tuple[CrashFacts, dict[str, Taken]]:
-    """The crash with lanes on roads that the model's answer lays: the rules' lane there, if no text tells it, was of a
-    road with as many lanes as they had assumed. Both may have the same lane for other reasons."""
+    """The crash with the model's lanes on roads that its answer lays, and these lanes.
+
+    A lane that no text tells is not the rules' there, even where both have the same: theirs followed from the number of
+    lanes that they had assumed. Not of vehicles that the model has on another way.
+    """
     found, weight = dict[str, Taken](), weights.get("lane")
     for v in roads.crash.vehicles:
-        key = f"lane.{v.id}"
+        key, way = f"lane.{v.id}", heard.get(f"heading.{v.id}")
         rule, said = rules.get(key), heard.get(key)
         if weight is None or key in taken or said is None or v.heading is None or (rule is not None and rule.told):
             continue
-        if f"lanes.{axis_of(v.heading)}" not in roads.taken:
+        if f"lanes.{axis_of(v.heading)}" not in roads.taken or (way is not None and way.value != v.heading):
             continue
         p = model_right(weight, said.p, 0.0, said.nats, said.told)
         if p >= FILLS:
             found[key] = as_taken(said, p)
-    found = fitting(found, rules, heard)
     return replace(roads.crash, vehicles=tuple(_with_values(v, found) for v in roads.crash.vehicles)), found
 
 

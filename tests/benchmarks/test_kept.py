@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -27,14 +28,27 @@ def test_only_new_ones_are_asked_and_all_are_kept(tmp_path: Path) -> None:
 def test_what_was_answered_before_a_fault_is_kept(tmp_path: Path) -> None:
     file = tmp_path / "kept.jsonl"
 
+    begun, failed = Event(), Event()
+
     def answer(text: str) -> str:
         if text == "bad":
+            assert begun.wait(10)
+            failed.set()
             raise OSError("no connection")
+        begun.set()
+        assert failed.wait(10)  # this answer comes behind the fault
         return text
 
     with pytest.raises(OSError, match="no connection"):
-        kept.answers({"a": "good", "b": "bad"}, answer, "said", file, 1)
-    assert [json.loads(line)["id"] for line in file.read_text().splitlines()] == ["a"]
+        kept.answers({"a": "bad", "b": "good"}, answer, "said", file, 2)
+    assert [json.loads(line)["id"] for line in file.read_text().splitlines()] == ["b"]
+
+
+def test_nobody_is_asked_if_nothing_can_be_kept(tmp_path: Path) -> None:
+    asked: list[str] = []
+    with pytest.raises(OSError, match="absent"):
+        kept.answers({"a": "x"}, asked.append, "said", tmp_path / "absent" / "kept.jsonl", 1)
+    assert not asked
 
 
 def test_a_line_of_another_form_is_named(tmp_path: Path) -> None:

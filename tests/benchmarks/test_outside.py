@@ -14,7 +14,7 @@ from benchmarks.weighing import versus
 from mini.generator.written import Written, load, report_of, shipped
 from sgcad_core.narrative.answered_claims import model_claims
 from sgcad_core.narrative.claims import Claim, kind_of
-from sgcad_core.opinion import Answered, Opinion, Weights
+from sgcad_core.opinion import DRAWN, WHOLE, Answered, Opinion, Weights
 from sgcad_core.specs import BehaviorSpec, RoadLayout
 
 TEXTS = load(outside.FOLDER)[::12]
@@ -66,7 +66,15 @@ def test_a_drawing_follows_from_the_report_and_stays_in_its_half() -> None:
     assert not evidence_of(TEXTS[0]).diagrams
     of_alone, of_drawn = cases([TEXTS[0], one], {})
     assert of_alone.blind == of_drawn.blind
-    assert set(map(str, crossed([of_alone, of_drawn]))) == {of_alone.id, of_drawn.id}
+
+
+def test_weights_of_a_report_are_fitted_without_it_and_its_drawing(monkeypatch) -> None:
+    some = cases([*TEXTS, *map(with_drawing, TEXTS)], {})
+    monkeypatch.setattr(outside, "both_fits", lambda some: {n: (n, {c.id for c in some}) for n in (WHOLE, DRAWN)})
+    for id, (name, fitted_on) in crossed(some).items():  # type: ignore[misc]
+        assert name == (DRAWN if id.endswith("+drawing") else WHOLE)
+        assert not fitted_on & {id, id.removesuffix("+drawing"), id + "+drawing"}
+        assert fitted_on
 
 
 def test_what_is_not_told_and_given_up_is_counted() -> None:

@@ -38,6 +38,12 @@ def test_a_column_of_the_wrong_sign_leaves_the_others_as_if_it_were_not_there() 
     assert found[[0, 1, 3, 4]] == pytest.approx(logistic(rows[:, [0, 1, 3, 4]], marks), abs=1e-6)
 
 
+def test_where_no_weight_may_have_its_sign_there_is_none() -> None:
+    rows, marks = drawn([1.0] * 5, 500, 0)
+    rows[:, 1:] = np.abs(rows[:, 1:])
+    assert logistic(rows, np.ones(len(marks)), [-1] * 5).tolist() == [0] * 5
+
+
 def test_without_rows_the_probability_is_believed() -> None:
     assert logistic(np.zeros((0, 5)), np.zeros(0), SIGNS).tolist() == [0, 1, 0, 0, 0]
 

@@ -2,6 +2,8 @@
 
 from random import Random
 
+import pytest
+
 from mini import feed
 from mini.generator.report import Report, make_report
 
@@ -14,7 +16,9 @@ def reports(stage: str) -> list[Report]:
 
 def test_the_stage_of_drawings_shows_mostly_drawings_of_rare_things() -> None:
     shown = {stage: [r for r in reports(stage) if r.has_image] for stage in ("drawings", "all")}
-    assert len(shown["drawings"]) > len(SEEDS) / 2
+    with_image = (feed.DRAWN["image"] + feed.DRAWN["both"]) / sum(feed.DRAWN.values())
+    others = 1 - feed.WRITTEN["drawings"]
+    assert len(shown["drawings"]) / len(SEEDS) == pytest.approx(with_image * others, abs=0.12)
     share = {stage: sum(map(feed.shows_rare, some)) / len(some) for stage, some in shown.items()}
     assert share["drawings"] > 0.6
     assert share["drawings"] > 1.5 * share["all"]

@@ -151,6 +151,13 @@ def test_on_a_road_that_the_model_lays_it_also_says_who_drives_in_which_lane(lan
     assert [(f.value, f.basis) for f in found.facts if f.field == "vehicles.V1.lane"] == [(lane, "model")]
 
 
+def test_who_is_taken_for_driving_another_way_gets_the_models_lane_there() -> None:
+    found = told(UNCOUNTED, answered(legs(*WIDE.legs, Leg(bearing="W", lanes_in=2, lanes_out=2)), road="W", lane=2))
+    driver = found.crash.vehicle("V1")
+    assert driver is not None
+    assert (driver.heading, driver.lane) == ("E", 2)
+
+
 @pytest.mark.parametrize(
     ("text", "weights"),
     [
