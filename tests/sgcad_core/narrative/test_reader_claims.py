@@ -99,3 +99,19 @@ def test_a_told_corner_is_told_and_its_other_side_is_allowed_as_well() -> None:
     assert {dict(sides)["V2"] for sides in (corner.value, *corner.also)} == {"back", "left"}
     untold = rules_claim(read("V1 was traveling west. V2 was traveling north. V1 and V2 collided."))
     assert not untold["areas"].told
+
+
+def test_both_of_three_are_the_two_that_are_named_last() -> None:
+    told = "V1, V2 and V3 were northbound. V1 struck V2, and V3 struck V1, and both were turning left."
+    claims = rules_claim(read(told))
+    assert {v: claims[f"maneuver.{v}"].value == "turn_left" for v in ("V1", "V2", "V3")} == {
+        "V1": True, "V2": False, "V3": True,
+    }  # fmt: skip
+
+
+def test_a_sign_at_a_street_stops_those_who_come_to_it() -> None:
+    told = (
+        "V1 was traveling north on Elm Street. V2 was traveling east on Oak Street. V1 stopped at the stop sign at Oak "
+        "Street and then drove on. The front of V1 struck the left side of V2."
+    )
+    assert dict(rules_claim(read(told))["control"].value).keys() == {"N", "S"}
