@@ -120,11 +120,11 @@ def _rare(seed: int) -> int:
     """A seed, made from this one, whose report is of the same mode and whose drawing shows something rare; the seed
     itself where it has no drawing or none that is tried shows that."""
     own = make_report(seed, False, 0.0, DRAWN)
-    for number in range(RARE_TRIES if own.has_image else 0):
-        report = make_report(seed + number * RARE_STEP, False, 0.0, DRAWN)
-        if report.mode == own.mode and shows_rare(report):
-            return seed + number * RARE_STEP
-    return seed
+    if not own.has_image or shows_rare(own):
+        return seed
+    others = range(seed + RARE_STEP, seed + RARE_TRIES * RARE_STEP, RARE_STEP)
+    reports = ((other, make_report(other, False, 0.0, DRAWN)) for other in others)
+    return next((other for other, report in reports if report.mode == own.mode and shows_rare(report)), seed)
 
 
 def shows_rare(report: Report) -> bool:

@@ -123,10 +123,9 @@ def _street_of_sign(before: str, behind: str, sign: int, names: StreetNames) -> 
     """The axis of the street that is told by its name to have a sign; `behind` begins with the sign's own words."""
     if _WAY.search(behind[sign : sign + _NEAR]):
         return None
-    for one in names.in_text(behind):
-        if rule("control.signed_street").match(behind[sign : one.start]):
-            return names.axes.get(one.name)
-        break
+    first = next(iter(names.in_text(behind)), None)
+    if first is not None and rule("control.signed_street").match(behind[sign : first.start]):
+        return names.axes.get(first.name)
     for one in reversed(list(names.in_text(before))):
         if rule("control.street_has").fullmatch(before[one.end :]):
             return names.axes.get(one.name)

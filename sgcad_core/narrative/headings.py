@@ -7,6 +7,7 @@ import re
 from sgcad_core.language import rule
 from sgcad_core.narrative.compass import compass_of, turned
 from sgcad_core.narrative.motion import Motion
+from sgcad_core.narrative.text import NUMBERS
 from sgcad_core.specs import Compass
 
 _HEADING = rule("headings.heading")
@@ -65,7 +66,7 @@ def _note_sense(motion: Motion, told: re.Match[str], way: Compass) -> None:
             motion.read(f"{sense} {way}", told["dir"], words.id)
 
 
-_MANY = {"both": 2, "two": 2, "three": 3, "four": 4}
+_MANY = {"both": 2} | NUMBERS
 _BOUND_VEHICLE = rule("headings.bound_vehicle")
 
 

@@ -59,8 +59,8 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
         return reading
     crash, seated = _seated(roads, taken, rules, heard, opinion.weights)
     taken |= seated
-    roads, used = replace(roads, crash=crash), used | seated.keys()
-    facts = [fact for key in taken if key in used | laid for fact in facts_of(key, taken[key], crash)]
+    used |= laid | seated.keys()
+    facts = [fact for key in taken if key in used for fact in facts_of(key, taken[key], crash)]
     return _told(reading, crash, roads, facts)
 
 
@@ -77,10 +77,12 @@ def _seated(
     lanes that they had assumed. Not of vehicles that the model has on another way.
     """
     found, weight = dict[str, Taken](), weights.get("lane")
+    if weight is None:
+        return roads.crash, found
     for v in roads.crash.vehicles:
         key, way = f"lane.{v.id}", heard.get(f"heading.{v.id}")
         rule, said = rules.get(key), heard.get(key)
-        if weight is None or key in taken or said is None or v.heading is None or (rule is not None and rule.told):
+        if key in taken or said is None or v.heading is None or (rule is not None and rule.told):
             continue
         if f"lanes.{axis_of(v.heading)}" not in roads.taken or (way is not None and way.value != v.heading):
             continue
