@@ -49,16 +49,16 @@ check-deploy: setup ## every service started for real, and the containers' servi
 	$(BIN)/python -m deploy.check
 
 bench: setup ## time and share of every stage over the demo reports
-	$(BIN)/python -m benchmarks.stages
+	$(BIN)/python -m research.benchmarks.services.stages
 
 bench-decode: setup ## context-aware decoding against greedy, in ratios
-	$(BIN)/python -m benchmarks.decode
+	$(BIN)/python -m research.benchmarks.decoding.decode
 
 bench-faults: setup ## kill -9 at random points, full disks, locked databases; then the same again (KILLS=100 SEED=1)
-	$(BIN)/python -m benchmarks.faults --kills $(or $(KILLS),100) --seed $(or $(SEED),1)
+	$(BIN)/python -m research.benchmarks.faults --kills $(or $(KILLS),100) --seed $(or $(SEED),1)
 
 train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); goes on from its checkpoint
-	$(BIN)/python -m mini.train --out mini/train --device $(or $(DEVICE),cpu) --budget $(or $(BUDGET),3600)
+	$(BIN)/python -m research.training.train --out runs/training --device $(or $(DEVICE),cpu) --budget $(or $(BUDGET),3600)
 
 .venv-qc/.ready:
 	$(PYTHON) -m venv .venv-qc

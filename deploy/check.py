@@ -27,7 +27,7 @@ import httpx
 import psutil
 
 from deploy import compose
-from flows.deployments import health
+from flows.deploy import health
 from sgcad_core import settings
 from sgcad_core.errors import MissingTool, SgcadError
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import httpx
 
-from flows.deployments import health
-from flows.deployments.defaults import inbox_address
-from flows.deployments.place import Place
+from flows.deploy import health
+from flows.deploy.defaults import inbox_address
+from flows.deploy.storage import Place
 from sgcad_core import settings
 from sgcad_core.errors import MissingTool
 

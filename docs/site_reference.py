@@ -67,7 +67,7 @@ def _plugins() -> Iterator[str]:
     for kind in KINDS:
         yield f"\n## {kind}\n"
         for name, point in catalogue(kind).items():
-            if point.value.startswith(("plugins.", "mini.")):
+            if point.value.startswith("plugins."):
                 yield from _plugin(kind, name, plugin_class(kind, name))
 
 
@@ -99,5 +99,10 @@ def _cell(text: str) -> str:
 def _interfaces() -> Iterator[str]:
     yield "# Interfaces\n"
     yield "The whole extension surface, and the records that its methods take and return.\n"
-    for module in ("sgcad_core.interfaces", "sgcad_core.records", "sgcad_core.evidence", "sgcad_core.errors"):
+    for module in (
+        "sgcad_core.interfaces",
+        "sgcad_core.case.records",
+        "sgcad_core.case.evidence",
+        "sgcad_core.errors",
+    ):
         yield f"::: {module}\n"

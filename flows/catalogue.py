@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from flows import fitting
+from flows import memory_check
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
@@ -89,7 +89,7 @@ def describe_config(config: Config) -> None:
     for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
         table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)
-    if line := fitting.told(config):
+    if line := memory_check.told(config):
         console.print(escape(line), soft_wrap=True)
 
 

@@ -18,19 +18,19 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
+from flows.case.revise_command import revise
 from flows.desk_commands import desk_app
-from flows.drives.commands import drive, vary
-from flows.index import index_app
+from flows.drive.commands import drive, vary
+from flows.index_commands import index_app
 from flows.plugin_commands import plugins_app
 from flows.results.commands import report, score, table
-from flows.revising_commands import revise
 from flows.terminal import escape_plain
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
-    from flows.batch import Batch
-    from flows.watching import Watch
+    from flows.batch.plan_batch import Batch
+    from flows.batch.progress_bar import Watch
 
 Result = TypeVar("Result")
 
@@ -81,7 +81,7 @@ def run(
     encoding: Encoding = "",
 ) -> None:
     """Turn reports into scenarios."""
-    from flows.cases import cases_of
+    from flows.batch.find_cases import cases_of
 
     _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
 
@@ -98,7 +98,7 @@ def evaluate(
     encoding: Encoding = "",
 ) -> None:
     """Run every case of a folder under one or several configs; run again to go on where it stopped."""
-    from flows.cases import cases_in
+    from flows.batch.find_cases import cases_in
 
     judged = [f"judge.name={judge}"] if judge else []
     _batch(cases_in(cases), config, [*(overrides or ()), *judged, *_encoded(encoding)], out, jobs, fresh)
@@ -118,25 +118,25 @@ def _batch(
     fresh: bool,
 ) -> None:
     """Check everything, then start."""
-    from flows import batch as batches
+    from flows.batch import plan_batch as batches
 
     made = batches.batch_of(found, settings.configs_or_default(config), out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
-    from flows import start
+    from flows.batch import run_batch
 
-    raise typer.Exit(_carry_out(made, lambda watch: start.evaluate(made, watch.ended, on_turn=watch.turn))[0])
+    raise typer.Exit(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_turn=watch.turn))[0])
 
 
 def _carry_out(made: Batch, work: Callable[[Watch], Result]) -> tuple[int, Result]:
     """Work under a progress bar, told at its end; the exit code and what the work returned."""
-    from flows import named, summary, watching
+    from flows.batch import config_folder, progress_bar, summary
 
     for config in made.configs:
-        if line := named.replaced(made.out / config.name, config):
+        if line := config_folder.replaced(made.out / config.name, config):
             sys.stderr.write(f"sgcad: note: {line}\n")
     tally = summary.Tally(made)
     stopped = _heed_interrupts()
     try:
-        with watching.watching(tally) as watch:
+        with progress_bar.watching(tally) as watch:
             result = work(watch)
     except BaseException as fault:
         # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
@@ -163,19 +163,19 @@ def study(
 
     A study begun before goes on by its name alone, with the cases and overrides it was begun with.
     """
-    from flows.study import again, away, plan, running, spec
+    from flows.study import hosts_preflight, plan, resume, run_study, spec
 
-    known = again.before(file, out)
-    given = again.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
+    known = resume.before(file, out)
+    given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
     study = spec.load_study(known.file)
     made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)
     if hosts:
-        meeting = away.Away(hosts, deployment)
-        code, submitted = _carry_out(made.batch, lambda watch: away.run(made, meeting, watch.ended))
-        typer.echo(away.resubmitted_lines(submitted))
+        meeting = hosts_preflight.Away(hosts, deployment)
+        code, submitted = _carry_out(made.batch, lambda watch: hosts_preflight.run(made, meeting, watch.ended))
+        typer.echo(hosts_preflight.resubmitted_lines(submitted))
         raise typer.Exit(code)
-    code, cost = _carry_out(made.batch, lambda watch: running.run(made, watch.ended, watch.turn))
-    typer.echo(running.cost_line(made, cost))
+    code, cost = _carry_out(made.batch, lambda watch: run_study.run(made, watch.ended, watch.turn))
+    typer.echo(run_study.cost_line(made, cost))
     raise typer.Exit(code)
 
 
@@ -205,9 +205,9 @@ def play(
     until: Annotated[float, typer.Option(help="Seconds after which it is cut.", min=0.1, max=300)] = 300.0,
 ) -> None:
     """Play any scenario file: trajectories.csv, player.html, contacts.json, metrics.json, played.json."""
-    from flows import foreign
+    from flows.player import play_any_xosc
 
-    for folder in foreign.play(file, out, given or (), maps or (), sets, until):
+    for folder in play_any_xosc.play(file, out, given or (), maps or (), sets, until):
         typer.echo(str(folder / "player.html"))
 
 
@@ -216,7 +216,7 @@ def explain(
     case: Annotated[Path, typer.Argument(help="A case's folder in a run, or a report, which is read on the spot.")],
 ) -> None:
     """What was read of a report: each sentence with its facts, what follows from them, what is assumed."""
-    from flows.explain import explain as account
+    from flows.case.explain import explain as account
 
     typer.echo(escape_plain(account(case)))
 

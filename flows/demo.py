@@ -9,11 +9,12 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from flows import single, start, summary, watching
-from flows.batch import Batch, batch_of
-from flows.cases import cases_in
+from flows.batch import progress_bar, run_batch, summary
+from flows.batch.find_cases import cases_in
+from flows.batch.plan_batch import Batch, batch_of
+from flows.case import case_in_words
+from flows.case.case_folder import CaseFolder
 from flows.cli import DEFAULT_OUT, guarded
-from flows.store import CaseFolder
 from flows.terminal import escape_plain
 from sgcad_core import settings
 
@@ -28,8 +29,8 @@ def main(arguments: Sequence[str] = ()) -> int:
     _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
     _say(f"for each, with configs/{config}. The first start makes two databases: half a minute.")
     tally = summary.Tally(batch)
-    with watching.watching(tally) as watch:
-        start.evaluate(batch, watch.ended, on_turn=watch.turn)
+    with progress_bar.watching(tally) as watch:
+        run_batch.evaluate(batch, watch.ended, on_turn=watch.turn)
     for line in [*met(tally), *ending(batch)]:
         _say(line)
     return tally.exit_code()
@@ -39,7 +40,7 @@ def met(tally: summary.Tally) -> list[str]:
     """One line a case: who hits whom, or why nothing does."""
     results = sorted((ending.result for _, ending in tally.endings), key=lambda result: str(result["case"]))
     return [
-        f"{result['case']}: {single.contact(result) if result['status'] == 'generated' else result['reason']}"
+        f"{result['case']}: {case_in_words.contact(result) if result['status'] == 'generated' else result['reason']}"
         for result in results
     ]
 

@@ -39,7 +39,7 @@ def export(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the pairs, the truth and the training rows.")],
 ) -> None:
     """What people mended, as data: pairs (read, mended), truth files for `sgcad score`, training rows."""
-    from flows.exporting import export as write
+    from flows.desk.export_edits import export as write
 
     for line in write(runs, out):
         typer.echo(line)

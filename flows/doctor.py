@@ -16,20 +16,20 @@ import httpx
 import psutil
 from rich.console import Console
 
-from flows import store
-from flows.deployments import health
+from flows.case import case_folder
+from flows.deploy import health
 from flows.server import prefect_server
 from flows.terminal import escape
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
-from sgcad_core.scratch import left, scratch
+from sgcad_core.system.temp_folders import left, scratch
 
 PACKAGES = (
     "prefect", "mlflow", "torch", "transformers", "eclipse-sumo", "libsumo", "scenariogeneration", "lancedb",
 )  # fmt: skip
 LOW_MB = 2000
 STALE_S = 24 * 3600
-CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.workers")
+CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.system.worker_process")
 """Modules that only ever run as another command's child."""
 
 
@@ -98,7 +98,7 @@ def _configs(out: Path) -> str:
 
 def _writable(out: Path) -> str:
     there = out.exists()
-    store.check_writable(out)
+    case_folder.check_writable(out)
     free = shutil.disk_usage(out).free // 2**20
     if not there:
         out.rmdir()
@@ -185,7 +185,7 @@ def _database(out: Path) -> str:
 
 def _leftovers(out: Path) -> str:
     processes = [str(p.pid) for p in _orphans()]
-    partial = [str(p) for p in out.glob(f"*/{store.PARTIAL}*")] if out.is_dir() else []
+    partial = [str(p) for p in out.glob(f"*/{case_folder.PARTIAL}*")] if out.is_dir() else []
     counted = {"half-written case folders": len(partial), "temporary folders": len(left())}
     found = [f"{count} {what}" for what, count in counted.items() if count]
     lying = f"{' and '.join(found)} of killed or running batches; the next batch clears them" if found else ""

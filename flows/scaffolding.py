@@ -14,7 +14,7 @@ import yaml
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.names import nearest
+from sgcad_core.near_names import nearest
 from sgcad_core.registry import KINDS, catalogue
 
 TEMPLATES = Path(__file__).parent / "scaffold"
@@ -22,25 +22,28 @@ IMPORTS = {
     "decoder": ("import pytest",),
     "validator": (
         "import pytest",
-        "from sgcad_core.records import CrashReport, Evidence, RoadNetwork",
-        "from sgcad_core.specs import RoadSpec",
+        "from sgcad_core.case.records import CrashReport, Evidence, RoadNetwork",
+        "from sgcad_core.records.specs import RoadSpec",
     ),
     "report_reader": ("import pytest", "from sgcad_core.errors import BadInput"),
-    "backbone": ("from sgcad_core.records import Context, Query",),
-    "road_writer": ("from sgcad_core.formats.sumo.net_xml import parse_net", "from sgcad_core.records import Context"),
+    "backbone": ("from sgcad_core.case.records import Context, Query",),
+    "road_writer": (
+        "from sgcad_core.formats.sumo.net_xml import parse_net",
+        "from sgcad_core.case.records import Context",
+    ),
     "scenario_writer": (
         "from sgcad_core.execution.playback import execution_of, played",
         "from sgcad_core.formats.sumo.netconvert import compile_network",
         "from sgcad_core.formats.sumo.plain_xml import plain_xml",
-        "from sgcad_core.records import Context",
-        "from sgcad_core.specs import Node, Road, RoadSpec",
+        "from sgcad_core.case.records import Context",
+        "from sgcad_core.records.specs import Node, Road, RoadSpec",
     ),
-    "driver": ("import pytest", "from sgcad_core.seat import Seat"),
+    "driver": ("import pytest", "from sgcad_core.case.driver_io import Seat"),
     "simulator": (
         "from sgcad_core.execution.scenario import compile_scenario",
         "from sgcad_core.formats.sumo.netconvert import compile_network",
         "from sgcad_core.formats.sumo.plain_xml import plain_xml",
-        "from sgcad_core.specs import Actor, BehaviorSpec, Contact, Node, Road, RoadSpec",
+        "from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Node, Road, RoadSpec",
     ),
 }
 """What a kind's test imports beside the plugin itself."""

@@ -41,7 +41,8 @@ LEAN = BULK | {
 }
 """Automations and the event feed need a server that stays. The user's own settings win.
 
-`python -m benchmarks.load` prints what a case takes of this server, of one that `make up` starts, and of a plain one.
+`python -m research.benchmarks.services.load` prints what a case takes of this server, of one that `make up` starts, and
+of a plain one.
 """
 
 

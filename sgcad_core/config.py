@@ -14,6 +14,7 @@ import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
 from sgcad_core import config_faults, settings
+from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
     Backbone,
@@ -29,9 +30,8 @@ from sgcad_core.interfaces import (
     Validator,
 )
 from sgcad_core.kinds import CrashRole
-from sgcad_core.names import nearest
-from sgcad_core.opinion import LEARNED
-from sgcad_core.records import Record
+from sgcad_core.near_names import nearest
+from sgcad_core.records.second_reader import LEARNED
 from sgcad_core.registry import plugin_class
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from sgcad_core.names import nearest
+from sgcad_core.near_names import nearest
 
 YAML_TYPES = {
     "dict_type": "expected a mapping (name: value, one a line)",

@@ -11,7 +11,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sgcad_core.frozen import Record
+from sgcad_core.record_base import Record
 
 
 class Hold(Record):

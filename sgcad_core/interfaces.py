@@ -14,8 +14,8 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
-from sgcad_core.experiment import Arm
-from sgcad_core.records import (
+from sgcad_core.case.driver_io import Seat, Task
+from sgcad_core.case.records import (
     Context,
     CrashReport,
     Evidence,
@@ -27,7 +27,7 @@ from sgcad_core.records import (
     RoadNetwork,
     Scenario,
 )
-from sgcad_core.seat import Seat, Task
+from sgcad_core.case.tracker_arm import Arm
 
 Ask = Callable[[Context, Query], Generation]
 """How a writer speaks to the model: backbone and decoder are already chosen, the call is recorded."""

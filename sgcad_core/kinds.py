@@ -1,8 +1,8 @@
 """The closed kinds, one record each: junctions, roads and maneuvers, and what is named in reports and cannot be drawn.
 
 Specs, layout, generator, reader and validators take their kinds from here; docs/kinds.md lists what a new one touches.
-Plain data: knows no pydantic, no narrative and no file format. Wordings stand in `sgcad_core/language`; a record names
-its rule.
+Plain data: knows no pydantic, no narrative and no file format. Wordings stand in `sgcad_core/reading/language`; a
+record names its rule.
 """
 
 from __future__ import annotations

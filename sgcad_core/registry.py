@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from pydantic import PydanticUserError
 
-from sgcad_core import interfaces, strangers
+from sgcad_core import foreign_plugins, interfaces
 from sgcad_core.errors import ConfigError
-from sgcad_core.names import nearest
+from sgcad_core.near_names import nearest
 
 if TYPE_CHECKING:
     from sgcad_core.interfaces import Plugin
@@ -45,7 +45,7 @@ def plugin_class(kind: str, name: str) -> type[Plugin]:
     found, where = _imported(kind, name, known[name]), f"{kind} {name!r} ({known[name].value})"
     if not (isinstance(found, type) and issubclass(found, BASES[kind])):
         raise ConfigError(f"{where} is no {BASES[kind].__name__}: derive it from that class")
-    if lacks := strangers.faults(found, BASES[kind]):
+    if lacks := foreign_plugins.faults(found, BASES[kind]):
         raise ConfigError(f"{where}: {'; '.join(lacks)}")
     return found
 
@@ -74,4 +74,4 @@ def _plainly(fault: PydanticUserError) -> str:
 
 def installed(kind: str) -> dict[str, EntryPoint]:
     """Plugins of a kind whose module and class are there; imports none of them."""
-    return {name: point for name, point in catalogue(kind).items() if strangers.leads_somewhere(point)}
+    return {name: point for name, point in catalogue(kind).items() if foreign_plugins.leads_somewhere(point)}

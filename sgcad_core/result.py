@@ -10,29 +10,21 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from sgcad_core.account import Account, Note, account_of
-from sgcad_core.account.made import Made
+from sgcad_core.account.inputs import Made
 from sgcad_core.account.notes import notes_of
-from sgcad_core.edits import by_person
+from sgcad_core.case.records import ActorInfo, Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
+from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
-from sgcad_core.execution.judgement import Judgement
 from sgcad_core.execution.playback import sizes_of
-from sgcad_core.execution.written import actor_facts_written, road_facts_written
+from sgcad_core.execution.scenario_facts import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.narrative.limits import beyond
-from sgcad_core.narrative.traced import redactions
-from sgcad_core.records import (
-    ActorInfo,
-    Execution,
-    Fact,
-    Generation,
-    RoadNetwork,
-    Scenario,
-    StageOutcome,
-)
+from sgcad_core.reading.inference.reading_limits import beyond
+from sgcad_core.reading.text.traced_text import redactions
+from sgcad_core.records.edits import by_person
 from sgcad_core.roads.lane_graph import network_figures, segments
 
 if TYPE_CHECKING:
-    from sgcad_core.narrative.reading import Reading
+    from sgcad_core.reading.reading import Reading
 
 Status = Literal["generated", "refused", "exhausted", "failed"]
 STATUSES: tuple[Status, ...] = ("generated", "refused", "exhausted", "failed")

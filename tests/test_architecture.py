@@ -16,7 +16,7 @@ from sgcad_core import config, registry, settings
 from sgcad_core.interfaces import Plugin
 
 ROOT = Path(__file__).resolve().parent.parent
-SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "mini") for p in (ROOT / d).rglob("*.py"))
+SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "research") for p in (ROOT / d).rglob("*.py"))
 STUDIES = sorted((ROOT / "configs" / "studies").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(STUDIES))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())

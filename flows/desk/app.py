@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from flows.desk import changes, pages
-from flows.desk.desk import Desk, Gone
+from flows.desk.context import Desk, Gone
 from flows.desk.guard import Gate, Guard
 from flows.desk.index import Index
 from flows.desk.links import Links

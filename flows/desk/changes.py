@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
-from flows.desk.desk import Desk
+from flows.desk.context import Desk
 from flows.desk.mending import Changed, Done, Kind, Order, told
 from sgcad_core.errors import SgcadError, SimulationFailed, WrongEdit
 

@@ -65,8 +65,8 @@ class Asked:
 def serve(asked: Asked) -> None:
     """Serve until Ctrl-C. Raises ConfigError: no such folder, a port in use, a wrong address."""
     root, pages = _folder(asked.runs), (_page(asked.mlflow, "--mlflow"), _page(asked.prefect, "--prefect"))
+    from flows.case.case_links import noted_desk
     from flows.desk.app import application  # a second or two, which a wrong folder need not wait for
-    from flows.links import noted_desk
 
     gate = gate_of(asked)
     app = application(root, gate, *pages)
@@ -126,7 +126,7 @@ def _folder(runs: Path) -> Path:
 
 
 def _page(given: str, option: str) -> str:
-    from flows.links import address
+    from flows.case.case_links import address
 
     if given and not address(given):
         raise ConfigError(f"{option} {given}: no web address; give one such as http://127.0.0.1:5000")

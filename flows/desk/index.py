@@ -1,8 +1,8 @@
 """All cases below a results folder, kept in memory and read again where a result.json changed.
 
 A thread of its own reads, so that a page never waits for 10,000 files: it gets what is known by then, and how much is
-still to come. Cases are written whole or not at all (flows/store.py); what cannot be read all the same is a row that
-says so. Reads only.
+still to come. Cases are written whole or not at all (flows/case/case_folder.py); what cannot be read all the same is a
+row that says so. Reads only.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from flows.desk.rows import Row, row_of, unreadable
+from flows.desk.views.list_rows import Row, row_of, unreadable
 
 RESULT = "result.json"
 DEPTH = 4

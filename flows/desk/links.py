@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-from flows import links
+from flows.case import case_links
 
 DATABASE = "mlflow.db"
 _RUN = """
@@ -33,21 +33,21 @@ class Links:
 
     def of(self, key: str, config: str, case: str) -> list[tuple[str, str]]:
         """(name, address) of a case's runs."""
-        kept, here = links.kept(self.root / key), links.served(self.root)
+        kept, here = case_links.kept(self.root / key), case_links.served(self.root)
         prefect, mlflow = self.prefect or here.prefect, self.mlflow or here.mlflow
         found = [("Prefect", self._prefect(kept, prefect, f"{config}/{case}")),
-                 ("Prefect graph", links.resolved(kept["prefect"], prefect) if "prefect" in kept else ""),
+                 ("Prefect graph", case_links.resolved(kept["prefect"], prefect) if "prefect" in kept else ""),
                  ("MLflow", self._mlflow(kept, mlflow, key, config, case))]  # fmt: skip
         return [(name, address) for name, address in found if address]
 
     def _prefect(self, kept: dict[str, str], where: str, name: str) -> str:
         if "prefect_case" in kept:
-            return links.resolved(kept["prefect_case"], where)
+            return case_links.resolved(kept["prefect_case"], where)
         return f"{where}/runs?tab=task-runs&task-runs.name={quote(name)}" if where else ""
 
     def _mlflow(self, kept: dict[str, str], where: str, key: str, config: str, case: str) -> str:
         if "mlflow" in kept:
-            return links.resolved(kept["mlflow"], where)
+            return case_links.resolved(kept["mlflow"], where)
         run = self._run(key, config, case) if where else None
         return f"{where}/#/experiments/{quote(run[1])}/runs/{quote(run[0])}" if run else ""
 

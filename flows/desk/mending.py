@@ -16,10 +16,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from flows.desk.form import Findings
-from flows.desk.version import version_of
+from flows.desk.views.case_version import version_of
+from flows.desk.views.edit_form import Findings
 from sgcad_core.errors import SgcadError, SimulationFailed
-from sgcad_core.workers import Worker
+from sgcad_core.system.worker_process import Worker
 
 MEND_S, RUN_S = 60.0, 600.0
 """Longest mending; longest running again (a model may be asked)."""
@@ -125,7 +125,7 @@ class Mender:
 # ------------------------------------------------------------------ the far end
 def work(order: Order) -> Done | None:
     """Carry an order out over there. Raises WrongEdit, BadInput, ConfigError."""
-    from flows import revising
+    from flows.case import revise_case
 
     if order.kind == "warm":
         _warm_up(order.folder)
@@ -133,9 +133,9 @@ def work(order: Order) -> Done | None:
     if order.kind == "rerun":
         return _rerun(order.folder)
     if order.kind == "undo":
-        done = revising.undo(order.folder, seen=order.seen)
+        done = revise_case.undo(order.folder, seen=order.seen)
     else:
-        done = revising.revise(order.folder, order.edits, who=order.who, why=order.why, seen=order.seen)
+        done = revise_case.revise(order.folder, order.edits, who=order.who, why=order.why, seen=order.seen)
     said = {name: [_line(finding) for finding in found] for name, found in done.findings.items()}
     return Done(str(done.result["status"]), said, done.seconds, done.changed)
 
@@ -147,11 +147,12 @@ def _line(finding: Any) -> str:
 
 def _rerun(folder: Path) -> Done:
     """The whole case once more, as its config says and with what people said of it."""
-    from flows import cases, chain, revising
+    from flows.batch import find_cases
+    from flows.case import chain, revise_case
     from sgcad_core.asking.refine import run_at_once
 
-    case = revising.opened(folder)
-    digest = cases.digest_of(case.case, case.config)
+    case = revise_case.opened(folder)
+    digest = find_cases.digest_of(case.case, case.config)
     ending = chain.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
     return Done(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
 
@@ -161,11 +162,11 @@ def _warm_up(folder: Path) -> None:
     process, matplotlib's fonts. A config with a model is only built: its model is not asked for nothing."""
     from matplotlib.figure import Figure
 
-    from flows import revising
-    from flows.chain import CaseRun
+    from flows.case import revise_case
+    from flows.case.chain import CaseRun
     from sgcad_core.asking.refine import run_at_once
 
-    case = revising.opened(folder)
+    case = revise_case.opened(folder)
     if case.config.backbone is None:
         CaseRun(case.config, case.case, run_at_once, edits=case.edits()).go()
     figure = Figure()

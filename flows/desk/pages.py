@@ -10,14 +10,13 @@ from urllib.parse import quote
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 
-from flows.desk import case as cases
-from flows.desk import choosing, form
-from flows.desk.choosing import Asked
-from flows.desk.desk import STATIC, Desk, Gone
-from flows.desk.roadmap import map_of
-from flows.desk.version import version_of
-from sgcad_core.edits import effective
+from flows.desk.context import STATIC, Desk, Gone
+from flows.desk.views import case_view, edit_form, filters
+from flows.desk.views.case_version import version_of
+from flows.desk.views.filters import Asked
+from flows.desk.views.map_shapes import map_of
 from sgcad_core.errors import SgcadError
+from sgcad_core.records.edits import effective
 
 router = APIRouter()
 PLAYER_POLICY = (
@@ -40,13 +39,13 @@ def list_page(request: Request) -> Response:
     desk, asked = desk_of(request), Asked.of(request.query_params)
     listing = desk.index.listing()
     everything = list(listing.rows.values())
-    rows = choosing.chosen(everything, asked)
-    shown, number, pages = choosing.page_of(rows, asked)
-    facets = choosing.counts(everything, asked)
+    rows = filters.chosen(everything, asked)
+    shown, number, pages = filters.page_of(rows, asked)
+    facets = filters.counts(everything, asked)
     return desk.render(
         request, "list.html", asked=asked, rows=shown, found=len(rows), total=len(everything), pending=listing.pending,
-        number=number, pages=pages, facets=facets, facet_words=choosing.FACETS, flags=choosing.FLAGS,
-        sorts=choosing.SORTS, first=(number - 1) * choosing.PAGE,
+        number=number, pages=pages, facets=facets, facet_words=filters.FACETS, flags=filters.FLAGS,
+        sorts=filters.SORTS, first=(number - 1) * filters.PAGE,
     )  # fmt: skip
 
 
@@ -56,31 +55,31 @@ def case_page(request: Request, key: str) -> Response:
     desk, asked = desk_of(request), Asked.of(request.query_params)
     row, folder = desk.case(key)
     result = desk.result(folder)
-    rows = choosing.chosen(desk.index.listing().rows.values(), asked)
-    before, after, number = choosing.around(rows, key)
-    page = cases.page_of(folder, result)
+    rows = filters.chosen(desk.index.listing().rows.values(), asked)
+    before, after, number = filters.around(rows, key)
+    page = case_view.page_of(folder, result)
     return desk.render(
-        request, "case.html", row=row, page=page, thing_of=cases.thing_of, road_map=map_of(folder, result), asked=asked,
-        before=before, after=after, number=number, found=len(rows), version=version_of(folder),
+        request, "case.html", row=row, page=page, thing_of=case_view.thing_of, road_map=map_of(folder, result),
+        asked=asked, before=before, after=after, number=number, found=len(rows), version=version_of(folder),
         links=desk.links.of(key, str(result.get("config") or ""), row.case), **mending_of(desk, page, folder),
     )  # fmt: skip
 
 
-def mending_of(desk: Desk, page: cases.CasePage, folder: Path) -> dict[str, Any]:
+def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, Any]:
     """What the page needs to mend a case; where that cannot be, why."""
-    from flows import revising
+    from flows.case import revise_case
 
     nothing = {"groups": page.groups, "can_mend": False, "edits": (), "additions": (), "stamp": ""}
     try:
-        edits = revising.opened(folder).edits()
-        fields = revising.editable(folder)
+        edits = revise_case.opened(folder).edits()
+        fields = revise_case.editable(folder)
     except SgcadError as fault:
         return nothing | {"no_mend": f"cannot be changed here: {fault}"}
     desk.mender.warm(folder)
     stands = effective(edits)
-    groups = form.groups_with(page.groups, fields, stands, desk.mender.said(folder))
-    return {"groups": groups, "can_mend": True, "no_mend": "", "edits": stands, "stamp": revising.stamp_of(edits),
-            "additions": list(form.additions(fields))}  # fmt: skip
+    groups = edit_form.groups_with(page.groups, fields, stands, desk.mender.said(folder))
+    return {"groups": groups, "can_mend": True, "no_mend": "", "edits": stands, "stamp": revise_case.stamp_of(edits),
+            "additions": list(edit_form.additions(fields))}  # fmt: skip
 
 
 @router.get("/version/{key:path}")
@@ -100,7 +99,7 @@ def player(request: Request, key: str) -> Response:
 def drawing(request: Request, number: int, key: str) -> Response:
     """One of the report's drawings, from 1."""
     _, folder = desk_of(request).case(key)
-    found = cases.diagrams_of(folder)
+    found = case_view.diagrams_of(folder)
     if not 1 <= number <= len(found):
         raise Gone(f"This report has {len(found)} drawings; there is no number {number}.")
     return _file(request, key, found[number - 1].name, "image/png", {})
@@ -109,7 +108,7 @@ def drawing(request: Request, number: int, key: str) -> Response:
 @router.get("/file/{name}/{key:path}")
 def download(request: Request, name: str, key: str) -> Response:
     """One of the case's files, to keep."""
-    if name not in cases.FILES:
+    if name not in case_view.FILES:
         raise Gone(f"{name!r} is no file of a case.")
     case = key.rpartition("/")[2]
     return _file(request, key, name, "application/octet-stream", {}, filename=f"{case}-{name}")
@@ -118,7 +117,7 @@ def download(request: Request, name: str, key: str) -> Response:
 @router.get("/attempt/{attempt}/{name}/{key:path}")
 def attempt(request: Request, attempt: str, name: str, key: str) -> Response:
     """What a writer was asked and answered, as plain text."""
-    if not cases.ATTEMPT.fullmatch(attempt) or name not in cases.ATTEMPT_FILES:
+    if not case_view.ATTEMPT.fullmatch(attempt) or name not in case_view.ATTEMPT_FILES:
         raise Gone(f"{attempt}/{name} is no file of an attempt.")
     return _file(request, key, f"attempts/{attempt}/{name}", "text/plain; charset=utf-8", {})
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from flows.results.plots import Plot
+    from flows.results.figures.plots import Plot
     from flows.results.table import Tables
 
 TEXT_WIDTH = 120
@@ -59,10 +59,10 @@ def report(
     ] = None,
 ) -> None:
     """One HTML file with a study's tables, figures and cases; it needs no server and fetches nothing."""
-    from flows.results.handed_scenes import drive_frames
+    from flows.results.figures.drive_frames import drive_frames
+    from flows.results.figures.plots import plots_of
+    from flows.results.figures.scenes import scenes_of
     from flows.results.page import page
-    from flows.results.plots import plots_of
-    from flows.results.scenes import scenes_of
 
     tables = _tables(study, out, truth, only)
     plots = [*plots_of(tables), *scenes_of(tables), *drive_frames(tables)]
@@ -109,9 +109,9 @@ def score(
     file: Annotated[Path | None, typer.Option("--json", help="Write all marks to a file.")] = None,
 ) -> None:
     """Hold runs against what is true of their cases: roads, motion, contacts, evasion, rest, later impacts."""
-    from flows import scoring  # only where it is asked for: --help is to be quick
+    from flows.results import label_scoring  # only where it is asked for: --help is to be quick
 
-    scored = scoring.score(runs, truth, labels, second, only)
+    scored = label_scoring.score(runs, truth, labels, second, only)
     if file:
-        file.write_text(scoring.as_json(scored), encoding="utf-8")
+        file.write_text(label_scoring.as_json(scored), encoding="utf-8")
     typer.echo(scored.text(each))

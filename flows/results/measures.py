@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 
 from flows.results.reading import Ran, Study, made_of
 from sgcad_core.metrics.generation import quality, written_files
-from sgcad_core.metrics.truth import NETWORK_FIELDS, compare
+from sgcad_core.metrics.labels.label_match import NETWORK_FIELDS, compare
 from sgcad_core.result import STATUSES, as_declared, counts_of
 
 Kind = Literal["share", "mean", "ratio"]

@@ -14,10 +14,10 @@ from functools import cache
 from html import escape
 from pathlib import Path
 
-from flows.results.gallery import gallery
-from flows.results.handed import card
+from flows.results.drive_cards import card
+from flows.results.figures.gallery import gallery
+from flows.results.figures.plots import Plot
 from flows.results.measures import Measure
-from flows.results.plots import Plot
 from flows.results.published import publication
 from flows.results.table import Cell, Row, Table, Tables
 from flows.results.writing import HOW, SIGNIFICANT, bracket, header, number, p_text

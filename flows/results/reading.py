@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from flows.results.levels import level_of
+from sgcad_core.case.records import Finding, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.generation import AttemptSeen, CaseSeen
-from sgcad_core.metrics.truth import Made
-from sgcad_core.metrics.truth_motion import Path as Motion
-from sgcad_core.records import Finding, Stage
+from sgcad_core.metrics.labels.label_match import Made
+from sgcad_core.metrics.labels.motion_label_match import Path as Motion
 from sgcad_core.roads.lane_graph import road_counts
 
 STUDY = "study.json"

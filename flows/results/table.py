@@ -16,9 +16,9 @@ from flows.results.levels import LABELS
 from flows.results.measures import Measure, study_values
 from flows.results.published import Published, publication
 from flows.results.reading import Arm, Study
+from sgcad_core.case.records import Floats
 from sgcad_core.metrics import statistics
 from sgcad_core.metrics.statistics import Interval
-from sgcad_core.records import Floats
 
 Values = Mapping[str, Mapping[str, Mapping[str, float]]]
 """arm -> case -> measure key -> value."""

@@ -2,7 +2,7 @@
 
     made = plan(load_study("alpha"), out=Path("runs"), cases=[Path("my-cases")])
     made.write()                        # runs/studies/alpha/study.json
-    made.batch, made.jobs               # what flows.study.running does, whole or in parts
+    made.batch, made.jobs               # what flows.study.run_study does, whole or in parts
 
 Starts nothing. The layout depends on the study, the cases and the code only, so that several hosts that plan
 the same study find the same jobs under the same names.
@@ -19,10 +19,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows import cases as case_sets
-from flows import store
-from flows.batch import Batch, Job, batch_over
-from flows.cases import Case
+from flows.batch import find_cases as case_sets
+from flows.batch.find_cases import Case
+from flows.batch.plan_batch import Batch, Job, batch_over
+from flows.case import case_folder
 from flows.results.published import publication
 from flows.study import machine
 from flows.study.spec import Arm, Study, fault_lines, is_study
@@ -82,7 +82,7 @@ class Plan:
         """Write study.json, whole or not at all; its path."""
         file = self.folder / DOCUMENT
         partial = self.folder / f".{DOCUMENT}.partial"
-        store.write_json(partial, self.document())
+        case_folder.write_json(partial, self.document())
         partial.replace(file)
         return file
 

@@ -2,7 +2,7 @@
 
 All arms of a case stay in one shard, so that the stages they share are computed once. A shard knows its jobs
 by their digests: a host whose package, prompts or plugins differ refuses instead of mixing results. Knows no
-Prefect: `flows/deployments/shards.py` makes flow runs of it.
+Prefect: `flows/deploy/shards.py` makes flow runs of it.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows import cases
-from flows.batch import MAX_JOBS, Batch, Crew, Job, cores
-from flows.cases import Case
-from flows.chain import Ending
-from flows.sharing import Sharing, keys_of
-from flows.store import CaseFolder
-from flows.study.lease import BEAT_S, Lease, LeaseLost
-from flows.study.share import Share, mark_name
+from flows.batch import find_cases
+from flows.batch.find_cases import Case
+from flows.batch.plan_batch import MAX_JOBS, Batch, Crew, Job, cores
+from flows.batch.stage_cache import Sharing, keys_of
+from flows.case.case_folder import CaseFolder
+from flows.case.chain import Ending
+from flows.study.shard_lease import BEAT_S, Lease, LeaseLost
+from flows.study.shared_storage import Share, mark_name
 from sgcad_core.config import Config, build
 from sgcad_core.errors import ConfigError
 
@@ -157,8 +157,8 @@ class Shard:
         return Case(place, case)
 
     def _job(self, work: Work, config: Config, case: Case) -> Job:
-        source = cases.source_digest(case.source)
-        digest = cases.job_digest(source, cases.config_digest(config))
+        source = find_cases.source_digest(case.source)
+        digest = find_cases.job_digest(source, find_cases.config_digest(config))
         if digest != work.digest:
             raise ConfigError(
                 f"{work.arm}/{work.case}: this host would compute another result than the study asks for (digest "
@@ -182,7 +182,7 @@ def _config(raw: dict[str, Any], arm: str) -> Config:
 
 
 Run = Callable[[Sequence[Job], Crew, Callable[[Job, Ending, str], None]], object]
-"""How a shard's jobs are run: `flows.evaluate.drive` inside a flow run."""
+"""How a shard's jobs are run: `flows.batch.evaluate_flow.drive` inside a flow run."""
 
 
 def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | None = None) -> Tally:

@@ -24,12 +24,12 @@ from typing import Any, Self
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from flows.cases import safe_id
-from flows.study import crossing
+from flows.batch.find_cases import safe_id
+from flows.study import cross_product
 from sgcad_core import settings
 from sgcad_core.config_faults import unknown
 from sgcad_core.errors import ConfigError
-from sgcad_core.names import nearest
+from sgcad_core.near_names import nearest
 
 STUDIES = settings.CONFIGS / "studies"
 MAX_ARMS = 500
@@ -75,13 +75,13 @@ class Cross(_Part):
         """All combinations, the last key changing fastest."""
         return tuple(
             Arm(
-                name=crossing.name_of(factors),
+                name=cross_product.name_of(factors),
                 config=str(factors.get("config", self.config)),
-                set=(*self.set, *crossing.overrides_of(factors)),
-                label=crossing.label_of(factors),
+                set=(*self.set, *cross_product.overrides_of(factors)),
+                label=cross_product.label_of(factors),
                 factors=factors,
             )
-            for factors in crossing.combinations(self.over)
+            for factors in cross_product.combinations(self.over)
         )
 
 

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from sgcad_core import settings
-from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.system.digest import file_sha256
 
 PACKAGE = "package:"
 SUFFIX = ".gguf"

@@ -20,9 +20,9 @@ from safetensors import SafetensorError, safe_open
 
 from plugins.backbone import hf_adapter
 from sgcad_core import settings
-from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
+from sgcad_core.system.digest import file_sha256
 
 TOLD = "told.safetensors"
 Prepare = Callable[[Image.Image, int], Mapping[str, Any]]

@@ -21,8 +21,8 @@ from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.hf_load import Loaded
 from plugins.backbone.prompt import Parts
+from sgcad_core.case.records import Diagram
 from sgcad_core.errors import ConfigError
-from sgcad_core.records import Diagram
 
 _KEPT_PICTURES = 64
 _GAP = "\n\n"

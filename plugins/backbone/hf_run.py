@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from plugins.backbone.prompt import Parts
-from sgcad_core.asking.fields import first_tokens, grounding, is_refusal, name_of
+from sgcad_core.asking.json_field_spans import first_tokens, grounding, is_refusal, name_of
+from sgcad_core.case.records import Finding, Generation, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
-from sgcad_core.records import Finding, Generation, Token
 
 if TYPE_CHECKING:
     from plugins.backbone.engine.grammar import Grammar, GrammarMaker

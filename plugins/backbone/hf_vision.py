@@ -17,8 +17,8 @@ from pydantic import Field, PrivateAttr, model_validator
 from plugins.backbone import hf_gguf, hf_run, hf_size
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
+from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.interfaces import Backbone, Decoder
-from sgcad_core.records import Context, Generation, Query
 
 _KEPT_ANSWERS = 256
 _WHOLE_BYTES = 1 << 24

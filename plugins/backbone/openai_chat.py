@@ -18,10 +18,10 @@ from pydantic import Field
 
 from plugins.backbone.prompt import parts
 from sgcad_core import settings
-from sgcad_core.asking.fields import is_refusal
+from sgcad_core.asking.json_field_spans import is_refusal
+from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.errors import ConfigError, InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Backbone, Decoder
-from sgcad_core.records import Context, Generation, Query
 
 _RETRIED = frozenset({408, 409, 425, 429})
 _LONGEST_WAIT_S = 60.0

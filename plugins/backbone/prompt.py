@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, replace
 
-from sgcad_core.records import Context, Diagram, Query
+from sgcad_core.case.records import Context, Diagram, Query
 
 
 @dataclass(frozen=True)

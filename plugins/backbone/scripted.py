@@ -20,10 +20,10 @@ from typing import Any, ClassVar
 import yaml
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError, model_validator
 
-from sgcad_core.asking.fields import is_refusal
+from sgcad_core.asking.json_field_spans import is_refusal
+from sgcad_core.case.records import Context, Generation, Query, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.interfaces import Backbone, Decoder
-from sgcad_core.records import Context, Generation, Query, Stage
 
 
 class Answer(BaseModel):

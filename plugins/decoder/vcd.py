@@ -20,7 +20,7 @@ from PIL import Image
 from pydantic import Field
 
 from plugins.decoder.base import Sampled, contrast, plausible_only
-from sgcad_core.records import Context, Diagram
+from sgcad_core.case.records import Context, Diagram
 
 
 class Vcd(Sampled):

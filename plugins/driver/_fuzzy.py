@@ -23,8 +23,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from sgcad_core.case.driver_io import STEP_S, Task, View
 from sgcad_core.handover.foresight import Ahead, ahead
-from sgcad_core.seat import STEP_S, Task, View
 
 
 @dataclass(frozen=True)

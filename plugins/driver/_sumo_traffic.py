@@ -12,9 +12,9 @@ from xml.sax.saxutils import quoteattr
 import libsumo
 
 from plugins.driver._sumo_orders import Begin, Habits, Mover, Order, Place, Step
+from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.scratch import scratch
-from sgcad_core.seat import STEP_S
+from sgcad_core.system.temp_folders import scratch
 
 _OPTIONS = (
     "--step-length", str(STEP_S), "--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never",

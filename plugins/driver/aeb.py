@@ -11,9 +11,9 @@ import math
 
 from pydantic import Field
 
+from sgcad_core.case.driver_io import Command, RoadUser, Seat, Task, View, followed
 from sgcad_core.handover.foresight import meetings
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import Command, RoadUser, Seat, Task, View, followed
 
 
 class Aeb(Driver):

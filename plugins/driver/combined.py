@@ -10,10 +10,10 @@ from typing import Any
 
 from pydantic import Field, field_validator
 
+from sgcad_core.case.driver_io import Command, Seat, Task, View
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Driver
 from sgcad_core.registry import plugin_class
-from sgcad_core.seat import Command, Seat, Task, View
 
 
 class Combined(Driver):

@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 from pydantic import Field, model_validator
 
+from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import STEP_S, Command, RoadUser, Seat, Task, View
 
 _LONGEST_LINE = 1 << 20
 Answer = Callable[[dict[str, Any]], Any]

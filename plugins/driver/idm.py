@@ -15,9 +15,9 @@ import math
 
 from pydantic import Field
 
+from sgcad_core.case.driver_io import Command, Seat, Task, View
 from sgcad_core.handover.foresight import Ahead, ahead, meetings
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import Command, Seat, Task, View
 
 _CREEP_MPS = 0.5
 

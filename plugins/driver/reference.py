@@ -10,8 +10,8 @@ from typing import Literal
 
 from plugins.driver._careful import Careful
 from plugins.driver._fuzzy import Fuzzy
+from sgcad_core.case.driver_io import Command, Seat, Task, View, followed
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import Command, Seat, Task, View, followed
 
 
 class Reference(Driver):

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sgcad_core.case.driver_io import STEP_S, Command, Seat, Task, View
 from sgcad_core.errors import ConfigError
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import STEP_S, Command, Seat, Task, View
 
 _NEEDED = ("t_s", "x_m", "y_m", "heading_rad")
 

@@ -5,8 +5,8 @@ Meets the same crash by construction of the relative triggers; what it does not 
 
 from __future__ import annotations
 
+from sgcad_core.case.driver_io import STEP_S, Command, Seat, Task, View
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import STEP_S, Command, Seat, Task, View
 
 _SLOW_MPS = 1.0
 

@@ -16,14 +16,14 @@ from typing import Literal
 from pydantic import Field
 
 from plugins.driver._sumo_orders import Begin, End, Habits, Mover, Place, Step
+from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.handover.foresight import Ahead, ahead
 from sgcad_core.handover.route import poses_of, route_of
 from sgcad_core.interfaces import Driver
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.seat import STEP_S, Command, RoadUser, Seat, Task, View
-from sgcad_core.workers import Worker
+from sgcad_core.system.worker_process import Worker
 
 _IN_THE_WAY_M = 0.2
 """From the strip that the ego sweeps."""

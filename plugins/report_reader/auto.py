@@ -9,9 +9,9 @@ from plugins.report_reader.folder import Folder
 from plugins.report_reader.nhtsa_xml import NhtsaXml
 from plugins.report_reader.pdf import Pdf
 from plugins.report_reader.text import Text
+from sgcad_core.case.records import CrashReport
 from sgcad_core.errors import BadInput
-from sgcad_core.records import CrashReport
-from sgcad_core.report_files import leads_inside
+from sgcad_core.system.report_files import leads_inside
 
 READERS: dict[str, type[EvidenceReader]] = {".txt": Text, ".md": Text, ".xml": NhtsaXml, ".pdf": Pdf}
 

@@ -18,9 +18,9 @@ from typing import Literal, get_args
 
 from PIL import Image, ImageFilter
 
-from sgcad_core.language import rule
-from sgcad_core.narrative.traced import Traced, joined, placed, runs
-from sgcad_core.records import CrashReport, Diagram
+from sgcad_core.case.records import CrashReport, Diagram
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.text.traced_text import Traced, joined, placed, runs
 
 Level = Literal[
     "full", "semantic_noise", "blur_weak", "blur_medium", "blur_strong", "modal_conflict", "critical_depletion",

@@ -17,11 +17,11 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from plugins.report_reader.degrade import Level, degrade
+from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import ReportReader
-from sgcad_core.narrative.privacy import redacted
-from sgcad_core.narrative.traced import Traced, joined, runs
-from sgcad_core.records import CrashReport, Diagram
+from sgcad_core.reading.text.privacy import redacted
+from sgcad_core.reading.text.traced_text import Traced, joined, runs
 
 MAX_NARRATIVE = 100_000
 """Characters: the longest real report here has 6,000."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from plugins.report_reader.evidence import EvidenceReader, decode, diagram, safe_case
 from plugins.report_reader.nhtsa_xml import NhtsaXml, parse_case
 from plugins.report_reader.pdf import Pdf
+from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.errors import BadInput
-from sgcad_core.records import CrashReport, Diagram
-from sgcad_core.report_files import check_inside, files_below, is_regular, read_regular
+from sgcad_core.system.report_files import check_inside, files_below, is_regular, read_regular
 
 TEXTS = ("report.txt", "narrative.txt")
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp")

@@ -13,9 +13,9 @@ from typing import NamedTuple
 from lxml import etree
 
 from plugins.report_reader.evidence import EvidenceReader
+from sgcad_core.case.records import CrashReport
 from sgcad_core.errors import BadInput
-from sgcad_core.records import CrashReport
-from sgcad_core.report_files import read_regular
+from sgcad_core.system.report_files import read_regular
 
 MAX_XML_BYTES = 20_000_000
 _ILLEGAL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f]")

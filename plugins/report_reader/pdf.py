@@ -9,9 +9,9 @@ from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
 from plugins.report_reader.evidence import MAX_NARRATIVE, UNREADABLE, EvidenceReader, diagram
+from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.errors import BadInput
-from sgcad_core.records import CrashReport, Diagram
-from sgcad_core.report_files import read_regular
+from sgcad_core.system.report_files import read_regular
 
 MAX_PAGES = 60
 MAX_DRAWN_BYTES = 8_000_000

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from plugins.report_reader.evidence import EvidenceReader, decode
-from sgcad_core.records import CrashReport
-from sgcad_core.report_files import read_regular
+from sgcad_core.case.records import CrashReport
+from sgcad_core.system.report_files import read_regular
 
 
 class Text(EvidenceReader):

@@ -18,9 +18,9 @@ from plugins.retriever.knowledge.chunk import KINDS, TASKS, Chunk, Kind, Task
 from plugins.retriever.knowledge.embedders import Embedder, Name, make
 from plugins.retriever.knowledge.manifest import Manifest, read_manifest
 from plugins.retriever.knowledge.topics import topics
+from sgcad_core.case.records import Passage
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Retriever
-from sgcad_core.records import Passage
 
 if TYPE_CHECKING:
     from plugins.retriever.knowledge.search import Hit, Index

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sgcad_core.case.records import Passage
 from sgcad_core.interfaces import Retriever
-from sgcad_core.records import Passage
 
 
 class NoRetrieval(Retriever):

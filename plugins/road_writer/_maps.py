@@ -14,15 +14,15 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from sgcad_core.case.records import PlainXml, RoadNetwork
 from sgcad_core.errors import ConfigError
 from sgcad_core.formats.sumo.existing_map import hub_legs, read_map
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.formats.sumo.turning import best_turn, turned
-from sgcad_core.records import PlainXml, RoadNetwork
+from sgcad_core.records.specs import RoadLayout
 from sgcad_core.roads.junction_words import JunctionLeg, describe, layout_legs
 from sgcad_core.roads.layout import COMPASS, hub_control, road_spec
-from sgcad_core.specs import RoadLayout
 
 BUILT_IN = Path(__file__).with_name("maps.yaml")
 ENDINGS = (".net.xml", ".xodr")

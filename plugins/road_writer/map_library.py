@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import ClassVar
 
 from plugins.road_writer._maps import compiled, library, nearest
+from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.unsupported import refuse_unsupported
-from sgcad_core.records import Context, Finding, Passage, RoadNetwork
+from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
+from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 
 
 class MapLibrary(RoadWriter):

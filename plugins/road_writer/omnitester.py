@@ -16,13 +16,13 @@ from typing import ClassVar, Literal, cast
 from pydantic import Field, PrivateAttr
 
 from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
-from sgcad_core.asking.memo import OncePerCase
+from sgcad_core.asking.case_cache import OncePerCase
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
-from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.records.specs import Spec
 from sgcad_core.registry import plugin_class
-from sgcad_core.specs import Spec
 
 
 class RoadInterpretation(Spec):

@@ -16,19 +16,19 @@ from typing import Any, ClassVar, Literal, cast
 
 from pydantic import Field
 
+from sgcad_core.case.records import Context, Finding, Passage, PlainXml, RoadNetwork
 from sgcad_core.errors import ConfigError, Refused
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
-from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.unsupported import refuse_unsupported
-from sgcad_core.records import Context, Finding, Passage, PlainXml, RoadNetwork
+from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
+from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
+from sgcad_core.records.specs import RoadLayout
 from sgcad_core.registry import plugin_class
 from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, layout_legs
 from sgcad_core.roads.layout import LEG_M
-from sgcad_core.specs import RoadLayout
 
 
 class OsmDirect(RoadWriter):

@@ -12,14 +12,14 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from sgcad_core.asking.fenced import xml_document
+from sgcad_core.asking.fenced_blocks import xml_document
 from sgcad_core.asking.prompts import MAX_ANSWER, answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import Context, Finding, Passage, PlainXml, Query, RoadNetwork
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.xml import parse_xml, to_text
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.records import Context, Finding, Passage, PlainXml, Query, RoadNetwork
-from sgcad_core.specs import Spec
+from sgcad_core.records.specs import Spec
 
 _PARTS = ("nodes", "edges", "connections")
 _ENVELOPED = re.compile(r'\{\s*"(nodes|edges|connections)"\s*:')

@@ -11,16 +11,16 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.language import rule
-from sgcad_core.narrative.layout_facts import Defaults, layout_of_facts
-from sgcad_core.narrative.roads import RoadFacts
-from sgcad_core.narrative.told_roads import told_roads
-from sgcad_core.narrative.unsupported import refuse_unsupported
-from sgcad_core.records import Context, Finding, Passage, RoadNetwork
+from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
+from sgcad_core.reading.roads.road_facts import RoadFacts
+from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.roads.layout import LEG_M, road_spec
 
 _CRASH_WORDS = rule("report.crash_words")

@@ -15,10 +15,10 @@ from pydantic import Field
 from plugins.road_writer._maps import compiled, library, nearest
 from sgcad_core import kinds
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork
+from sgcad_core.records.specs import Compass, Leg, Median, RoadLayout, Spec
 from sgcad_core.roads.layout import COMPASS
-from sgcad_core.specs import Compass, Leg, Median, RoadLayout, Spec
 
 Place = Literal["straight_road", "curved_road", "t_junction", "crossing", "driveway", "merge"]
 SceneControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]

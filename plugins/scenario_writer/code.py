@@ -14,16 +14,16 @@ from pydantic import Field
 from plugins.scenario_writer.api import nearest_entry
 from plugins.scenario_writer.lanes import lane_lines
 from plugins.scenario_writer.sandbox.outside import Fault, Limits, run_script
-from sgcad_core.asking.fenced import fenced_blocks
+from sgcad_core.asking.fenced_blocks import fenced_blocks
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.motion import BoxShape
-from sgcad_core.formats.openscenario.player import entity_boxes
+from sgcad_core.formats.openscenario.playing.player import entity_boxes
+from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
+from sgcad_core.records.specs import SIZE_M, ActorId, ActorKind, Contact, Maneuver, Spec
 from sgcad_core.roads.describe import describe_network
-from sgcad_core.specs import SIZE_M, ActorId, ActorKind, Contact, Maneuver, Spec
 
 
 class CodedActor(Spec):

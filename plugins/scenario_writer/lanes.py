@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
+from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.roads.lane_graph import Connection, Edge, Floats, LaneGraph
 
 MOST_POINTS = 5

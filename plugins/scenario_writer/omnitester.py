@@ -14,15 +14,15 @@ from pydantic import Field, PrivateAttr
 
 from plugins.scenario_writer.code import CodedActor, Declaration
 from plugins.scenario_writer.edges import edge_lines
-from sgcad_core.asking.fenced import xml_document
-from sgcad_core.asking.memo import OncePerCase
+from sgcad_core.asking.case_cache import OncePerCase
+from sgcad_core.asking.fenced_blocks import xml_document
 from sgcad_core.asking.prompts import MAX_ANSWER, answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.routes_xml import movers
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
-from sgcad_core.specs import SIZE_M, Spec
+from sgcad_core.records.specs import SIZE_M, Spec
 
 
 class VehicleInterpretation(Spec):

@@ -9,19 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
+from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.doubts import least_doubted
+from sgcad_core.execution.plan_score import least_doubted
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
+from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.narrative.mended import holds
-from sgcad_core.narrative.reading import Reading
-from sgcad_core.records import Context, Finding, Passage, RoadNetwork, Scenario
-from sgcad_core.specs import RoadSpec
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.reading_with_edits import holds
+from sgcad_core.records.specs import RoadSpec
 
 
 class Rules(ScenarioWriter):

@@ -11,15 +11,15 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
+from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.narrative.behavior import as_read
-from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
+from sgcad_core.reading.behavior.behavior import as_read
+from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.roads.describe import describe_network, road_ids
-from sgcad_core.specs import BehaviorSpec, RoadSpec
 
 
 class SpecScenario(ScenarioWriter):

@@ -14,21 +14,20 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
+from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.findings import Finder
-from sgcad_core.formats.openscenario.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
+from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.kinds import DRIVEWAY, RAMP
-from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.motion import Access
-from sgcad_core.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
-from sgcad_core.roads.describe import describe_network
-from sgcad_core.specs import (
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.motion.motion_record import Access
+from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.specs import (
     Actor,
     ActorId,
     ActorKind,
@@ -43,6 +42,7 @@ from sgcad_core.specs import (
     Surface,
     Weather,
 )
+from sgcad_core.roads.describe import describe_network
 
 _finding = Finder("scenario")
 

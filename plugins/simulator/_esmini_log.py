@@ -14,8 +14,8 @@ from itertools import dropwhile
 
 import numpy as np
 
+from sgcad_core.case.records import Floats, Trajectory
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.records import Floats, Trajectory
 
 STEP_TOLERANCE_S = 1e-3
 _UNIT = re.compile(r"\s*\[[^\]]*\]\s*$")

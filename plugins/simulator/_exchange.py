@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sgcad_core.records import Floats
+from sgcad_core.case.records import Floats
 
 
 class Mover(NamedTuple):

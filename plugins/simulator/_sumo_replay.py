@@ -13,7 +13,7 @@ import libsumo
 
 from plugins.simulator._exchange import Mover, Replayed
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true")
 _OPTIONS = ("--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never", *_SILENT)

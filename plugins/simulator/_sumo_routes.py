@@ -14,7 +14,7 @@ import numpy as np
 
 from plugins.simulator._exchange import Driven
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 _COLLISIONS = ("--collision.action", "warn", "--collision.check-junctions", "true", "--collision.mingap-factor", "0")
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true")

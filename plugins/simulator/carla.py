@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
+from sgcad_core.case.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import MissingTool, SimulationFailed
 from sgcad_core.execution.playback import execution_of, played
-from sgcad_core.formats.openscenario.player import DT_S
+from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.interfaces import Simulator
-from sgcad_core.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 
 APART_M = 2.0
 """Between the waypoints that a map is sampled at."""

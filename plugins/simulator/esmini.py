@@ -15,13 +15,13 @@ from pydantic import Field
 
 from plugins.simulator._esmini_log import complaints, trajectories
 from sgcad_core import settings
+from sgcad_core.case.records import Execution, RoadNetwork, Scenario
 from sgcad_core.errors import MissingTool, SimulationFailed
 from sgcad_core.execution.playback import execution_of
-from sgcad_core.formats.openscenario.player import DT_S
+from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.interfaces import Simulator
-from sgcad_core.limited import run_limited
-from sgcad_core.records import Execution, RoadNetwork, Scenario
-from sgcad_core.scratch import scratch
+from sgcad_core.system.subprocess_limits import run_limited
+from sgcad_core.system.temp_folders import scratch
 
 LOG = "log.csv"
 MEMORY_MB = 4_000

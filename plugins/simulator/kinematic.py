@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from sgcad_core.case.records import Execution, RoadNetwork, Scenario
 from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.interfaces import Simulator
-from sgcad_core.records import Execution, RoadNetwork, Scenario
 
 
 class Kinematic(Simulator):

@@ -13,15 +13,15 @@ import numpy as np
 from pydantic import Field
 
 from plugins.simulator._exchange import Driven, Mover, Replayed
+from sgcad_core.case.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.execution.contact import poses
 from sgcad_core.execution.playback import execution_of, played
-from sgcad_core.formats.openscenario.player import DT_S
+from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.interfaces import Simulator
-from sgcad_core.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
-from sgcad_core.workers import Worker
+from sgcad_core.system.worker_process import Worker
 
 TOLERANCE_M = 0.01
 

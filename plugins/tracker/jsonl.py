@@ -9,8 +9,8 @@ from typing import Any
 from pydantic import Field
 
 from plugins.tracker.figures import case_figures
+from sgcad_core.case.records import Generation, Query
 from sgcad_core.interfaces import Tracker
-from sgcad_core.records import Generation, Query
 
 
 class Jsonl(Tracker):

@@ -16,9 +16,9 @@ from plugins.tracker import mlflow_ready
 from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
 from plugins.tracker.headline import arm_note, case_note, experiment_note, headline, prefect_links
 from plugins.tracker.mlflow_store import CONFIG, NOTE, Parent, Store, store_of
-from sgcad_core.experiment import Arm
+from sgcad_core.case.records import Generation, Query
+from sgcad_core.case.tracker_arm import Arm
 from sgcad_core.interfaces import Tracker
-from sgcad_core.records import Generation, Query
 
 UPDATE_S, UPDATE_SHARE = 10.0, 0.02
 """Means are brought up to date this often at most, and in at most this share of the time."""

@@ -11,7 +11,7 @@ import os
 import sqlite3
 from pathlib import Path
 
-from sgcad_core.locks import alone
+from sgcad_core.system.locks import alone
 
 _BESIDE = ("", "-wal", "-shm", "-journal")
 """What sqlite may leave of one database."""

@@ -24,7 +24,7 @@ from plugins.tracker.mlflow_database import make_database
 from plugins.tracker.mlflow_ready import ELSEWHERE
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.locks import alone
+from sgcad_core.system.locks import alone
 
 MAX_VALUE = 500
 """Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""

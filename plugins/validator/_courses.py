@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of
-from sgcad_core.records import Hold
+from sgcad_core.case.records import Hold
+from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of
+from sgcad_core.records.specs import Maneuver, RoadSpec
 from sgcad_core.roads.layout import OUTER
-from sgcad_core.specs import Maneuver, RoadSpec
 
 _TURN_RAD = math.radians(30)
 """A change of heading that is a turn."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from sgcad_core.case.records import Finding, Severity
 from sgcad_core.findings import Finder
-from sgcad_core.narrative.facts import CrashFacts
-from sgcad_core.records import Finding, Severity
-from sgcad_core.specs import BehaviorSpec
+from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.records.specs import BehaviorSpec
 
 _finding = Finder("behavior_narrative")
 

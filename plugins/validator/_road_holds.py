@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sgcad_core.asking.narrowing import SOME_LANES
+from sgcad_core.asking.schema_holds import SOME_LANES
+from sgcad_core.case.records import Hold
 from sgcad_core.kinds import junction_kind
-from sgcad_core.narrative.compass import COMPASS, turned
-from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.paths import legs_used
-from sgcad_core.narrative.roads import RoadFact, RoadFacts
-from sgcad_core.records import Hold
-from sgcad_core.specs import Compass
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.layout.legs_used import legs_used
+from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
+from sgcad_core.reading.text.compass import COMPASS, turned
+from sgcad_core.records.specs import Compass
 
 
 def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import libsumo
 
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 STEP_S = 0.05
 _OPTIONS = (

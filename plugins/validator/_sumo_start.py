@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import libsumo
 
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 STEPS = 2
 

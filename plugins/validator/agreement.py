@@ -7,26 +7,18 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from sgcad_core.case.records import ActorInfo, Evidence, Finding, ObservedContact, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.findings import Finder
 from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.openscenario.player import entity_boxes, play
+from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import (
-    ActorInfo,
-    Evidence,
-    Finding,
-    ObservedContact,
-    RoadNetwork,
-    Scenario,
-    Trajectory,
-)
-from sgcad_core.specs import Contact
+from sgcad_core.records.specs import Contact
 
 _finding = Finder("agreement")
 

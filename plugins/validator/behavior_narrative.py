@@ -14,14 +14,14 @@ from typing import ClassVar, Literal
 
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
 from plugins.validator._near_crash import near_crash_findings
+from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.assign import goes_tail_first, square_rad
-from sgcad_core.narrative.compass import angle_of, compass_of_angle
-from sgcad_core.narrative.facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
-from sgcad_core.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
+from sgcad_core.reading.behavior.exit_assignment import goes_tail_first, square_rad
+from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
+from sgcad_core.reading.text.compass import angle_of, compass_of_angle
+from sgcad_core.records.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 _finding = Finder("behavior_narrative")
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
-from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
-from sgcad_core.specs import Actor, BehaviorSpec, size_m
+from sgcad_core.metrics.drivability import WHEELED, deepest, driven, first_touches
+from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 
 class Drivable(Validator):

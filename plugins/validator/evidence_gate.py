@@ -15,8 +15,8 @@ from typing import Literal
 
 from pydantic import Field
 
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class EvidenceGate(Validator):
     """A threshold a group, in nats; null leaves a group out. Judges both stages unless `at` names one.
 
     The defaults only catch what the report makes no likelier at all: a model's own thresholds come from
-    `python -m benchmarks.gate`.
+    `python -m research.benchmarks.decoding.gate`.
     """
 
     at: Literal["road", "scenario", "both"] = "both"

@@ -12,16 +12,16 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from plugins.validator._courses import Course, approaches, course, heading, held, straight_on
+from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
-from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.facts import CrashFacts, VehicleFacts
-from sgcad_core.narrative.ways import Way, ways_of
 from sgcad_core.planner import plan
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
+from sgcad_core.reading.layout.road_ways import Way, ways_of
+from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, Maneuver, RoadSpec
 
 
 class Meeting(Validator):

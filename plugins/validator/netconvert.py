@@ -6,8 +6,8 @@ import re
 import signal
 from typing import ClassVar, Literal
 
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 
 _SAID = re.compile(r"^(Error|Warning|Quitting): *")
 _EMPTY = ("Success.", "Quitting (on error).")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 
 
 class OpenScenario(Validator):

@@ -11,21 +11,21 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
-from sgcad_core.asking.narrowing import SOME_LANES
+from sgcad_core.asking.schema_holds import SOME_LANES
+from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
-from sgcad_core.narrative.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
-from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.paths import ahead, legs_used, turns_off
-from sgcad_core.narrative.roads import RoadFact, RoadFacts
-from sgcad_core.narrative.unsupported import not_drawn
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
-from sgcad_core.roads.drawn import DrawnRoad, drawn_roads, junctions, near
-from sgcad_core.roads.told_totals import allowed_totals, vague
-from sgcad_core.specs import Compass
+from sgcad_core.reading.junctions.unsupported_places import not_drawn
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.layout.legs_used import ahead, legs_used, turns_off
+from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
+from sgcad_core.reading.text.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
+from sgcad_core.records.specs import Compass
+from sgcad_core.roads.compiled_facts import DrawnRoad, drawn_roads, junctions, near
+from sgcad_core.roads.lane_total_readings import allowed_totals, vague
 
 _finding = Finder("road_narrative")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, RoadNetwork, Scenario
 
 
 class SumoXsd(Validator):

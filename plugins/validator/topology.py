@@ -12,15 +12,15 @@ from typing import ClassVar, get_args
 
 import numpy as np
 
-from sgcad_core.asking.narrowing import SOME_LANES
+from sgcad_core.asking.schema_holds import SOME_LANES
+from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Evidence, Finding, Hold, RoadNetwork, Scenario
+from sgcad_core.records.specs import Compass, RoadSpec
 from sgcad_core.roads.road_spec import turn_findings
-from sgcad_core.specs import Compass, RoadSpec
 
 _finding = Finder("topology")
 

@@ -3,7 +3,7 @@
 Layer: above records, roads, metrics and execution; result.json is made with it. Knows no file and no plugin.
 """
 
-from sgcad_core.account.making import account_of
+from sgcad_core.account.build import account_of
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Account, Item
 

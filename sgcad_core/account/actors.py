@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.inputs import Made, is_told
 from sgcad_core.account.records import Item
-from sgcad_core.specs import SIZE_M
+from sgcad_core.records.specs import SIZE_M
 
 _LIKE = {"suv": "car", "van": "car"}
 """Kinds that reports mix."""

@@ -8,10 +8,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from sgcad_core.account.made import Made
+from sgcad_core.account.inputs import Made
 from sgcad_core.account.records import Item
 from sgcad_core.account.words import phrase
-from sgcad_core.facts import Fact
+from sgcad_core.records.facts import Fact
 
 _NO_PART = re.compile(r"\.role$|\.lanes_backward$|^others\.[A-Z]\d+\.(start_(lane|road)|exit_road)$")
 """Labels that move nothing, and halves of what is listed once."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.account.made import Made
+from sgcad_core.account.inputs import Made
 from sgcad_core.account.records import Item
+from sgcad_core.case.records import ObservedContact
 from sgcad_core.execution.contact import avoided, closest_approach
-from sgcad_core.language import of_role
-from sgcad_core.narrative.facts import ContactFacts
-from sgcad_core.records import ObservedContact
-from sgcad_core.specs import Area
-from sgcad_core.told_course import ImpactTold
+from sgcad_core.reading.crash_facts import ContactFacts
+from sgcad_core.reading.language import of_role
+from sgcad_core.records.course import ImpactTold
+from sgcad_core.records.specs import Area
 
 _OPEN_SIDES = 4
 _EPS_S = 1e-6

@@ -11,16 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.inputs import Made, is_told
 from sgcad_core.account.records import Item
-from sgcad_core.facts import Fact, Value
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
-from sgcad_core.metrics.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
-from sgcad_core.metrics.crash_seen import Driven
-from sgcad_core.metrics.rest import attitude_of
-from sgcad_core.metrics.truth_course import vehicle_marks
-from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.metrics.labels.course_label_match import vehicle_marks
+from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
+from sgcad_core.metrics.labels.observed_crash import Driven
+from sgcad_core.metrics.rest_error import attitude_of
+from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.records.facts import Fact, Value
 
 _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""

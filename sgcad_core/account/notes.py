@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Literal
 
-from sgcad_core.facts import Fact
-from sgcad_core.frozen import Record
-from sgcad_core.narrative.limits import BEYOND
+from sgcad_core.reading.inference.reading_limits import BEYOND
+from sgcad_core.record_base import Record
+from sgcad_core.records.facts import Fact
 
 NoteKind = Literal["reader", "limit", "finding", "held", "judge", "plan"]
 _ID = re.compile(r"\b[VPBTOA]\d{1,2}\b")

@@ -6,19 +6,19 @@ import math
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 
-from sgcad_core.account.made import Made, is_told
+from sgcad_core.account.inputs import Made, is_told
 from sgcad_core.account.motion import Seen
 from sgcad_core.account.records import Item
-from sgcad_core.facts import Value
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, junction_kind, unsupported_kind
-from sgcad_core.narrative.compass import COMPASS, angle_of, compass_of_angle
-from sgcad_core.narrative.road_provenance import road_names
-from sgcad_core.narrative.roads import RoadFact
+from sgcad_core.reading.provenance.road_provenance import road_names
+from sgcad_core.reading.roads.road_facts import RoadFact
+from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.records.facts import Value
+from sgcad_core.records.specs import Compass
 from sgcad_core.roads.closures import tapers
-from sgcad_core.roads.drawn import DrawnRoad, junctions, near
+from sgcad_core.roads.compiled_facts import DrawnRoad, junctions, near
 from sgcad_core.roads.lane_graph import network_figures
-from sgcad_core.roads.told_totals import allowed_totals
-from sgcad_core.specs import Compass
+from sgcad_core.roads.lane_total_readings import allowed_totals
 
 TOLERANCE_DEG = 35.0
 """Between a road as drawn and the compass direction that the report names, as the validator `road_narrative` has it."""

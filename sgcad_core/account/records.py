@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from sgcad_core.facts import Value
-from sgcad_core.frozen import Record
+from sgcad_core.record_base import Record
+from sgcad_core.records.facts import Value
 
 Kind = Literal["has", "lacks", "assumed"]
 Verdict = Literal["whole", "lacking", "none"]
@@ -15,9 +15,10 @@ Verdict = Literal["whole", "lacking", "none"]
 class Item(Record):
     """One thing that the report tells and the scenario has or lacks, or that the scenario has and nobody told.
 
-    `field`: the fact's name (`sgcad_core.facts.Fact.field`) or, of what no fact carries, "text.<what>". `subject`: whom
-    it is about ("V1", "roads.main", "junction", "contacts.0", ""). `value`: as told or as assumed; `seen`: what the
-    scenario has instead. [start, end): the sentence in the narrative as it was written; None where there is none.
+    `field`: the fact's name (`sgcad_core.records.facts.Fact.field`) or, of what no fact carries, "text.<what>".
+    `subject`: whom it is about ("V1", "roads.main", "junction", "contacts.0", ""). `value`: as told or as assumed;
+    `seen`: what the scenario has instead. [start, end): the sentence in the narrative as it was written; None where
+    there is none.
     """
 
     kind: Kind

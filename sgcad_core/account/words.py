@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sgcad_core.facts import Value
+from sgcad_core.records.facts import Value
 
 FIELDS = {
     "start_speed_mph": "speed", "exit_road": "leaves by", "start_lane": "lane", "start_road": "starts on",

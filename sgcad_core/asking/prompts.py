@@ -15,10 +15,10 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from sgcad_core import settings
-from sgcad_core.answers import Spec, trained_schema
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
-from sgcad_core.records import Finding
-from sgcad_core.specs import Refusal
+from sgcad_core.records.answer_schema import Spec, trained_schema
+from sgcad_core.records.specs import Refusal
 
 Answer = TypeVar("Answer", bound=Spec)
 Json = dict[str, Any]

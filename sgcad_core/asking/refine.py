@@ -11,11 +11,9 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from sgcad_core.asking.narrowing import narrowed
 from sgcad_core.asking.prompts import repair_text
-from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.interfaces import Ask, Validator
-from sgcad_core.records import (
+from sgcad_core.asking.schema_holds import narrowed
+from sgcad_core.case.records import (
     Attempt,
     Context,
     Evidence,
@@ -28,6 +26,8 @@ from sgcad_core.records import (
     Stage,
     StageOutcome,
 )
+from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.interfaces import Ask, Validator
 
 MAX_ATTEMPTS = 10
 """Limit of attempts a stage; configs may set fewer."""

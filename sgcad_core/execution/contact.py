@@ -11,10 +11,10 @@ from typing import cast
 
 import numpy as np
 
+from sgcad_core.case.records import ClosestApproach, ObservedContact, Trajectory
 from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
-from sgcad_core.records import ClosestApproach, ObservedContact, Trajectory
-from sgcad_core.specs import Area, Contact, NearCrash
+from sgcad_core.records.specs import Area, Contact, NearCrash
 
 STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""

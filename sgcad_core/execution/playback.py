@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sgcad_core.case.records import Execution, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.execution.contact import first_contact
-from sgcad_core.formats.openscenario.player import play
+from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.geometry.plane import Size
-from sgcad_core.records import Execution, RoadNetwork, Scenario, Trajectory
 
 
 def played(scenario: Scenario, network: RoadNetwork) -> tuple[Trajectory, ...]:

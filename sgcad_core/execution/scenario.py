@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sgcad_core.case.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.editable import write_editable
+from sgcad_core.execution.event_encoding import write_editable
 from sgcad_core.execution.signals import signal_times
 from sgcad_core.findings import Finder
-from sgcad_core.formats.openscenario.events import Handover
-from sgcad_core.formats.openscenario.writer import (
+from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.writer import (
     DEFAULT_ENCODING,
     DEFAULT_VERSION,
     Encoding,
@@ -19,9 +20,8 @@ from sgcad_core.formats.openscenario.writer import (
 )
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
-from sgcad_core.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
-from sgcad_core.specs import BehaviorSpec, size_m
-from sgcad_core.told_course import NOTHING_TOLD, Courses
+from sgcad_core.records.course import NOTHING_TOLD, Courses
+from sgcad_core.records.specs import BehaviorSpec, size_m
 
 _finding = Finder("scenario")
 

@@ -15,15 +15,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.case.records import RoadNetwork, Trajectory
 from sgcad_core.formats.opendrive.signals import HEAD, Control, Controller, Signal, control_of
 from sgcad_core.formats.opendrive.streets import streets
-from sgcad_core.formats.openscenario.lane_motion import driven_way
-from sgcad_core.formats.openscenario.motion import Pose
-from sgcad_core.formats.openscenario.roads import XodrRoads, roads_of
-from sgcad_core.formats.openscenario.way import LanePlace, Way
+from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.openscenario.roads.lane_motion import driven_way
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import arc_lengths
-from sgcad_core.records import RoadNetwork, Trajectory
 
 SHOWN_S = 0.5
 """The phase has begun so long at least before the first told vehicle comes to its signal."""

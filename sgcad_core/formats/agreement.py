@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from sgcad_core.case.records import Finding
 from sgcad_core.findings import Finder
-from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
-from sgcad_core.formats.openscenario.roads import XodrRoads, roads_of
+from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats, arc_lengths, prolonged, resample
-from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 
 TOLERANCE_M, BESIDE_TOLERANCE_M = 0.5, 1.0

@@ -13,8 +13,8 @@ from dataclasses import replace
 from typing import Literal, NamedTuple
 
 from sgcad_core.errors import ConfigError
+from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.controls import center_lanes, parking_lanes
-from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.signals import posted_mph
 from sgcad_core.formats.sumo.existing_map import plain_of_map
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -22,7 +22,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
 from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]

@@ -11,8 +11,8 @@ from typing import Any
 
 from lxml import etree
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.records import Finding
 
 _SCHEMA_LOCK = threading.Lock()
 Element = Any

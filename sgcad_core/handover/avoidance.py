@@ -13,10 +13,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sgcad_core.case.driver_io import STEP_S, Way
+from sgcad_core.case.records import Record
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.script import Staging
-from sgcad_core.records import Record
-from sgcad_core.seat import STEP_S, Way
 
 LOOK_BACK_S = 6.0
 GRAIN_S = 0.01

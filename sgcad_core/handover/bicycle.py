@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sgcad_core.metrics.driving import REAR_AXLE
-from sgcad_core.seat import STEP_S, Command, Way
+from sgcad_core.case.driver_io import STEP_S, Command, Way
+from sgcad_core.metrics.drivability import REAR_AXLE
 
 WHEELBASE = 2 * REAR_AXLE
 """As a share of the length: the axles lie symmetrically."""

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View, Way
+from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.execution.contact import first_contact, first_with
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.bicycle import Ego
-from sgcad_core.handover.clock import RELEASE_S, Clock
+from sgcad_core.handover.relative_clock import RELEASE_S, Clock
 from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
-from sgcad_core.records import ObservedContact, Trajectory
-from sgcad_core.seat import STEP_S, Command, RoadUser, Seat, Task, View, Way
 
 AFTER_S = 5.0
 """Of the others' clock, behind the scripted contact: who has not met by then does not meet."""

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.case.driver_io import RoadUser, Task, View
 from sgcad_core.geometry.plane import Floats, box_gaps
-from sgcad_core.seat import RoadUser, Task, View
 
 _LOOK_M = 150.0
 _STEP_M = 1.5

@@ -17,14 +17,14 @@ from typing import Any, Literal
 
 import numpy as np
 
+from sgcad_core.case.driver_io import STEP_S, Way
+from sgcad_core.case.records import Floats, ObservedContact, Record, Trajectory
 from sgcad_core.execution.contact import poses, realised
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.handover.drive import Drive
 from sgcad_core.handover.severity import Severity, severity
 from sgcad_core.metrics import conflict, displacement
 from sgcad_core.metrics.conflict import Track
-from sgcad_core.records import Floats, ObservedContact, Record, Trajectory
-from sgcad_core.seat import STEP_S, Way
 
 Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
 OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")

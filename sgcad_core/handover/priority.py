@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from sgcad_core.case.driver_io import Way
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
-from sgcad_core.seat import Way
 
 _NEAR_M = 2.5
 _GIVES_WAY = frozenset("msw=")

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.handover.beyond import strip_at
+from sgcad_core.handover.after_contact import strip_at
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 _STEP_M = 2.0

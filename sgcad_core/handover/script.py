@@ -13,15 +13,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sgcad_core.case.driver_io import STEP_S, Way
+from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_with, poses
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
-from sgcad_core.handover.beyond import Start, gone_on
+from sgcad_core.handover.after_contact import Start, gone_on
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.records import ActorInfo, ObservedContact, Trajectory
+from sgcad_core.records.specs import Contact, Surface
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.seat import STEP_S, Way
-from sgcad_core.specs import Contact, Surface
 
 BEYOND_S = 15.0
 """How long lines go on behind the contact."""

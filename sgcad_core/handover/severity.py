@@ -1,7 +1,7 @@
 """How hard a contact is: closing speed, change of velocity of both, energy, and the risk of injury that goes with it.
 
-One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.impact`); masses are typical
-of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
+One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.aftermath.impact`); masses are
+typical of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from sgcad_core.case.driver_io import STEP_S
+from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.geometry.plane import Size
-from sgcad_core.planner.boxes import apart, mean, touch_points
-from sgcad_core.planner.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
-from sgcad_core.records import ActorInfo, ObservedContact, Record, Trajectory
-from sgcad_core.seat import STEP_S
-from sgcad_core.specs import ActorKind
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
+from sgcad_core.planner.encounter.box_scalar import apart, mean, touch_points
+from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 
 MPH_PER_MPS = 1 / MPS_PER_MPH

@@ -11,9 +11,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from sgcad_core.case.records import Floats
 from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import gaps_where_near
-from sgcad_core.records import Floats
 
 CELL_M = 0.25
 Size = tuple[float, float]

@@ -9,8 +9,8 @@ from typing import Literal
 
 import numpy as np
 
+from sgcad_core.case.records import Floats
 from sgcad_core.metrics.thresholds import Thresholds
-from sgcad_core.records import Floats
 
 Level = Literal["critical", "high", "moderate", "low"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sgcad_core.records import Floats, Trajectory
+from sgcad_core.case.records import Floats, Trajectory
 
 
 def positions(trajectory: Trajectory) -> Floats:

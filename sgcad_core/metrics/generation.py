@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from sgcad_core.records import Finding, Stage
+from sgcad_core.case.records import Finding, Stage
 
 Layer = Literal["parse", "schema", "netconvert", "references", "execution", "content"]
 LAYERS: tuple[Layer, ...] = ("parse", "schema", "netconvert", "references", "execution", "content")

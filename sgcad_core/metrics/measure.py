@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from sgcad_core.metrics import conflict, criticality, displacement, telling
+from sgcad_core.case.records import Execution, Floats, Scenario, Trajectory
+from sgcad_core.metrics import conflict, criticality, displacement, precontact_metrics
 from sgcad_core.metrics.conflict import Encroachment, Track
 from sgcad_core.metrics.thresholds import Thresholds
-from sgcad_core.records import Execution, Floats, Scenario, Trajectory
 
 
 def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | None = None) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
         "average_displacement_error_m": errors[0] if errors else None,
         "final_displacement_error_m": errors[1] if errors else None,
         "emergency_score": score, "emergency_level": criticality.emergency_level(score, limits),
-        **telling.told(tracks),
+        **precontact_metrics.told(tracks),
     }  # fmt: skip
 
 

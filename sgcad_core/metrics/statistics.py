@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sgcad_core.records import Floats
+from sgcad_core.case.records import Floats
 
 LEVEL = 0.95
 RESAMPLES = 5_000

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sgcad_core.records import Record
-from sgcad_core.specs import Surface
+from sgcad_core.case.records import Record
+from sgcad_core.records.specs import Surface
 
 
 class Thresholds(Record):

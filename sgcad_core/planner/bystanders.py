@@ -9,12 +9,12 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from sgcad_core.planner.encounter import meet
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.encounter.encounter_search import meet
+from sgcad_core.planner.encounter.motion_options import Option, forced, in_path_of, options
 from sgcad_core.planner.motion import STEP_S, Motion
-from sgcad_core.planner.options import Option, forced, in_path_of, options
-from sgcad_core.planner.role import Role
 from sgcad_core.planner.scene import CLEAR_M, Scene
-from sgcad_core.specs import Area
+from sgcad_core.records.specs import Area
 
 _OWN_S = (-0.8, -1.6, -2.4, 0.8, -3.2, -4.0, 1.6, -5.0, 2.4, -6.0, 3.2, -7.5, 4.0, -9.0)
 """Own times at the first contact that are tried: at its own place a little later comes first."""

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.path import Path
+from sgcad_core.planner.lines.path import Path
 
 STEP_S = 0.05
 LEAD_S = (4.2, 8.0)

@@ -12,29 +12,29 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.aftermath import expect, run_out, strikes_of
-from sgcad_core.planner.attempts import Unfolded, least_missed
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.later_contacts import expect, run_out, strikes_of
+from sgcad_core.planner.aftermath.rest_candidates import MISSED
+from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.bystanders import stand_clear, strike_later
-from sgcad_core.planner.casting import course_of, is_declared, other_of, pair_of, seen_s
-from sgcad_core.planner.conflict import Conflicts
-from sgcad_core.planner.course import Course
-from sgcad_core.planner.gore_lines import into_gores
+from sgcad_core.planner.encounter.conflict import Conflicts
+from sgcad_core.planner.encounter.contact_queries import course_of, is_declared, other_of, pair_of, seen_s
+from sgcad_core.planner.encounter.meeting_place import Place, place_near, preferred_station
+from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.near_miss import parted
+from sgcad_core.planner.encounter.pairing import Encounter
+from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.gore_lines import into_gores
+from sgcad_core.planner.maneuver_visible import not_evading, not_shown
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
-from sgcad_core.planner.options import Option
-from sgcad_core.planner.pairing import Encounter
-from sgcad_core.planner.parting import parted
-from sgcad_core.planner.place import Place, place_near, preferred_station
-from sgcad_core.planner.resting import Impact
-from sgcad_core.planner.role import Role
-from sgcad_core.planner.runouts import MISSED
 from sgcad_core.planner.scene import AFTER_S, Scene
-from sgcad_core.planner.showing import not_evading, not_shown
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
-from sgcad_core.records import ObservedContact, Record, Trajectory
+from sgcad_core.records.course import NOTHING_TOLD, Courses
+from sgcad_core.records.specs import BehaviorSpec, Contact, NearCrash, size_m
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import BehaviorSpec, Contact, NearCrash, size_m
-from sgcad_core.told_course import NOTHING_TOLD, Courses
 
 _FURTHER_S = 3.0
 """More time behind the first contact where somebody goes on far."""

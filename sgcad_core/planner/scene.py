@@ -11,19 +11,19 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.ground import Drag, RunOut
-from sgcad_core.planner.hitch import Hitch, hitched
-from sgcad_core.planner.impact import FRICTION, RESTITUTION, body, mass_kg
+from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
+from sgcad_core.planner.aftermath.hitch import Hitch, hitched
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
+from sgcad_core.planner.aftermath.rollover import rolled, rolls_over
+from sgcad_core.planner.aftermath.wreck import Wreck
+from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
+from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, clock
-from sgcad_core.planner.movers import Mover, Touch
-from sgcad_core.planner.path import Path
-from sgcad_core.planner.rollover import rolled, rolls_over
-from sgcad_core.planner.wreck import Wreck
-from sgcad_core.records import ObservedContact, Trajectory
-from sgcad_core.specs import ActorKind, Area, Surface
-from sgcad_core.told_course import NOTHING_TOLD, Courses, CourseTold
+from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
+from sgcad_core.records.specs import ActorKind, Area, Surface
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""

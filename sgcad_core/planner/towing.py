@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from sgcad_core.geometry.plane import Size
+from sgcad_core.planner.lines.axle_to_box import rolled
+from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion
-from sgcad_core.planner.path import Path
-from sgcad_core.planner.rolling import rolled
-from sgcad_core.specs import Actor, BehaviorSpec
+from sgcad_core.records.specs import Actor, BehaviorSpec
 
 HITCH_M = 1.3
 """Between the boxes of tractor and trailer: enough that they do not touch in a turn."""

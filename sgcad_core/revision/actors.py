@@ -2,7 +2,7 @@
 
 What hangs on a changed fact follows: another heading is another road, another maneuver another exit. What an edit asks
 for and the behavior has already stays untouched; an edit that cannot be laid is left out here, and
-`sgcad_core.revision.standing` says so. Knows specs and ways; no narrative and no planner.
+`sgcad_core.revision.applied` says so. Knows specs and ways; no narrative and no planner.
 """
 
 from __future__ import annotations
@@ -13,19 +13,12 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from sgcad_core.edits import of_contacts
-from sgcad_core.facts import Value
-from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.ways import Way, apart, degree, exits, turn_of, ways_of
-from sgcad_core.revision.values import (
-    ACTOR_FIELDS,
-    CONTACT_FIELDS,
-    actor_of,
-    contacts_of,
-    road_of,
-    way_of,
-)
-from sgcad_core.specs import Actor, ActorKind, BehaviorSpec, Compass, Contact, Maneuver, NearCrash, RoadSpec
+from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
+from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.edits import of_contacts
+from sgcad_core.records.facts import Value
+from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec, Compass, Contact, Maneuver, NearCrash, RoadSpec
+from sgcad_core.revision.values import ACTOR_FIELDS, CONTACT_FIELDS, actor_of, contacts_of, road_of, way_of
 
 _SKY = ("light", "weather", "surface")
 HEADING_RAD = math.radians(50)

@@ -16,13 +16,13 @@ from typing import Annotated, Any, Literal, cast
 import yaml
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from sgcad_core.edits import AS_READ, canonical
+from sgcad_core.case.records import Stage
 from sgcad_core.errors import WrongEdit
-from sgcad_core.facts import Value
 from sgcad_core.kinds import JunctionKind
-from sgcad_core.records import Stage
+from sgcad_core.records.edits import AS_READ, canonical
+from sgcad_core.records.facts import Value
+from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, NearCrash, Node, Road, RoadSpec
 from sgcad_core.revision.values import ACTOR_FIELDS, CONTACT_FIELDS, ROAD_FIELDS, value_of
-from sgcad_core.specs import Actor, BehaviorSpec, Compass, Contact, NearCrash, Node, Road, RoadSpec
 
 Form = Literal["integer", "number", "choice", "flag", "list", "actor", "road", "text"]
 

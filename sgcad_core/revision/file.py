@@ -22,11 +22,11 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from sgcad_core import locks
-from sgcad_core.edits import AS_READ, Edit
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
-from sgcad_core.report_files import FACTS, is_regular, read_regular
+from sgcad_core.records.edits import AS_READ, Edit
 from sgcad_core.revision.fields import checked
+from sgcad_core.system import locks
+from sgcad_core.system.report_files import FACTS, is_regular, read_regular
 
 MOST_BYTES = 1_000_000
 MOST_EDITS = 2_000

@@ -2,7 +2,7 @@
 
 What an edit asks for and the spec has already stays untouched. A network that was drawn from a layout is drawn anew
 where its junction becomes another one; any other spec gains and loses legs at its hub. An edit that cannot be laid is
-left out here; `sgcad_core.revision.standing` says so. Knows no file and no narrative.
+left out here; `sgcad_core.revision.applied` says so. Knows no file and no narrative.
 """
 
 from __future__ import annotations
@@ -13,20 +13,12 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from sgcad_core.facts import Value
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T, junction_kind
-from sgcad_core.narrative.compass import angle_of, turned
-from sgcad_core.revision.values import (
-    ROAD_FIELDS,
-    bearing_of,
-    hub_of,
-    junction_kind_of,
-    legs_of,
-    road_of,
-    value_of,
-)
+from sgcad_core.reading.text.compass import angle_of, turned
+from sgcad_core.records.facts import Value
+from sgcad_core.records.specs import Compass, Leg, Node, Road, RoadLayout, RoadSpec
+from sgcad_core.revision.values import ROAD_FIELDS, bearing_of, hub_of, junction_kind_of, legs_of, road_of, value_of
 from sgcad_core.roads.layout import LEG_M, road_spec
-from sgcad_core.specs import Compass, Leg, Node, Road, RoadLayout, RoadSpec
 
 _COMPASS: tuple[Compass, ...] = get_args(Compass)
 _DRAWN_ANEW = (ROUNDABOUT, PARKING_LOT, RAMP)

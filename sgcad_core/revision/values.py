@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sgcad_core.facts import Value
 from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T
-from sgcad_core.narrative.compass import compass_of_angle, turned
-from sgcad_core.narrative.ways import Way, degree, ways_of
-from sgcad_core.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers, is_aisle
+from sgcad_core.reading.layout.road_ways import Way, degree, ways_of
+from sgcad_core.reading.text.compass import compass_of_angle, turned
+from sgcad_core.records.facts import Value
+from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers, is_aisle
 
 ROAD_FIELDS = (
     "lanes_forward", "lanes_backward", "turns_forward", "turns_backward", "center_turn_lane", "median", "kind",

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from sgcad_core.specs import Node, Point, Road
+from sgcad_core.records.specs import Node, Point, Road
 
 RADIUS_M = {1: 18.0, 2: 26.0}
 """Of the middle of the circulating lanes."""

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from sgcad_core.kinds import RAMP
+from sgcad_core.records.specs import Beside, RoadSpec, Turn
 from sgcad_core.roads.lane_graph import edge_id, road_of
 from sgcad_core.roads.road_geometry import Direction, Roadway, beside, has_center_lane, lanes, open_lanes
-from sgcad_core.specs import Beside, RoadSpec, Turn
 
 Movement = Literal["left", "through", "right"]
 THROUGH_DEG = 50.0

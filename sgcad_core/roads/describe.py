@@ -16,8 +16,8 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY
+from sgcad_core.records.specs import Node, Road, RoadSpec, centers
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
-from sgcad_core.specs import Node, Road, RoadSpec, centers
 
 Direction = Literal["forward", "backward"]
 _COMPASS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")

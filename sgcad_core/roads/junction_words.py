@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from sgcad_core.records.specs import RoadLayout
 from sgcad_core.roads.layout import COMPASS, hub_control
-from sgcad_core.specs import RoadLayout
 
 _COUNTS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight"}
 _CONTROLS = {

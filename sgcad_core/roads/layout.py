@@ -14,9 +14,20 @@ from dataclasses import dataclass
 from typing import get_args
 
 from sgcad_core.kinds import RAMP
+from sgcad_core.records.specs import (
+    Access,
+    Compass,
+    Leg,
+    Node,
+    NodeControl,
+    Point,
+    Road,
+    RoadLayout,
+    RoadSpec,
+    is_aisle,
+)
 from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
 from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m
-from sgcad_core.specs import Access, Compass, Leg, Node, NodeControl, Point, Road, RoadLayout, RoadSpec, is_aisle
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
 OUTER = "_outer"

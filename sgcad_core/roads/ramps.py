@@ -10,7 +10,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import RAMP
-from sgcad_core.specs import Node, Road
+from sgcad_core.records.specs import Node, Road
 
 _ALONG_RAD = math.radians(60)
 """A ramp runs along a road that it leaves or joins at less than this."""

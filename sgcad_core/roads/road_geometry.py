@@ -14,9 +14,9 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.records.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
 from sgcad_core.roads.circle import SPLITTER_M
 from sgcad_core.roads.ramps import joined
-from sgcad_core.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
 
 Direction = Literal["forward", "backward"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from sgcad_core.case.records import Finding
 from sgcad_core.findings import Finder
-from sgcad_core.records import Finding
-from sgcad_core.specs import Road, RoadSpec
+from sgcad_core.records.specs import Road, RoadSpec
 
 SOURCE = "road_spec"
 _finding = Finder(SOURCE)

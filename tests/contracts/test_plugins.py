@@ -6,7 +6,7 @@ import sys
 import pytest
 from pydantic import ValidationError
 
-from sgcad_core import registry, strangers
+from sgcad_core import foreign_plugins, registry
 from sgcad_core.errors import ConfigError
 
 INSTALLED = [(kind, name) for kind in registry.KINDS for name in registry.catalogue(kind)]
@@ -135,11 +135,11 @@ def test_a_strangers_code_is_part_of_its_identity_and_ours_is_not(monkeypatch, t
         (folder / "helper.py").write_text(f"VALUE = {number}\n")
         (folder / "__init__.py").write_text("class Plug: ...\n")
         importlib.invalidate_caches()
-        strangers._about.cache_clear()
-        seen.append(strangers.code_of(importlib.import_module("strange_pack").Plug))
+        foreign_plugins._about.cache_clear()
+        seen.append(foreign_plugins.code_of(importlib.import_module("strange_pack").Plug))
     assert seen[0].split()[0] == "strange_pack"
     assert seen[0] != seen[1]  # a helper beside the plugin counts
-    assert strangers.code_of(registry.plugin_class("decoder", "cad")) == ""
+    assert foreign_plugins.code_of(registry.plugin_class("decoder", "cad")) == ""
 
 
 def test_a_module_that_cannot_be_imported_is_named(monkeypatch):

@@ -9,7 +9,7 @@ import yaml
 
 from deploy import compose
 from deploy.well import is_well
-from flows.deployments.health import POOL
+from flows.deploy.health import POOL
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 

@@ -10,7 +10,7 @@ import pytest
 from deploy import local
 from deploy.services import Ports
 from flows import doctor
-from flows.deployments import health
+from flows.deploy import health
 from sgcad_core.errors import ConfigError, MissingTool
 
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from flows.cases import Case
-from flows.chain import run_case
+from flows.batch.find_cases import Case
+from flows.case.chain import run_case
 from sgcad_core.config import load
 from sgcad_core.settings import ROOT
 

@@ -123,11 +123,11 @@ def test_a_tracker_that_can_never_log_starts_nothing(reports, config_file, tmp_p
 
 def test_an_interpreter_that_cannot_be_started_is_named(monkeypatch):
     from sgcad_core.errors import MissingTool
-    from sgcad_core.workers import Worker
+    from sgcad_core.system.worker_process import Worker
 
     monkeypatch.setattr(sys, "executable", "/no/such/python")
     with pytest.raises(MissingTool, match=r"python cannot be started \(No such file"):
-        Worker("flows.worker:run_in_worker").call("x", timeout_s=1)
+        Worker("flows.batch.worker:run_in_worker").call("x", timeout_s=1)
 
 
 def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
@@ -393,7 +393,8 @@ def _server_of(process):
 def test_deployed_flows_do_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
     folder, config, out = reports(a="", b="REFUSE"), config_file(), tmp_path / "out"
     code = (
-        "import sys; from flows.generate import generate_flow; from flows.evaluate import evaluate_flow\n"
+        "import sys; from flows.case.generate import generate_flow\n"
+        "from flows.batch.evaluate_flow import evaluate_flow\n"
         "folder, config, out = sys.argv[1:]\n"
         "print(generate_flow(folder + '/a', config, out)['status'])\n"
         "print(evaluate_flow([folder], [config], out, jobs=1))\n"

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from flows import demo
-from flows.cases import Case
-from flows.chain import run_case
-from flows.store import read_trajectories
+from flows.batch.find_cases import Case
+from flows.case.case_folder import read_trajectories
+from flows.case.chain import run_case
 from sgcad_core.config import load
 from sgcad_core.formats.sumo.net_xml import parse_net
 

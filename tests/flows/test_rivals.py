@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from flows.cases import Case
-from flows.chain import run_case
+from flows.batch.find_cases import Case
+from flows.case.chain import run_case
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core import settings
 from sgcad_core.config import build, load

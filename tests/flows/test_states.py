@@ -7,13 +7,13 @@ from uuid import uuid4
 
 import pytest
 
-from flows.cases import Case
-from flows.chain import Ending
-from flows.evaluate import run_name
-from flows.graph import Graph
-from flows.showing import shows_every_step
-from flows.steps import Step
-from flows.tasks import _state
+from flows.batch.evaluate_flow import run_name
+from flows.batch.find_cases import Case
+from flows.batch.prefect_case_task import _state
+from flows.batch.prefect_tasks import Graph
+from flows.case.case_end import shows_every_step
+from flows.case.chain import Ending
+from flows.case.step_log import Step
 
 ACCOUNT = {"verdict": "lacking", "told": 5, "has": 3, "lacking": 2, "assumed": 0, "items": []}
 
@@ -52,7 +52,7 @@ def test_what_is_shown_of_a_case_can_be_decided(monkeypatch, asked, every):
 
 def test_a_step_that_is_gone_on_with_begins_once_for_the_server(monkeypatch):
     sent = []
-    monkeypatch.setattr("flows.graph.emit_event", lambda **event: sent.append(event["id"]))
+    monkeypatch.setattr("flows.batch.prefect_tasks.emit_event", lambda **event: sent.append(event["id"]))
     graph, other = (Graph("3e9c5a0e-1c1f-4a34-b7f3-2f6a53a1a0f1", str(uuid4())) for _ in range(2))
     begun = Step("simulate", 10.0)
     for told in (begun, replace(begun, ended=11.0), begun, replace(begun, ended=12.0), Step("measure", 10.0)):

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from flows.cases import Case
-from flows.chain import run_case
+from flows.batch.find_cases import Case
+from flows.case.chain import run_case
 from sgcad_core import settings
 from sgcad_core.config import build, load
 from tests import transcripts
@@ -118,7 +118,7 @@ def test_the_same_over_http_with_a_server_that_ignores_the_schema_and_stumbles(r
 
 def test_the_table_of_a_runs_folder_tells_where_files_failed(run):
     _, folder = run(transcripts.FLAWED)
-    command = [sys.executable, "-m", "benchmarks.generation", str(folder.parent.parent)]
+    command = [sys.executable, "-m", "research.benchmarks.services.generation", str(folder.parent.parent)]
     done = subprocess.run(command, cwd=settings.ROOT, capture_output=True, text=True, check=True)
     row = done.stdout.splitlines()[-1]
     assert row == "| kit | 1 | 0 | 0.0 % | 100.0 % | 100.0 % | 0.0 % | 100.0 % | 0.0 % | 10.0 | parse 3 | - |"

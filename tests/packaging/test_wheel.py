@@ -54,7 +54,7 @@ def installed(tmp_path_factory):
 
 def test_it_is_the_wheel_that_runs_and_not_the_checkout(installed):
     bin_, empty = installed
-    code = "import sgcad_core, flows, mini.train, plugins; print(sgcad_core.__file__)"
+    code = "import sgcad_core, flows, plugins; print(sgcad_core.__file__)"
     done = run([bin_ / "python", "-c", code], empty)
     assert done.stdout.startswith(str(bin_.parent)), done.stderr
 

@@ -10,18 +10,20 @@ from typing import get_args
 
 import pytest
 
-from mini import answers, tags
-from mini.generator.crash import sample_crash
-from sgcad_core import kinds, specs
-from sgcad_core.answers import trained_schema
-from sgcad_core.language import rule, values
+from research.generator.crash.crash import sample_crash
+from research.model import answer_grammar
+from research.rows import evidence_labels
+from sgcad_core import kinds
+from sgcad_core.reading.language import rule, values
+from sgcad_core.records import specs
+from sgcad_core.records.answer_schema import trained_schema
 
 
 def test_literals_and_records_are_the_same() -> None:
     assert len(kinds.JUNCTIONS) == len(get_args(kinds.JunctionKind))
     assert {record.kind for record in kinds.JUNCTIONS} == set(get_args(kinds.JunctionKind))
-    assert get_args(kinds.RoadKind) == kinds.ROADS == tags.ROADS
-    assert get_args(kinds.Maneuver) == kinds.MANEUVERS == answers.MANEUVERS
+    assert get_args(kinds.RoadKind) == kinds.ROADS == evidence_labels.ROADS
+    assert get_args(kinds.Maneuver) == kinds.MANEUVERS == answer_grammar.MANEUVERS
     assert specs.Maneuver is kinds.Maneuver
     assert specs.RoadKind is kinds.RoadKind
 

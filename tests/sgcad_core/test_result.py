@@ -9,9 +9,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from sgcad_core.execution.contact import realised
-from sgcad_core.narrative.reading import read
-from sgcad_core.records import (
+from sgcad_core.case.records import (
     ActorInfo,
     Attempt,
     Execution,
@@ -23,8 +21,10 @@ from sgcad_core.records import (
     StageOutcome,
     Trajectory,
 )
+from sgcad_core.execution.contact import realised
+from sgcad_core.reading.reading import read
+from sgcad_core.records.specs import Contact, Evasion, NearCrash
 from sgcad_core.result import CaseRecord, as_declared, result_of
-from sgcad_core.specs import Contact, Evasion, NearCrash
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",

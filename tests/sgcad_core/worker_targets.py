@@ -8,8 +8,8 @@ import time
 
 import numpy as np
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.records import Finding
 
 
 def where(*args):

@@ -19,7 +19,7 @@ from plugins.backbone.engine.draft import Draft
 from plugins.backbone.engine.grammar import Mask, Track
 from plugins.backbone.engine.records import Answer, DoesNotFit, Request
 from plugins.backbone.engine.runner import Row
-from sgcad_core.asking.fields import open_path
+from sgcad_core.asking.json_field_spans import open_path
 
 
 @dataclass

@@ -9,7 +9,7 @@ import hashlib
 import re
 from typing import Literal, get_args
 
-from sgcad_core.records import Record
+from sgcad_core.case.records import Record
 
 Kind = Literal["api", "snippet", "xml", "example", "junction"]
 Task = Literal["road", "scenario"]

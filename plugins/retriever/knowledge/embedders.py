@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core import settings
-from sgcad_core.digest import file_sha256
 from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.system.digest import file_sha256
 
 Vectors = NDArray[np.float32]
 Name = Literal["none", "minilm", "sentence_transformers", "openai"]

@@ -12,8 +12,8 @@ import yaml
 from pydantic import TypeAdapter
 
 from plugins.retriever.knowledge.chunk import Chunk
-from sgcad_core.records import Record
-from sgcad_core.specs import BehaviorSpec, RoadLayout
+from sgcad_core.case.records import Record
+from sgcad_core.records.specs import BehaviorSpec, RoadLayout
 
 FILE = Path(__file__).with_name("examples.yaml")
 

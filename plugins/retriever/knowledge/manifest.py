@@ -9,8 +9,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
-from sgcad_core.records import Record
 
 MANIFEST = "index.json"
 FORMAT = 1

@@ -14,8 +14,8 @@ from plugins.retriever.knowledge.chunk import Kind, Task
 from plugins.retriever.knowledge.embedders import Embedder
 from plugins.retriever.knowledge.manifest import Manifest, read_manifest
 from plugins.retriever.knowledge.store import TABLE, check_embedder
+from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
-from sgcad_core.records import Record
 
 RANK_CONSTANT = 10
 """Of reciprocal rank fusion; Cormack, Clarke and Büttcher (2009) take 60, for lists of which more is read."""

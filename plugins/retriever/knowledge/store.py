@@ -23,8 +23,8 @@ from plugins.retriever.knowledge.chunk import Chunk
 from plugins.retriever.knowledge.embedders import Embedder
 from plugins.retriever.knowledge.manifest import MANIFEST, Manifest, read_manifest
 from sgcad_core.errors import ConfigError
-from sgcad_core.locks import alone
-from sgcad_core.scratch import beside
+from sgcad_core.system.locks import alone
+from sgcad_core.system.temp_folders import beside
 
 TABLE = "chunks"
 BATCH = 256

@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 Layer = Literal["parse", "rules", "execution", "limit"]
 MAX_ANSWER = 16_000_000

@@ -11,6 +11,7 @@ from itertools import count
 import numpy as np
 from lxml import etree
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, stalls_of
 from sgcad_core.formats.opendrive.connecting import Connector, way
@@ -29,7 +30,6 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
 from sgcad_core.kinds import ALLEY, DRIVEWAY
-from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 TOUCHING_M = 0.05

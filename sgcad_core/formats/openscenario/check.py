@@ -15,15 +15,15 @@ from itertools import islice
 import numpy as np
 from lxml import etree
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput, MissingTool
 from sgcad_core.findings import Finder
+from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
-from sgcad_core.formats.opendrive.index import RoadIndex, lane_index
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.formats.openscenario.read import SOURCE, Node, read_root
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.reading.elements import SOURCE, Node, read_root
 from sgcad_core.formats.xml import parse_xml, schema_errors
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.records import Finding
 
 _finding = Finder(SOURCE)
 

@@ -13,19 +13,19 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
+from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.formats.openscenario.actions import GLOBAL, PRIVATE
 from sgcad_core.formats.openscenario.actions.lateral import LATERAL
 from sgcad_core.formats.openscenario.actions.routing import ROUTING
 from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
 from sgcad_core.formats.openscenario.conditions import BY_ENTITY, BY_VALUE
-from sgcad_core.formats.openscenario.events import Handover
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.positions import POSITIONS
-from sgcad_core.formats.openscenario.shapes import SHAPES
-from sgcad_core.formats.openscenario.variation import STOCHASTIC
-from sgcad_core.formats.openscenario.writer import write_xosc
-from sgcad_core.records import ActorInfo, ObservedContact, Trajectory
-from sgcad_core.specs import BehaviorSpec
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.positions import POSITIONS
+from sgcad_core.formats.openscenario.reading.variation import STOCHASTIC
+from sgcad_core.formats.openscenario.roads.shapes import SHAPES
+from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from sgcad_core.records.specs import BehaviorSpec
 
 FAMILIES: dict[str, tuple[Family[Any], str]] = {
     "Private actions": (PRIVATE, "PrivateAction"),
@@ -97,9 +97,9 @@ _MAP = (
 _APART = """
 ## Where our player and esmini differ
 
-On public files that both play, most entities are within 0.3 m of each other to the end (`python -m benchmarks.foreign
-FOLDER --judge ESMINI`, steps of 0.01 s, controllers off). These are the causes where they are not, as far as they were
-found by reading the files one by one:
+On public files that both play, most entities are within 0.3 m of each other to the end (`python -m
+research.benchmarks.scenes.foreign FOLDER --judge ESMINI`, steps of 0.01 s, controllers off). These are the causes where
+they are not, as far as they were found by reading the files one by one:
 
 | element | difference |
 |---|---|

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.opendrive.controls import imported_lanes, lane_links, signed_junctions, width_of
 from sgcad_core.formats.sumo.graph_spec import CONTROLS
@@ -20,9 +21,8 @@ from sgcad_core.formats.sumo.netconvert import plain_files
 from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.sumo.plain_xml import BESIDE, CENTER_LANE_CLASS
 from sgcad_core.formats.xml import Element, parse_xml, to_text
-from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
-from sgcad_core.scratch import scratch
+from sgcad_core.system.temp_folders import scratch
 
 TIMEOUT_S = 120.0
 MOST_EDGES = 110

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 import numpy as np
 from pydantic import ValidationError
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import arc_lengths, resample
-from sgcad_core.records import Finding
+from sgcad_core.records.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
 from sgcad_core.roads.lane_graph import Connection, Direction, Edge, Floats, LaneGraph, road_of
-from sgcad_core.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
 from sgcad_core.units import MPS_PER_MPH
 
 MPH_PER_MPS = 1 / MPS_PER_MPH

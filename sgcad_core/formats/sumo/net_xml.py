@@ -10,9 +10,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
-from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import (
     Connection,
     Crossing,

@@ -15,13 +15,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sgcad_core import settings
+from sgcad_core.case.records import PlainXml, RoadNetwork
 from sgcad_core.errors import ConfigError, InvalidOutput, SimulationFailed
 from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
-from sgcad_core.limited import ended_from_outside, run_limited
-from sgcad_core.records import PlainXml, RoadNetwork
-from sgcad_core.scratch import scratch
-from sgcad_core.specs import RoadSpec
+from sgcad_core.records.specs import RoadSpec
+from sgcad_core.system.subprocess_limits import ended_from_outside, run_limited
+from sgcad_core.system.temp_folders import scratch
 
 TIMEOUT_S = 60.0
 LEAST_FREE = 1 << 20

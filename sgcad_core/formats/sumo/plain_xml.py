@@ -14,12 +14,13 @@ from typing import NamedTuple
 from lxml import etree
 
 from sgcad_core import settings
+from sgcad_core.case.records import Finding, PlainXml
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
-from sgcad_core.records import Finding, PlainXml
+from sgcad_core.records.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.lane_graph import ROAD_WORKS, edge_id
 from sgcad_core.roads.road_geometry import (
@@ -34,7 +35,6 @@ from sgcad_core.roads.road_geometry import (
     roadways,
 )
 from sgcad_core.roads.road_spec import spec_findings
-from sgcad_core.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
 from sgcad_core.units import MPS_PER_MPH
 
 SPEED_MPH = {"road": 35, RAMP: 45, DRIVEWAY: 15, ALLEY: 15, "circle": 20}

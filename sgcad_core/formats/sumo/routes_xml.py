@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from sgcad_core.case.records import Finding
 from sgcad_core.findings import Finder
 from sgcad_core.formats.sumo.plain_xml import sumo_findings
 from sgcad_core.formats.xml import Element, parse_xml
-from sgcad_core.records import Finding
 from sgcad_core.roads.lane_graph import LaneGraph
 
 SOURCE = "sumo_routes"

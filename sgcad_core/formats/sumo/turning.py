@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
+from sgcad_core.case.records import PlainXml
 from sgcad_core.formats.xml import Element, parse_xml, to_text
-from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
 
 LANE_RAD = 0.2

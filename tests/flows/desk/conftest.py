@@ -8,11 +8,11 @@ import httpx
 import pytest
 from starlette.testclient import TestClient
 
-from flows.batch import batch_of
-from flows.cases import cases_in
-from flows.chain import run_case
+from flows.batch.config_folder import write
+from flows.batch.find_cases import cases_in
+from flows.batch.plan_batch import batch_of
+from flows.case.chain import run_case
 from flows.desk.app import application
-from flows.named import write
 from sgcad_core import settings
 from sgcad_core.asking.refine import run_at_once
 

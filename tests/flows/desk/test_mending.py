@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from flows import revising
-from flows.desk import form
+from flows.case import revise_case
 from flows.desk.mending import Changed, Mender, Order
-from flows.desk.version import version_of
+from flows.desk.views import edit_form
+from flows.desk.views.case_version import version_of
 from sgcad_core.errors import SimulationFailed
 
 CASE = "left-turn-at-signal"
@@ -86,7 +86,7 @@ def test_of_two_people_at_once_one_is_told_to_look_again(page, key, config):
     for call in calls:
         call.join()
     assert sorted(codes) == [200, 409]
-    assert len(revising.opened(config / CASE).edits()) == 1
+    assert len(revise_case.opened(config / CASE).edits()) == 1
 
 
 def test_a_report_that_is_gone_is_told_of(page, key, runs):
@@ -134,8 +134,8 @@ def test_a_change_that_was_overtaken_starts_no_process(tmp_path):
 
 
 def test_the_forms_are_those_of_the_revision(config):
-    fields = revising.editable(config / CASE)
-    groups = form.groups_with((), fields, (), {"roads.N.median": ["odd"]})
+    fields = revise_case.editable(config / CASE)
+    groups = edit_form.groups_with((), fields, (), {"roads.N.median": ["odd"]})
     rows = {row.field: row for group in groups for row in group.facts}
     assert set(rows) == {f.name for f in fields if not f.name.endswith(".present")}
     asked = json.loads(rows["roads.N.lanes_forward"].edit)
@@ -147,18 +147,18 @@ def test_the_forms_are_those_of_the_revision(config):
 
 
 def test_what_can_be_added_is_what_is_not_there(config):
-    words = [a.words for a in form.additions(revising.editable(config / CASE))]
+    words = [a.words for a in edit_form.additions(revise_case.editable(config / CASE))]
     assert {"vehicle V3", "pedestrian P1", "contact 2", "road NE"} <= set(words)
     assert "road N" not in words
 
 
 def test_what_is_said_of_a_whole_thing_is_said_once(config):
-    fields = revising.editable(config / CASE)
+    fields = revise_case.editable(config / CASE)
     said = {f.name: ["V1 steers aside"] for f in fields if f.name.startswith("vehicles.V1.")}
-    groups = {g.thing: g for g in form.groups_with((), fields, (), said)}
+    groups = {g.thing: g for g in edit_form.groups_with((), fields, (), said)}
     assert groups["V1"].findings == ("V1 steers aside",)
     assert not any(row.findings for row in groups["V1"].facts)
 
 
 def test_folders_here_are_the_ones_meant(config):
-    assert Path(revising.opened(config / CASE).source).is_relative_to(config.parent.parent)
+    assert Path(revise_case.opened(config / CASE).source).is_relative_to(config.parent.parent)

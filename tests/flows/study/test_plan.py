@@ -93,7 +93,7 @@ def test_the_document_says_what_a_reader_needs(study, config_file, reports, tmp_
 
 
 def test_a_data_set_is_its_content(study, config_file, reports):
-    from flows.cases import cases_in
+    from flows.batch.find_cases import cases_in
 
     found = cases_in([reports(a="", b="x")])
     before = dataset_digest(found)

@@ -12,15 +12,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flows import batch as batches
-from flows import cases
-from flows.batch import Crew, Job
-from flows.cases import Case
-from flows.store import CaseFolder
-from flows.study.lease import Lease, LeaseLost, lease_name
+from flows.batch import find_cases
+from flows.batch import plan_batch as batches
+from flows.batch.find_cases import Case
+from flows.batch.plan_batch import Crew, Job
+from flows.case.case_folder import CaseFolder
+from flows.study.shard_lease import Lease, LeaseLost, lease_name
 from flows.study.shards import Shard, Work, cut, lay_out, work_on
-from flows.study.share import Share, Unreachable
-from flows.study.watch import FRUITLESS, PATIENCE_S, START_S, Watch, follow
+from flows.study.shared_storage import Share, Unreachable
+from flows.study.watch_shards import FRUITLESS, PATIENCE_S, START_S, Watch, follow
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import BadInput, ConfigError
 
@@ -39,11 +39,11 @@ def plan(tmp_path, config_file, reports):
     """Two arms over four cases, one of them refused, as a single machine would plan them."""
     folder = reports(c1="", c2="", c3="REFUSE", c4="")
     files = [config_file("one", **IN_THREADS), config_file("two", max_attempts=3, **IN_THREADS)]
-    return batches.batch_of(cases.cases_in([folder]), files, tmp_path / "home").plan()
+    return batches.batch_of(find_cases.cases_in([folder]), files, tmp_path / "home").plan()
 
 
 def run(plan, crew, hand_in):
-    """What `flows.evaluate.drive` does, without Prefect's view of it."""
+    """What `flows.batch.evaluate_flow.drive` does, without Prefect's view of it."""
     for job in plan:
         hand_in(job, crew.finish(job, run_at_once), "")
 
@@ -167,7 +167,7 @@ def test_a_host_with_other_code_refuses(plan, share, tmp_path):
 def test_a_report_that_is_one_file_arrives_as_one_file(config_file, share, tmp_path):
     report = tmp_path / "c1.txt"
     report.write_text("Vehicle #1 struck the back of Vehicle #2 on a two lane road.")
-    plan = batches.batch_of(cases.cases_of([report]), [config_file(**IN_THREADS)], tmp_path / "home").plan()
+    plan = batches.batch_of(find_cases.cases_of([report]), [config_file(**IN_THREADS)], tmp_path / "home").plan()
     lay_out(share, "s", plan)
     jobs, _ = Shard(share, 0, "run", tmp_path / "host").jobs()
     assert jobs[0].digest == plan[0].digest
@@ -182,7 +182,7 @@ def test_a_share_belongs_to_one_study(plan, share):
 
 def test_failed_cases_are_tried_again_by_the_next_study_only(config_file, reports, share, tmp_path):
     folder = reports(c1="RAISE", c2="")
-    plan = batches.batch_of(cases.cases_in([folder]), [config_file(**IN_THREADS)], tmp_path / "home").plan()
+    plan = batches.batch_of(find_cases.cases_in([folder]), [config_file(**IN_THREADS)], tmp_path / "home").plan()
     lay_out(share, "s", plan, 1)
     tally = work_on(Shard(share, 0, "run", tmp_path / "host"), run, 1)
     assert (tally.done, tally.failed) == (1, 1)

@@ -6,10 +6,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
+from flows.batch.run_batch import Cost
 from flows.cli import app
-from flows.start import Cost
 from flows.study.plan import plan
-from flows.study.running import cost_line
+from flows.study.run_study import cost_line
 from flows.study.spec import load_study
 from sgcad_core.errors import ConfigError
 

@@ -13,10 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from sgcad_core.errors import InvalidOutput, MissingTool, Refused, SimulationFailed
-from sgcad_core.geometry.plane import Box, contact_area, overlap
-from sgcad_core.interfaces import RoadWriter, ScenarioWriter, Simulator, Tracker, Validator
-from sgcad_core.records import (
+from sgcad_core.case.records import (
     ActorInfo,
     Execution,
     Finding,
@@ -26,7 +23,10 @@ from sgcad_core.records import (
     Scenario,
     Trajectory,
 )
-from sgcad_core.specs import Contact
+from sgcad_core.errors import InvalidOutput, MissingTool, Refused, SimulationFailed
+from sgcad_core.geometry.plane import Box, contact_area, overlap
+from sgcad_core.interfaces import RoadWriter, ScenarioWriter, Simulator, Tracker, Validator
+from sgcad_core.records.specs import Contact
 
 NET = """<net version="1.20">
 <edge id=":m_0" function="internal">

@@ -13,7 +13,7 @@ from transformers.models.idefics3.image_processing_pil_idefics3 import Idefics3I
 from transformers.models.mllama.image_processing_pil_mllama import MllamaImageProcessorPil
 from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import Qwen2VLImageProcessorPil
 
-from sgcad_core.records import Context, Diagram
+from sgcad_core.case.records import Context, Diagram
 from tests.plugins.backbone import tiny
 
 TEMPLATE = (

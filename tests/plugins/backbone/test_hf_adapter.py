@@ -14,8 +14,8 @@ from plugins.backbone import hf_adapter
 from plugins.backbone.hf_load import load
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.greedy import Greedy
+from sgcad_core.case.records import Query
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.records import Query
 from tests.plugins.backbone import folders, tiny
 
 pytest.importorskip("peft", reason="the extra adapters is not there")

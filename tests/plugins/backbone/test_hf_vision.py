@@ -23,9 +23,9 @@ from plugins.decoder.greedy import Greedy
 from plugins.decoder.nucleus import Nucleus
 from plugins.decoder.plausible import Plausible
 from plugins.decoder.vcd import Vcd
+from sgcad_core.case.records import Context, Generation, Passage, Query
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool
 from sgcad_core.interfaces import Decoder
-from sgcad_core.records import Context, Generation, Passage, Query
 from tests.plugins.backbone import folders, tiny
 
 DECODERS: list[Decoder] = [

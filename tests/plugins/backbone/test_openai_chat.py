@@ -18,8 +18,8 @@ from plugins.backbone.openai_chat import OpenAIChat
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from plugins.decoder.nucleus import Nucleus
+from sgcad_core.case.records import Context, Diagram, Passage, Query
 from sgcad_core.errors import ConfigError, InvalidOutput, MissingTool, Refused
-from sgcad_core.records import Context, Diagram, Passage, Query
 
 SCHEMA = {"type": "object", "properties": {"lanes": {"type": "integer"}}, "required": ["lanes"]}
 

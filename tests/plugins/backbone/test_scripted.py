@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from plugins.backbone.scripted import Scripted
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
+from sgcad_core.case.records import Context, Query, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.records import Context, Query, Stage
 
 CONTEXT = Context(narrative="V1 struck V2 at an intersection.")
 

@@ -15,7 +15,7 @@ from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
-from sgcad_core.asking.fields import grounding
+from sgcad_core.asking.json_field_spans import grounding
 from sgcad_core.interfaces import Decoder
 from tests.plugins.backbone import tiny, trained
 

@@ -18,8 +18,8 @@ from plugins.backbone.hf_load import moved
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
+from sgcad_core.case.records import Query
 from sgcad_core.interfaces import Decoder
-from sgcad_core.records import Query
 from tests.plugins.backbone import folders, tiny
 
 EOS = frozenset({2})
@@ -131,4 +131,4 @@ def test_a_moved_picture_is_whole_and_lies_elsewhere_in_every_view() -> None:
 
 def test_more_views_than_there_are_is_a_config_error() -> None:
     with pytest.raises(ValidationError, match="less than or equal to 5"):
-        HfVision(model="mini/weights", views=6)
+        HfVision(model="plugins/backbone/mini/weights", views=6)

@@ -18,7 +18,7 @@ from plugins.decoder.greedy import Greedy
 from plugins.decoder.nucleus import Nucleus
 from plugins.decoder.plausible import Plausible
 from plugins.decoder.vcd import Vcd, kept_signal
-from sgcad_core.records import Context, Diagram
+from sgcad_core.case.records import Context, Diagram
 
 torch.set_num_threads(1)
 VOCABULARY = 17

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sgcad_core.seat import RoadUser, Task, View, Way
+from sgcad_core.case.driver_io import RoadUser, Task, View, Way
 
 
 def user(actor="V2", x=0.0, y=0.0, speed=0.0, course=0.0, kind="car", length=4.7, width=1.8):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from plugins.driver.sumo import Sumo, _worker
+from sgcad_core.case.driver_io import Task, View, Way
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.seat import Task, View, Way
 from tests.plugins.driver.seats import user
 from tests.sgcad_core.formats.xosc_samples import crossroads
 

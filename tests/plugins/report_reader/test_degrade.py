@@ -13,7 +13,7 @@ from PIL import Image
 
 from plugins.report_reader.auto import Auto
 from plugins.report_reader.degrade import LEVELS, SPARSE, degrade
-from sgcad_core.records import CrashReport, Diagram
+from sgcad_core.case.records import CrashReport, Diagram
 
 TEXT = (
     "Vehicle one (V1), a 2001 Ford Escort, was traveling north in the second lane of a four-lane road at 48 kmph "

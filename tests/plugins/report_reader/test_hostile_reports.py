@@ -16,7 +16,7 @@ from plugins.report_reader.auto import Auto
 from plugins.report_reader.evidence import MAX_NARRATIVE, diagram
 from plugins.report_reader.pdf import MAX_DRAWN
 from sgcad_core.errors import BadInput
-from sgcad_core.report_files import read_regular
+from sgcad_core.system.report_files import read_regular
 from tests.plugins.report_reader.test_readers import NARRATIVE, folder, png
 
 

@@ -11,10 +11,10 @@ from lxml import etree
 from plugins.retriever.knowledge.api import api_chunks
 from plugins.retriever.knowledge.embedders import MINILM_PACKAGE, check_digest, make, minilm_folder
 from plugins.retriever.knowledge.examples import examples
-from plugins.retriever.knowledge.snippets import snippet_chunks, snippet_functions
+from plugins.retriever.knowledge.snippets.read_snippets import snippet_chunks, snippet_functions
 from plugins.retriever.knowledge.sources import builtin_chunks
-from plugins.retriever.knowledge.xml_schema import examples as xml_examples
-from plugins.retriever.knowledge.xml_schema import xml_chunks
+from plugins.retriever.knowledge.sumo_xml.xml_schema import examples as xml_examples
+from plugins.retriever.knowledge.sumo_xml.xml_schema import xml_chunks
 from plugins.simulator.kinematic import Kinematic
 from sgcad_core import settings as paths
 from sgcad_core.errors import MissingTool

@@ -9,9 +9,9 @@ import pytest
 from plugins.road_writer.plain_xml import PlainXmlRoad
 from plugins.validator.netconvert import Netconvert
 from plugins.validator.sumo_xsd import SumoXsd
+from sgcad_core.case.records import Context, CrashReport, Evidence, Generation, Passage
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
-from sgcad_core.records import Context, CrashReport, Evidence, Generation, Passage
 from tests.transcripts import EDGES, NODES, REFUSAL, road_answer
 
 CONTEXT = Context(narrative="V1 was northbound.")

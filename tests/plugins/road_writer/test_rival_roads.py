@@ -13,11 +13,11 @@ from plugins.road_writer.osm_direct import OsmDirect
 from plugins.road_writer.template import Template
 from plugins.road_writer.text2scenario import SceneLayout, layout_of_scene
 from sgcad_core import settings
+from sgcad_core.case.records import Context, Generation, Query, RoadNetwork
 from sgcad_core.errors import ConfigError, Refused
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
 from sgcad_core.interfaces import RoadWriter
-from sgcad_core.records import Context, Generation, Query, RoadNetwork
-from sgcad_core.specs import RoadLayout
+from sgcad_core.records.specs import RoadLayout
 
 CROSSING = (
     "V1 was traveling north on a four-lane, two-way road and was approaching a four-leg intersection with a traffic "

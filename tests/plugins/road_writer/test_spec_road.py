@@ -9,12 +9,12 @@ import llguidance
 import pytest
 
 from plugins.road_writer.spec import SpecRoad
-from sgcad_core.answers import added_fields
 from sgcad_core.asking.prompts import answer_schema, load_prompt
+from sgcad_core.case.records import Context, Generation, Passage
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
-from sgcad_core.records import Context, Generation, Passage
-from sgcad_core.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
+from sgcad_core.records.answer_schema import added_fields
+from sgcad_core.records.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
 
 EVIDENCE = Context(narrative="V1 was northbound on a two-lane road.")
 LAYOUT = {

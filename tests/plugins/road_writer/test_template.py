@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plugins.road_writer.template import Template
+from sgcad_core.case.records import Context, Generation, Query, RoadNetwork
 from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.net_xml import LaneGraph, network_figures, parse_net
-from sgcad_core.records import Context, Generation, Query, RoadNetwork
 
 
 def never(context: Context, query: Query) -> Generation:

@@ -12,10 +12,10 @@ from plugins.scenario_writer.code import Code
 from plugins.scenario_writer.lanes import lane_lines
 from plugins.simulator.kinematic import Kinematic
 from plugins.validator.openscenario import OpenScenario
+from sgcad_core.case.records import Context, CrashReport, Evidence, Generation, Passage, RoadNetwork
 from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.formats.openscenario.player import play
+from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.records import Context, CrashReport, Evidence, Generation, Passage, RoadNetwork
 from tests.sgcad_core.formats.xosc_samples import crossroads
 from tests.transcripts import DECLARED, REFUSAL, SCRIPT, code_answer
 

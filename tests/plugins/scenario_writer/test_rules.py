@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from plugins.scenario_writer.rules import Rules
+from sgcad_core.case.records import Context, Generation, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import Context, Generation, Query, RoadNetwork, Scenario
+from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Leg, RoadLayout
 
 
 def _never(context: Context, query: Query) -> Generation:

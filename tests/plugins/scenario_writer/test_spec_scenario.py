@@ -7,8 +7,8 @@ import json
 import pytest
 
 from plugins.scenario_writer.spec import SpecScenario
+from sgcad_core.case.records import Context, Generation, Passage, RoadNetwork
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
-from sgcad_core.records import Context, Generation, Passage, RoadNetwork
 from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
 
 CONTEXT = Context(narrative="V1 turned left in front of V2.")

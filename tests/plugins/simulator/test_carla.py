@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from plugins.simulator.carla import Carla, waypoints
+from sgcad_core.case.records import RoadNetwork
 from sgcad_core.errors import MissingTool, SimulationFailed
-from sgcad_core.records import RoadNetwork
 from tests.plugins.simulator.test_simulators import scenario_of
 from tests.sgcad_core.formats.xosc_samples import crossroads, trajectory
 

@@ -7,11 +7,11 @@ import pytest
 
 from plugins.simulator.esmini import Esmini
 from plugins.simulator.kinematic import Kinematic
+from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import MissingTool, SimulationFailed
-from sgcad_core.execution.judgement import TOLERANCE_M, judge
+from sgcad_core.execution.compare_executions import TOLERANCE_M, judge
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.records import RoadNetwork, Scenario
-from sgcad_core.specs import SIZE_M
+from sgcad_core.records.specs import SIZE_M
 from tests.plugins.simulator.fake_esmini import COLUMNS, log, make
 from tests.plugins.simulator.test_simulators import scenario_of
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory

@@ -10,16 +10,16 @@ import pytest
 
 from plugins.simulator.kinematic import Kinematic
 from plugins.simulator.libsumo import LibSumo, _worker
+from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.execution.contact import realised
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.records import RoadNetwork, Scenario
+from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Leg, RoadLayout
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(120)

@@ -14,9 +14,9 @@ from plugins.tracker import mlflow_store
 from plugins.tracker.figures import means
 from plugins.tracker.mlflow import MlflowTracker
 from plugins.tracker.mlflow_store import KIND, NOTE, store_of
+from sgcad_core.case.records import Generation, Query
+from sgcad_core.case.tracker_arm import Arm, Dataset
 from sgcad_core.errors import ConfigError
-from sgcad_core.experiment import Arm, Dataset
-from sgcad_core.records import Generation, Query
 from sgcad_core.settings import ROOT
 
 RESULT = {

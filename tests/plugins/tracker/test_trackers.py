@@ -8,7 +8,7 @@ import pytest
 from plugins.tracker.figures import attempt_figures, case_figures, flat, means, numbers, parameters
 from plugins.tracker.jsonl import Jsonl
 from plugins.tracker.none import NoTracker
-from sgcad_core.records import Generation, Query
+from sgcad_core.case.records import Generation, Query
 
 RESULT = {
     "case": "c1",

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from plugins.validator.behavior_narrative import BehaviorNarrative
-from sgcad_core.narrative.behavior import behavior_of_facts
-from sgcad_core.narrative.reading import crash_facts
-from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.case.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.reading import crash_facts
+from sgcad_core.records.specs import Access, Actor, BehaviorSpec, Leg, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Actor, BehaviorSpec, Leg, RoadLayout, RoadSpec
 
 SPEC = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "E", "S", "W"))))
 TEXT = (

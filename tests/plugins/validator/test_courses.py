@@ -3,10 +3,10 @@
 import pytest
 
 from plugins.validator._courses import approaches, heading
-from sgcad_core.narrative.compass import angle_of
-from sgcad_core.narrative.ways import ways_of
+from sgcad_core.reading.layout.road_ways import ways_of
+from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.specs import Access, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Leg, RoadLayout
 
 
 def starts(legs: str, way: str, *accesses: Access) -> set[tuple[str, str]]:

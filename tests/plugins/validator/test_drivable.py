@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from plugins.validator.drivable import Drivable
+from sgcad_core.case.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario, Trajectory
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario, Trajectory
+from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec, Contact, Leg, Maneuver, RoadLayout, Surface
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Actor, ActorKind, BehaviorSpec, Contact, Leg, Maneuver, RoadLayout, Surface
 
 CROSSED = "V1 was traveling north. V2 was traveling west. They struck each other at the intersection."
 SPUN = "V1 was traveling north and skidded. V2 was traveling west. They struck each other at the intersection."

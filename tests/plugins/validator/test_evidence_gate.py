@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from plugins.validator.evidence_gate import EvidenceGate
 from sgcad_core import config
-from sgcad_core.records import CrashReport, Evidence, Generation, RoadNetwork, Scenario
+from sgcad_core.case.records import CrashReport, Evidence, Generation, RoadNetwork, Scenario
 
 ROAD = {
     "legs[]": 1.0, "legs[0].bearing": 0.2, "legs[0].lanes_in": 0.9, "legs[0].lanes_out": -0.5, "legs[0].median": -9.0

@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 
 from plugins.validator.meeting import Meeting
+from sgcad_core.case.records import CrashReport, Evidence, Finding, RoadNetwork
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import CrashReport, Evidence, Finding, RoadNetwork
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 
 PULLED_OUT = (
     "V1 was traveling north. V2 came out of a parking lot and turned right. The front of V1 struck the left side of V2."

@@ -4,15 +4,15 @@ import pytest
 
 from plugins.road_writer.template import Template
 from plugins.validator.road_narrative import RoadNarrative
-from sgcad_core.asking.narrowing import narrowed
 from sgcad_core.asking.prompts import answer_schema
+from sgcad_core.asking.schema_holds import narrowed
+from sgcad_core.case.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.narrative.reading import road_facts
-from sgcad_core.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
+from sgcad_core.reading.reading import road_facts
+from sgcad_core.records.specs import Leg, RoadLayout
+from sgcad_core.roads.lane_total_readings import allowed_totals
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.roads.told_totals import allowed_totals
-from sgcad_core.specs import Leg, RoadLayout
 
 ANSWER = answer_schema(RoadLayout)
 CROSSING = (

@@ -11,12 +11,12 @@ from plugins.validator.opendrive import OpenDrive
 from plugins.validator.sumo_load import _WORKER, SumoLoad
 from plugins.validator.sumo_xsd import SumoXsd
 from plugins.validator.topology import Topology
+from sgcad_core.case.records import CrashReport, Evidence, PlainXml, RoadNetwork, Scenario
 from sgcad_core.errors import ProcessDied
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import CrashReport, Evidence, PlainXml, RoadNetwork, Scenario
+from sgcad_core.records.specs import Leg, Node, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Leg, Node, RoadLayout, RoadSpec
 from tests.sgcad_core.formats.road_samples import NAMED, compiled, road, star
 
 EVIDENCE = Evidence(report=CrashReport(case="c", narrative="n"))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from plugins.validator.routes import Routes
+from sgcad_core.case.records import ActorInfo, CrashReport, Evidence, Finding, PlainXml, RoadNetwork, Scenario
 from sgcad_core.formats.sumo.netconvert import compile_network
-from sgcad_core.records import ActorInfo, CrashReport, Evidence, Finding, PlainXml, RoadNetwork, Scenario
-from sgcad_core.specs import Contact
+from sgcad_core.records.specs import Contact
 from tests.transcripts import EDGES, NODES
 from tests.transcripts_rivals import ROUTES
 

@@ -6,11 +6,11 @@ import pytest
 
 from plugins.validator.agreement import Agreement
 from plugins.validator.openscenario import OpenScenario
+from sgcad_core.case.records import CrashReport, Evidence, RoadNetwork, Scenario
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml, to_text
-from sgcad_core.records import CrashReport, Evidence, RoadNetwork, Scenario
-from sgcad_core.specs import Contact, Evasion, NearCrash
+from sgcad_core.records.specs import Contact, Evasion, NearCrash
 from tests.sgcad_core.formats.xosc_samples import CROSSING, bent_road, crossroads
 
 REPORT = CrashReport(case="a", narrative="")

@@ -7,18 +7,18 @@ import pytest
 
 from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
+from sgcad_core.account.build import account_of
 from sgcad_core.account.contacts import contact_items
-from sgcad_core.account.made import Made, is_told
-from sgcad_core.account.making import account_of
+from sgcad_core.account.inputs import Made, is_told
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import notes_of
 from sgcad_core.account.places import place_items
-from sgcad_core.account.unread import unread_items
+from sgcad_core.account.unread_text import unread_items
 from sgcad_core.account.words import named, phrase, shown
 from sgcad_core.config import load
-from sgcad_core.facts import Fact
-from sgcad_core.narrative.text import split_sentences
-from sgcad_core.narrative.traced import Traced
+from sgcad_core.reading.text.normalise import split_sentences
+from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.records.facts import Fact
 from sgcad_core.settings import ROOT
 
 DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
@@ -27,8 +27,8 @@ DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """The bundled left turn at a signal, executed."""
-    from flows.cases import Case
-    from flows.chain import CaseRun, run_at_once
+    from flows.batch.find_cases import Case
+    from flows.case.chain import CaseRun, run_at_once
 
     run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"), run_at_once)
     run.go()

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from sgcad_core.asking import prompts
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer, repair_text
+from sgcad_core.case.records import Finding
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
-from sgcad_core.records import Finding
-from sgcad_core.specs import BehaviorSpec, Refusal, RoadLayout, RoadSpec
+from sgcad_core.records.specs import BehaviorSpec, Refusal, RoadLayout, RoadSpec
 
 ROAD = {
     "nodes": [{"id": "a", "x_m": 0, "y_m": 0}, {"id": "b", "x_m": 100, "y_m": 0}],

@@ -6,9 +6,19 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from sgcad_core.asking.refine import DOUBTFUL_ATTEMPTS, MAX_ATTEMPTS, Refinement, Turn, _holds, refine
+from sgcad_core.case.records import (
+    Attempt,
+    Context,
+    CrashReport,
+    Evidence,
+    Finding,
+    Generation,
+    Hold,
+    Query,
+    RoadNetwork,
+)
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused
 from sgcad_core.interfaces import Validator
-from sgcad_core.records import Attempt, Context, CrashReport, Evidence, Finding, Generation, Hold, Query, RoadNetwork
 
 CONTEXT = Context(narrative="V1 struck V2.")
 REPORT = CrashReport(case="c", narrative="V1 struck V2.")

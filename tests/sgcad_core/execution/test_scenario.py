@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sgcad_core.case.records import Hold, RoadNetwork
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.records import Hold, RoadNetwork
-from sgcad_core.specs import BehaviorSpec, Contact, Evasion, NearCrash
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.records.specs import BehaviorSpec, Contact, Evasion, NearCrash
 from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
 
 

@@ -6,16 +6,16 @@ import functools
 
 import pytest
 
+from sgcad_core.case.records import RoadNetwork
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.execution.signals import SHOWN_S, signal_times
 from sgcad_core.formats.openscenario.check import xosc_findings
-from sgcad_core.formats.openscenario.read import read_root
-from sgcad_core.formats.openscenario.scene import Scene
-from sgcad_core.formats.openscenario.signals import SignalPlan
-from sgcad_core.formats.openscenario.writer import origin_motion
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.signal_phases import SignalPlan
+from sgcad_core.formats.openscenario.reading.elements import read_root
+from sgcad_core.formats.openscenario.writing.writer import origin_motion
 from sgcad_core.formats.xml import parse_xml
-from sgcad_core.records import RoadNetwork
-from sgcad_core.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.formats.road_samples import NAMED, compiled
 from tests.sgcad_core.formats.xosc_samples import crossroads
 

@@ -8,10 +8,10 @@ from typing import get_args
 
 from hypothesis import strategies as st
 
+from sgcad_core.case.records import RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import RoadNetwork
-from sgcad_core.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
+from sgcad_core.records.specs import Node, NodeControl, Point, Road, RoadSpec, Turn
 
 BEARINGS = {"N": (0, 1), "NE": (0.7, 0.7), "E": (1, 0), "S": (0, -1), "SW": (-0.7, -0.7), "W": (-1, 0)}
 

@@ -6,11 +6,11 @@ import functools
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.player import play
+from sgcad_core.case.records import ActorInfo, RoadNetwork, Trajectory
+from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import ActorInfo, RoadNetwork, Trajectory
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, Node, Road, RoadSpec
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Node, Road, RoadSpec
 
 CROSSING = BehaviorSpec(
     actors=(

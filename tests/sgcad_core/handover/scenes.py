@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.handover.script import Script
-from sgcad_core.records import ActorInfo, Trajectory
+from sgcad_core.records.specs import Contact
 from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.specs import Contact
 
 EMPTY = LaneGraph({}, (), {})
 LENGTH, WIDTH = 4.7, 1.8

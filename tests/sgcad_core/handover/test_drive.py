@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plugins.driver.script import Script as ReportsDriver
+from sgcad_core.case.driver_io import Command, Seat
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.execution.contact import realised
 from sgcad_core.handover.drive import drive, task_of
 from sgcad_core.handover.outcome import came
 from sgcad_core.handover.script import staged
 from sgcad_core.interfaces import Driver
-from sgcad_core.seat import Command, Seat
 from tests.sgcad_core.handover.scenes import crossing, rear_end, turned
 
 

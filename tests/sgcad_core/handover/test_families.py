@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.handover.hardest import decides, search
-from sgcad_core.handover.spread import spreads
-from sgcad_core.handover.variant import basis_of, member, undisturbed
-from sgcad_core.planner.impact import mass_kg
+from sgcad_core.handover.family.cross_entropy import decides, search
+from sgcad_core.handover.family.parameter_priors import spreads
+from sgcad_core.handover.family.variant import basis_of, member, undisturbed
+from sgcad_core.planner.aftermath.impact import mass_kg
 from tests.sgcad_core.handover.scenes import crossing, rear_end
 
 STATED = [

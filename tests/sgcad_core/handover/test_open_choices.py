@@ -8,12 +8,12 @@ import pytest
 
 from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.handover.choices import LIGHTS, light_of, unvaried
-from sgcad_core.handover.delay import delay_of
+from sgcad_core.handover.family.discrete_parameters import LIGHTS, light_of, unvaried
+from sgcad_core.handover.family.parameter_priors import spreads
+from sgcad_core.handover.family.shifted_evasion import delay_of
+from sgcad_core.handover.family.variant import basis_of, member, undisturbed
 from sgcad_core.handover.lanes import beside
 from sgcad_core.handover.script import staged
-from sgcad_core.handover.spread import spreads
-from sgcad_core.handover.variant import basis_of, member, undisturbed
 from tests.sgcad_core.handover.scenes import LENGTH, STEP, WIDTH, crossing, rear_end
 
 LANES = "".join(

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.handover.figures import impact_told
+from sgcad_core.handover.contact_figures import impact_told
 from sgcad_core.handover.severity import fatality_risk, severity
-from sgcad_core.planner.impact import RESTITUTION, body, collide
+from sgcad_core.planner.aftermath.impact import RESTITUTION, body, collide
 from tests.sgcad_core.handover.scenes import crossing, rear_end
 
 

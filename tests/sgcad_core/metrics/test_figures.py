@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sgcad_core.case.records import ActorInfo, Execution, Scenario, Trajectory
 from sgcad_core.metrics import Thresholds, criticality, displacement, generation, measure, road_network
-from sgcad_core.records import ActorInfo, Execution, Scenario, Trajectory
 
 LIMITS = Thresholds()
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sgcad_core.case.records import Finding
 from sgcad_core.metrics.generation import LAYERS, AttemptSeen, CaseSeen, layer_of, quality
-from sgcad_core.records import Finding
 
 
 def finding(source, where="", severity="repair"):

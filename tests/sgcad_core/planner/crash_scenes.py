@@ -12,9 +12,9 @@ from collections.abc import Callable
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.records.specs import Access, Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Actor, BehaviorSpec, Contact, Leg, RoadLayout
 
 COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 KINDS = ("car", "car", "car", "suv", "pickup", "van", "truck", "bus", "motorcycle")

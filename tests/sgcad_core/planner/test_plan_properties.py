@@ -6,19 +6,19 @@ import math
 
 import numpy as np
 import pytest
-from crash_scenes import LAYOUTS, draw_scene, network
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
-from sgcad_core.metrics.driving import WHEELED, deepest, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, deepest, driven, first_touches
 from sgcad_core.planner import Plan, plan
-from sgcad_core.planner.choices import SLIDES
+from sgcad_core.planner.encounter.maneuver_choices import SLIDES
 from sgcad_core.planner.motion import LEAD_S
 from sgcad_core.planner.scene import AFTER_S
+from sgcad_core.records.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 from sgcad_core.roads.lane_graph import road_of
-from sgcad_core.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 from tests.effort import many
+from tests.sgcad_core.planner.crash_scenes import LAYOUTS, draw_scene, network
 
 STEP_S = 0.05
 EXAMPLES = many(20, 200)

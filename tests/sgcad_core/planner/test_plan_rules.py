@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from crash_scenes import network
 
+from sgcad_core.case.records import Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
-from sgcad_core.planner.choices import SLIDES
-from sgcad_core.records import Trajectory
-from sgcad_core.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.planner.encounter.maneuver_choices import SLIDES
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from tests.sgcad_core.planner.crash_scenes import network
 
 MPH = 0.44704
 

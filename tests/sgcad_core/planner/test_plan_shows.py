@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from sgcad_core.planner.casting import course_of
-from sgcad_core.planner.showing import not_evading, not_shown
-from sgcad_core.records import Trajectory
-from sgcad_core.told_course import CourseTold
+from sgcad_core.case.records import Trajectory
+from sgcad_core.planner.encounter.contact_queries import course_of
+from sgcad_core.planner.maneuver_visible import not_evading, not_shown
+from sgcad_core.records.course import CourseTold
 from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
 

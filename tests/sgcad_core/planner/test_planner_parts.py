@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from crash_scenes import network
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.casting import course_of
-from sgcad_core.planner.course import find_course
-from sgcad_core.planner.encounter import meet
+from sgcad_core.planner.encounter.contact_queries import course_of
+from sgcad_core.planner.encounter.encounter_search import meet
+from sgcad_core.planner.lines.actor_course import find_course
+from sgcad_core.planner.lines.axle_to_box import rolled, swung
+from sgcad_core.planner.lines.path import TURN_BACK_M, bezier, draw, ramp, tamed, turned_back
+from sgcad_core.planner.lines.route import find_route
 from sgcad_core.planner.motion import ACCELERATION_MPS2, BRAKING_MPS2, Motion, Pace, drive
-from sgcad_core.planner.path import TURN_BACK_M, bezier, draw, ramp, tamed, turned_back
-from sgcad_core.planner.rolling import rolled, swung
-from sgcad_core.planner.route import find_route
-from sgcad_core.specs import Actor
+from sgcad_core.records.specs import Actor
+from tests.sgcad_core.planner.crash_scenes import network
 
 CAR = (4.7, 1.8)
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion, stand
-from sgcad_core.planner.path import Path
 from sgcad_core.planner.scene import Scene
 
 CAR = (4.7, 1.8)

@@ -11,20 +11,20 @@ from plugins.road_writer.template import Template
 from plugins.scenario_writer.rules import Rules
 from plugins.validator.sumo_load import SumoLoad
 from plugins.validator.topology import Topology
+from sgcad_core.case.records import Context, CrashReport, Evidence, RoadNetwork
 from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
+from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
 from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.reading import road_facts
-from sgcad_core.planner.route import find_route
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork
+from sgcad_core.planner.lines.route import find_route
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.reading import road_facts
+from sgcad_core.records.specs import Access, Actor, Compass, Leg, RoadLayout, centers
 from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Actor, Compass, Leg, RoadLayout, centers
 
 Legs = list[tuple[Compass, int, int]]
 FOUR: Legs = [("N", 1, 1), ("E", 1, 1), ("S", 1, 1), ("W", 1, 1)]

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.records.specs import Access, Leg, RoadLayout
 from sgcad_core.roads.describe import compass, describe_network, road_ids
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Access, Leg, RoadLayout
 from tests.sgcad_core.formats.xosc_samples import crossroads
 
 RICH = road_spec(

@@ -10,20 +10,20 @@ from plugins.road_writer.template import Template
 from plugins.scenario_writer.rules import Rules
 from plugins.validator.sumo_load import SumoLoad
 from plugins.validator.topology import Topology
+from sgcad_core.case.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
+from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
 from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.distances import distance_to
-from sgcad_core.narrative.layout_facts import layout_of_facts
-from sgcad_core.narrative.reading import road_facts
-from sgcad_core.narrative.told_roads import told_roads
-from sgcad_core.records import Context, CrashReport, Evidence, RoadNetwork, Scenario
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.roads.told_roads import told_roads
+from sgcad_core.records.specs import Beside, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Beside, Leg, RoadLayout
 
 ALL: tuple[Beside, ...] = ("sidewalk", "parking", "bike_lane")
 CASES: list[tuple[tuple[Beside, ...], bool, int, int]] = [

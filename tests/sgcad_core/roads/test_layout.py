@@ -12,8 +12,8 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import arc_lengths
+from sgcad_core.records.specs import Access, Compass, Leg, Median, Node, Road, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import COMPASS, LEG_M, road_spec
-from sgcad_core.specs import Access, Compass, Leg, Median, Node, Road, RoadLayout, RoadSpec
 
 
 def leg(bearing: str, lanes_in: int = 1, lanes_out: int = 1, **more: object) -> Leg:

@@ -5,7 +5,7 @@ What is not supported raises Unsupported when it is compiled, not when it is rea
 
 from sgcad_core.formats.openscenario.actions import control, lateral, presence, routing, spacing, speed, world
 from sgcad_core.formats.openscenario.actions.running import GLOBAL, PRIVATE, Begin, Effect, Running
-from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 MODULES = (control, lateral, presence, routing, spacing, speed, world)
 """Importing them fills the families."""

@@ -6,7 +6,7 @@ So that nothing is silent, each one that is switched on leaves a note beside the
 from __future__ import annotations
 
 from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, at_once
-from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 _ALONE = "controllers are the simulator's own: the entity moves as the file says without one"
 

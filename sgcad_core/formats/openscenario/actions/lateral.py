@@ -5,23 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from sgcad_core.formats.openscenario.actions.running import (
-    PRIVATE,
-    Begin,
-    Dynamics,
-    Running,
-    at_once,
-    dynamics,
-    nested,
-)
-from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.course import Course, beside
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.motion import EPSILON, STEEPEST, Transition
-from sgcad_core.formats.openscenario.positions import shifted
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
-from sgcad_core.formats.openscenario.way import LanePlace, Way
+from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Dynamics, Running, at_once, dynamics, nested
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.offset_course import Course, beside
+from sgcad_core.formats.openscenario.playing.positions import shifted
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, STEEPEST, Transition
+from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 
 LATERAL: Family[Begin] = Family("lateral action")
 PRIVATE.plays("LateralAction")(lambda node: nested(LATERAL, node))

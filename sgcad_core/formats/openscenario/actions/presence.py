@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from sgcad_core.formats.openscenario.actions.running import GLOBAL, PRIVATE, Begin, Effect, Running, at_once
-from sgcad_core.formats.openscenario.positions import position
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.positions import position
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 
 @PRIVATE.plays("TeleportAction")

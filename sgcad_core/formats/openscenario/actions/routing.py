@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, at_once, nested
-from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.course import Course
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.positions import position
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.routes import route
-from sgcad_core.formats.openscenario.scene import Scene
-from sgcad_core.formats.openscenario.trajectory import trajectory
-from sgcad_core.formats.openscenario.way import LanePlace, Route
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.offset_course import Course
+from sgcad_core.formats.openscenario.playing.positions import position
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.trajectory import trajectory
+from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.roads.routes import route
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 ROUTING: Family[Begin] = Family("routing action")
 PRIVATE.plays("RoutingAction")(lambda node: nested(ROUTING, node))

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.motion import STEEPEST
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import STEEPEST
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 Test = Callable[[Scene], bool]
 

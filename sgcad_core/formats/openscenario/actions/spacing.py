@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, relative_speed
 from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
-from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.course import Course
-from sgcad_core.formats.openscenario.distances import ahead_of
-from sgcad_core.formats.openscenario.motion import Pose
-from sgcad_core.formats.openscenario.positions import Where, position
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.distances import ahead_of
+from sgcad_core.formats.openscenario.playing.offset_course import Course
+from sgcad_core.formats.openscenario.playing.positions import Where, position
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 STIFFNESS = 0.4
 """Of the spring that keeps a distance, 1/m per unit of the acceleration limit: esmini's value, since the standard

@@ -7,19 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.actions.running import (
-    PRIVATE,
-    Begin,
-    Running,
-    dynamics,
-    nested,
-    relative_speed,
-)
-from sgcad_core.formats.openscenario.body import Body
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.motion import EPSILON, STEEPEST, Transition
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, dynamics, nested, relative_speed
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, STEEPEST, Transition
+from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.geometry.plane import Floats
 
 LONGITUDINAL: Family[Begin] = Family("longitudinal action")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sgcad_core.formats.openscenario.actions.running import GLOBAL, Effect
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 GLOBAL.refuses(
     "TrafficAction", remark="sources, sinks and swarms draw traffic at random", remedy="write each vehicle as an entity"

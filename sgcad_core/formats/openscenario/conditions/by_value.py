@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sgcad_core.formats.openscenario.actions.world import seconds_of_day
 from sgcad_core.formats.openscenario.conditions.rules import BY_VALUE, RULES, Test, rule, rule_of_text
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import TRANSITIONS, Scene
+from sgcad_core.formats.openscenario.playing.scene import TRANSITIONS, Scene
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 _STATES = ("standbyState", "runningState", "completeState")
 BY_VALUE.refuses("UserDefinedValueCondition", remark="its value comes from outside", remedy="use a VariableCondition")

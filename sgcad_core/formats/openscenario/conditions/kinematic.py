@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from sgcad_core.formats.openscenario.body import STILL_MPS, Body
 from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, OfEntity, rule
-from sgcad_core.formats.openscenario.motion import EPSILON, angle_between
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.body import STILL_MPS, Body
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, angle_between
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 
 @BY_ENTITY.plays("TraveledDistanceCondition")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from sgcad_core.formats.openscenario.families import Family
-from sgcad_core.formats.openscenario.motion import EPSILON
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.families import Family
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 Test = Callable[[Scene], bool]
 OfEntity = Callable[[Scene, str], bool]

@@ -9,9 +9,9 @@ import math
 from collections.abc import Callable
 
 from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, BY_VALUE, Test
-from sgcad_core.formats.openscenario.motion import EPSILON
-from sgcad_core.formats.openscenario.read import Node
-from sgcad_core.formats.openscenario.scene import Scene
+from sgcad_core.formats.openscenario.playing.scene import Scene
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
+from sgcad_core.formats.openscenario.reading.elements import Node
 
 _EDGES: dict[str, Callable[[bool, bool], bool]] = {
     "rising": lambda before, now: now and not before,

@@ -1,4 +1,5 @@
-"""Why `benchmarks.roundtrip` finds connections that netconvert does not give back: a limit of its importer.
+"""Why `research.benchmarks.scenes.roundtrip` finds connections that netconvert does not give back: a limit of its
+importer.
 
 Two lanes of one road lead into the one lane of another, linked in every way that OpenDRIVE has. netconvert makes one
 connection of each, and says nothing.

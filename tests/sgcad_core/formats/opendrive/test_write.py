@@ -8,10 +8,10 @@ from lxml import etree
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.agreement import network_disagreements
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.opendrive.index import lane_index
+from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
 from sgcad_core.formats.opendrive.write import write_xodr
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml

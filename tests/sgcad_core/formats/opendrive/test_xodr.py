@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from sgcad_core import settings as paths
-from sgcad_core.formats.opendrive.check import xodr_findings
-from sgcad_core.formats.opendrive.check_control import lanes_of
+from sgcad_core.formats.opendrive.checks.check_control import lanes_of
+from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
 from sgcad_core.formats.opendrive.geometry import Pose, arc_lengths_of, end_pose, hermite
-from sgcad_core.formats.opendrive.index import lane_index
 from tests.sgcad_core.formats.road_samples import NAMED, compiled
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from sgcad_core.errors import Unsupported
 from sgcad_core.formats.openscenario.conformance import FAMILIES, page, written_elements
-from sgcad_core.formats.openscenario.read import Node
+from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.formats.xml import parse_xml
 
 DOCS = Path(__file__).resolve().parents[4] / "docs" / "conformance.md"

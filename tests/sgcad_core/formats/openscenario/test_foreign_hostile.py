@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput, SgcadError
-from sgcad_core.formats.opendrive.index import lane_index
-from sgcad_core.formats.openscenario import player
-from sgcad_core.formats.openscenario.player import perform, play
-from sgcad_core.formats.openscenario.read import MAX_VALUE_CHARACTERS, Book, read_root
-from sgcad_core.formats.openscenario.roads import XodrRoads
-from sgcad_core.formats.openscenario.variation import parameter_sets
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
+from sgcad_core.formats.openscenario.playing import player
+from sgcad_core.formats.openscenario.playing.player import perform, play
+from sgcad_core.formats.openscenario.reading.elements import MAX_VALUE_CHARACTERS, Book, read_root
+from sgcad_core.formats.openscenario.reading.variation import parameter_sets
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from tests.sgcad_core.formats.xosc_samples import at, crossroads, event, lane, scenario, when, world
 
 EDGES = lane_index(crossroads().xodr)

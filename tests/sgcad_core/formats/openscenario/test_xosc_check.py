@@ -7,10 +7,10 @@ import re
 import numpy as np
 import pytest
 
-from sgcad_core.formats.opendrive.index import lane_index
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
 from sgcad_core.formats.openscenario.check import MAX_FINDINGS, xosc_findings
-from sgcad_core.formats.openscenario.entities import center_ahead_m
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from tests.sgcad_core.formats.xosc_samples import (
     CROSSING,
     actor,

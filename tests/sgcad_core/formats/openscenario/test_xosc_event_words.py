@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.execution.editable import ASTRAY_M, write_editable
+from sgcad_core.case.records import ObservedContact
+from sgcad_core.execution.event_encoding import ASTRAY_M, write_editable
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.check import xosc_findings
-from sgcad_core.formats.openscenario.events import Handover, Plainly
-from sgcad_core.formats.openscenario.lane_motion import lane_motion
-from sgcad_core.formats.openscenario.occasions import Occasions, between
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.formats.openscenario.roads import XodrRoads
-from sgcad_core.formats.openscenario.synchrony import FIRST_S, synchrony
-from sgcad_core.formats.openscenario.way import LanePlace
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.roads.lane_motion import lane_motion
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.formats.openscenario.roads.way import LanePlace
+from sgcad_core.formats.openscenario.writing.events import Handover, Plainly
+from sgcad_core.formats.openscenario.writing.occasions import Occasions, between
+from sgcad_core.formats.openscenario.writing.synchrony import FIRST_S, synchrony
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
-from sgcad_core.records import ObservedContact
-from sgcad_core.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(101)

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import realised
-from sgcad_core.execution.editable import ASTRAY_M
+from sgcad_core.execution.event_encoding import ASTRAY_M
 from sgcad_core.execution.playback import execution_of
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.check import xosc_findings
-from sgcad_core.formats.openscenario.events import Handover
-from sgcad_core.formats.openscenario.pacing import NEAR_M, pieces
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.pacing import NEAR_M, pieces
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import arc_lengths
-from sgcad_core.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 T_S = np.arange(81) * 0.05

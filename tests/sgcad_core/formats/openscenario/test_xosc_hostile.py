@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.index import lane_index
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
 from sgcad_core.formats.openscenario.check import xosc_findings
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from tests.sgcad_core.formats.xosc_samples import (
     CROSSING,
     actor,

@@ -7,17 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.sgcad_core.formats.xosc_samples import (
-    at,
-    event,
-    follow,
-    row,
-    scenario,
-    speed_action,
-    timing,
-    v1,
-    world,
-)
+from tests.sgcad_core.formats.xosc_samples import at, event, follow, row, scenario, speed_action, timing, v1, world
 
 V1 = {"V1": world(0, 0)}
 

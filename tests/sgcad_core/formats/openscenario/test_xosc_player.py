@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.openscenario.player import entity_boxes, play
+from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
 from tests.sgcad_core.formats.xosc_samples import (
     at,
     entity,

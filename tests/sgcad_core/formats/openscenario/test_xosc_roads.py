@@ -8,25 +8,15 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.index import lane_index
-from sgcad_core.formats.openscenario.motion import Pose
-from sgcad_core.formats.openscenario.player import play
-from sgcad_core.formats.openscenario.positions import shifted
-from sgcad_core.formats.openscenario.roads import XodrRoads
+from sgcad_core.formats.opendrive.checks.road_index import lane_index
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.playing.positions import shifted
+from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import wrap_angle
-from tests.sgcad_core.formats.xosc_samples import (
-    at,
-    bent_road,
-    crossroads,
-    event,
-    lane,
-    lane_change,
-    row,
-    scenario,
-    v1,
-)
+from tests.sgcad_core.formats.xosc_samples import at, bent_road, crossroads, event, lane, lane_change, row, scenario, v1
 
 
 @pytest.mark.parametrize("network", [crossroads, bent_road])

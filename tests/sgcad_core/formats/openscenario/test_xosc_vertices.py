@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.formats.openscenario.vertices import APART_M, settled, vertex_rows
+from sgcad_core.formats.openscenario.writing.vertices import APART_M, settled, vertex_rows
 from tests.sgcad_core.formats.xosc_samples import trajectory
 
 

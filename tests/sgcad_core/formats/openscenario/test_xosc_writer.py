@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.openscenario.check import xosc_findings
-from sgcad_core.formats.openscenario.entities import center_ahead_m
-from sgcad_core.formats.openscenario.player import entity_boxes, play
-from sgcad_core.formats.openscenario.writer import write_xosc
+from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
+from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.specs import SIZE_M
+from sgcad_core.records.specs import SIZE_M
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, trajectory
 
 K = np.arange(60)

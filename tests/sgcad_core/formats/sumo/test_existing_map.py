@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from sgcad_core.case.records import RoadNetwork
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.existing_map import hub_legs, read_map
@@ -12,9 +13,8 @@ from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import RoadNetwork
+from sgcad_core.records.specs import Leg, Node, Road, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import road_spec
-from sgcad_core.specs import Leg, Node, Road, RoadLayout, RoadSpec
 
 LEGS = (
     Leg(bearing="N", lanes_in=2, lanes_out=2, control="signal"), Leg(bearing="S", lanes_in=2, lanes_out=2),

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from sgcad_core import settings as paths
+from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.formats.opendrive.check import xodr_findings
+from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
 from sgcad_core.formats.sumo import netconvert
 from sgcad_core.formats.sumo.net_xml import parse_net, segments
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.records import PlainXml
 from tests.effort import many
 from tests.sgcad_core.formats.road_samples import NAMED, any_spec, compiled, random_spec
 

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from lxml import etree
 
+from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.plain_xml import plain_xml, sumo_findings, xsd_findings
-from sgcad_core.records import PlainXml
+from sgcad_core.records.specs import Node, RoadSpec
 from sgcad_core.roads.connections import links
 from sgcad_core.roads.road_geometry import MEDIAN_M, roadways, smooth
 from sgcad_core.roads.road_spec import spec_findings, turn_findings
-from sgcad_core.specs import Node, RoadSpec
 from tests.sgcad_core.formats.road_samples import NAMED, any_spec, compiled, random_spec, road, star
 
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
-from sgcad_core.records import PlainXml
 from sgcad_core.roads.junction_words import JunctionLeg
 
 ANGLES = st.floats(-math.pi, math.pi, allow_nan=False)

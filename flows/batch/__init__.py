@@ -1,0 +1,1 @@
+"""Many cases: planned, run under Prefect, tracked, summarised."""

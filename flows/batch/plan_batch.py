@@ -1,0 +1,266 @@
+"""A batch: configs times cases, planned whole before anything starts, and the processes that work on it.
+
+Knows no Prefect: the flow only waits for what happens here, so that cases already run while Prefect's
+server is still starting. A config without a model runs in worker processes (numpy and XML hold the
+interpreter's lock); a config with one runs in threads of this process, where its weights are loaded once.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from flows.batch import config_folder, find_cases, stage_cache
+from flows.batch.find_cases import Case
+from flows.batch.stage_cache import Sharing
+from flows.batch.worker import Order
+from flows.case import case_folder, chain
+from flows.case.case_folder import CaseFolder
+from flows.case.chain import Ending
+from flows.case.step_log import OnStep, unheard
+from sgcad_core.asking.refine import OnAttempt
+from sgcad_core.config import Config, load
+from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed
+from sgcad_core.interfaces import Backbone
+from sgcad_core.system import temp_folders
+from sgcad_core.system.worker_process import Worker
+
+CASE_LIMIT_S = 600.0
+"""A case without a model that takes longer hangs: its process is ended and the case fails."""
+MAX_JOBS = 8
+"""Cases at a time without --jobs: cores where nobody is asked, as many where a model answers several at once."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One case of one config."""
+
+    config: Config
+    case: Case
+    digest: str
+    folder: CaseFolder
+    sharing: Sharing | None = None
+    """Where its stages are shared with other configs' jobs; None: nowhere."""
+
+    @property
+    def name(self) -> str:
+        """As task runs and the log call it."""
+        return f"{self.config.name}/{self.case.id}"
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Everything to do, and where it goes.
+
+    `jobs` cases are on their way at a time, those without a model in `processes`. `fresh` does finished cases
+    again. `flow` and `title` are the names of the flow and of its run. `shelf` is the folder where configs share
+    their stages' results; None: they do not.
+    """
+
+    configs: tuple[Config, ...]
+    cases: tuple[Case, ...]
+    out: Path
+    jobs: int
+    processes: int
+    fresh: bool = False
+    flow: str = "evaluate"
+    title: str = ""
+    shelf: Path | None = None
+
+    def plan(self) -> tuple[Job, ...]:
+        """All jobs, config by config. Every report and every config is fingerprinted once."""
+        sources = {case: find_cases.source_digest(case.source) for case in self.cases}
+        return tuple(job for config in self.configs for job in self._jobs(config, sources))
+
+    def _jobs(self, config: Config, sources: Mapping[Case, str]) -> Iterator[Job]:
+        digest = find_cases.config_digest(config)
+        keys = stage_cache.keys_of(config) if self.shelf else None
+        for case, source in sources.items():
+            shared = Sharing(self.shelf, keys, source) if self.shelf and keys else None
+            folder = CaseFolder(self.out, config.name, case.id)
+            yield Job(config, case, find_cases.job_digest(source, digest), folder, shared)
+
+
+def batch_of(
+    found: Sequence[Case],
+    configs: Sequence[Path],
+    out: Path,
+    overrides: Sequence[str] = (),
+    jobs: int | None = None,
+    fresh: bool = False,
+) -> Batch:
+    """Check a whole batch. Raises ConfigError with every fault; nothing is started or written but `out`."""
+    return batch_over(found, _load_all(configs, tuple(overrides)), out, jobs, fresh)
+
+
+def batch_over(
+    found: Sequence[Case], configs: tuple[Config, ...], out: Path, jobs: int | None = None, fresh: bool = False
+) -> Batch:
+    """`batch_of` with configs that are loaded already. Raises MissingTool too: a simulator's program is not there."""
+    if jobs is not None and jobs < 1:
+        raise ConfigError(f"--jobs {jobs}: at least 1 is needed")
+    for config in configs:
+        for simulator in (config.simulator, config.judge):
+            if simulator:
+                simulator.ready()
+    out = out.resolve()
+    temp_folders.clear_left()
+    case_folder.check_writable(out)
+    for config in configs:
+        config.tracker.ready(out)
+    for config in configs:
+        case_folder.check_writable(out / config.name)
+        case_folder.clear_partial(out / config.name)
+    asks = any(config.backbone for config in configs)
+    return Batch(configs, tuple(found), out, jobs or (MAX_JOBS if asks else cores()), jobs or cores(), fresh)
+
+
+def _load_all(paths: Sequence[Path], overrides: tuple[str, ...]) -> tuple[Config, ...]:
+    faults: list[str] = []
+    loaded: list[Config] = []
+    for path in paths:
+        try:
+            loaded.append(config_folder.named(load(path, overrides), overrides))
+        except ConfigError as fault:
+            faults.append(str(fault))
+    twice = [name for name, n in Counter(c.name for c in loaded).items() if n > 1]
+    faults += [f"two configs are called {name!r} and would share a folder: rename one file" for name in twice]
+    if faults:
+        raise ConfigError("\n".join(faults))
+    return tuple(loaded)
+
+
+def cores() -> int:
+    """Cores this process may use, at most 8."""
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(MAX_JOBS, usable))
+
+
+# ------------------------------------------------------------------ doing it
+OnTurn = Callable[[Job, str], None]
+"""Told, from any thread, that an attempt of a job with a model begins; its name is such as "road[2]"."""
+
+
+@dataclass
+class Crew:
+    """Does jobs: those without a model at once in the background, those with one when they are waited for."""
+
+    batch: Batch
+    on_turn: OnTurn | None = None
+    done: frozenset[str] = frozenset()
+    """Jobs that this command has done already, under a crew before: not done again where all is done anew."""
+    stopping: threading.Event = field(default_factory=threading.Event)
+    _begun: dict[str, Future[Ending]] = field(default_factory=dict)
+    """Jobs in worker processes that nobody has asked for yet; an ending is handed out once and not kept."""
+    _workers: list[Worker] = field(default_factory=list)
+    _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
+    _threads: ThreadPoolExecutor | None = None
+
+    def __post_init__(self) -> None:
+        self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads than that
+
+    def begin(self, plan: Sequence[Job]) -> None:
+        """Start what needs no model, and load the first model that will be asked while the server starts."""
+        for config in {job.config.name: job.config for job in plan}.values():
+            config_folder.write(self.batch.out / config.name, config)
+        asking = (job for job in plan if job.config.backbone and self.reusable(job) is None)
+        if model := next((job.config.backbone for job in asking), None):
+            threading.Thread(target=_load, args=(model,), daemon=True, name="load").start()
+        waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
+        if not waiting:
+            return
+        count = min(self.batch.processes, len(waiting))
+        self._workers = [Worker("flows.batch.worker:run_in_worker") for _ in range(count)]
+        for worker in self._workers:
+            self._idle.put(worker)
+        self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
+        for job in waiting:
+            self._begun[job.name] = self._threads.submit(self._in_worker, job)
+
+    def reusable(self, job: Job) -> Ending | None:
+        """The ending of a job that is done already."""
+        anew = self.batch.fresh and job.name not in self.done
+        result = None if anew else job.folder.finished(job.digest)
+        return Ending(result, reused=True) if result is not None else None
+
+    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:
+        """Wait for a job, or do it here and now, telling every step. Raises MissingTool, ConfigError."""
+        if job.name in self._begun:
+            return self._begun.pop(job.name).result()
+        if done := self.reusable(job):
+            return done
+        watched = self._unless_stopped(job, on_attempt)
+        with self._places:
+            self._check()
+            about = job.config, job.case, self.batch.out, job.digest, watched
+            return chain.run_case(*about, sharing=job.sharing, tell=tell)
+
+    def began(self, job: Job) -> bool:
+        """Whether the job runs in a worker process and its ending waits (its steps are then told with that)."""
+        return job.name in self._begun
+
+    def _in_worker(self, job: Job) -> Ending:
+        self._check()
+        worker = self._idle.get()
+        try:
+            order = Order(job.config.raw, job.config.name, job.case, self.batch.out, job.digest, job.sharing)
+            ending = self._answered(worker, order)
+        except SimulationFailed as death:
+            self._check()
+            ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
+        finally:
+            self._idle.put(worker)
+        return ending
+
+    def _answered(self, worker: Worker, order: Order) -> Ending:
+        """What a worker makes of a case; one that dies gets a successor, since it need not be the report's fault."""
+        try:
+            ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
+        except ProcessDied:
+            self._check()
+            ending = worker.call(order, timeout_s=CASE_LIMIT_S)
+        return ending
+
+    def _unless_stopped(self, job: Job, on_attempt: OnAttempt) -> OnAttempt:
+        def checked(name: str, turn: Callable[[], object]) -> object:
+            self._check()
+            if self.on_turn:
+                self.on_turn(job, name)
+            return on_attempt(name, turn)  # type: ignore[arg-type]
+
+        return checked  # type: ignore[return-value]
+
+    def _check(self) -> None:
+        if self.stopping.is_set():
+            raise Interrupted
+
+    def stop(self) -> None:
+        """Begin nothing more and end the worker processes; a case's folder appears whole or not at all."""
+        self.stopping.set()
+        if self._threads:
+            self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in self._workers:
+            worker.kill()
+
+    def close(self) -> None:
+        """End the worker processes of a batch that is done."""
+        if self._threads:
+            self._threads.shutdown(wait=True)
+        for worker in self._workers:
+            worker.close()
+
+
+def _load(model: Backbone) -> None:
+    with suppress(Exception):  # told by the first question, to whom it belongs
+        model.load()
+
+
+class Interrupted(BaseException):
+    """The batch is being stopped: no result of this case, not even a failed one."""

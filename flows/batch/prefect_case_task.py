@@ -1,0 +1,110 @@
+"""Prefect's view of the work: a task run per case; what it shows inside of that stands in flows/batch/prefect_tasks.py.
+
+Only what Prefect should show stands in its states; results travel beside it (they lie on disk anyway, and
+a cached Prefect result could outlive the folder it speaks of). Import after `settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+from prefect import task
+from prefect.cache_policies import NO_CACHE
+from prefect.client.schemas.objects import State
+from prefect.context import TaskRunContext
+from prefect.futures import PrefectFuture
+from prefect.states import Cancelled, Completed, Failed
+from prefect.task_runners import TaskRunner, ThreadPoolTaskRunner
+
+from flows.batch.plan_batch import Crew, Job
+from flows.batch.prefect_tasks import Graph
+from flows.case.chain import Ending
+from sgcad_core.asking.refine import run_at_once
+from sgcad_core.errors import SgcadError
+from sgcad_core.result import counts_of
+
+DECLINED = ("exhausted", "failed")
+
+
+def threads(count: int) -> TaskRunner[PrefectFuture[Any]]:
+    """A task runner of so many threads, in the type that Prefect's own decorator asks for."""
+    return cast("TaskRunner[PrefectFuture[Any]]", ThreadPoolTaskRunner(max_workers=count))
+
+
+@dataclass
+class Board:
+    """Where tasks leave endings, where they are shown, and the fault that ends the batch; keys are job names."""
+
+    jobs: dict[str, Job]
+    crew: Crew
+    endings: dict[str, Ending] = field(default_factory=dict)
+    graphs: dict[str, Graph] = field(default_factory=dict)
+    every: bool = True
+    """Whether every step of a case is shown."""
+    fatal: SgcadError | None = None
+
+    steps: int = 0
+    """How many task runs of steps were shown of the cases taken; tracking is one of them."""
+
+    def take(self, job: str) -> tuple[Ending, Graph]:
+        """What a task left of a job; handed out once, since a long batch would keep 80 kB of memory a case."""
+        ending, graph = self.endings.pop(job), self.graphs.pop(job)
+        self.steps += 0 if ending.reused else graph.every + sum(map(graph.shows, ending.steps))
+        return ending, graph
+
+
+def plain(name: str) -> str:
+    """A run name is a format string to Prefect."""
+    return name.replace("{", "(").replace("}", ")")
+
+
+def case_task(board: Board) -> Any:
+    """The task that finishes one job of the board, given its name."""
+
+    @task(name="case", task_run_name="{job}", cache_policy=NO_CACHE, persist_result=False)
+    def case(job: str) -> State[Any]:
+        try:
+            graph = board.graphs[job] = _graph(board.every)
+            elsewhere = board.crew.began(board.jobs[job])
+            ending = board.crew.finish(board.jobs[job], run_at_once, graph.tell)
+        except SgcadError as fault:
+            board.fatal = fault
+            return Failed(message=str(fault))
+        if elsewhere:
+            for step in ending.steps:
+                graph.tell(step)
+        board.endings[job] = ending
+        return _state(ending)
+
+    return case
+
+
+def _graph(every: bool) -> Graph:
+    """Of the task run that this is called in."""
+    context = TaskRunContext.get()
+    if context is None:
+        raise RuntimeError("a case is finished in a task run of Prefect's")
+    return Graph(str(context.task_run.flow_run_id), str(context.task_run.id), every)
+
+
+def _state(ending: Ending) -> State[Any]:
+    status, reason = ending.result["status"], ending.result["reason"]
+    if ending.reused:
+        return Completed(name="Cached", message=f"done before: {status}")
+    if status in DECLINED:
+        return Failed(name=status.capitalize(), message=reason)
+    if status == "refused":  # a result, and no success: Prefect shows it grey, not green
+        return Cancelled(name="Refused", message=reason)
+    account = counts_of(ending.result)
+    if account and account["verdict"] == "lacking":
+        message = f"{account['lacking']} of {account['told']} things told are lacking"
+        return Completed(name="Lacking", message=message)
+    return Completed(name=status.capitalize(), message=reason)
+
+
+def hush_prefect() -> None:
+    """Keep Prefect's own lines from tearing the progress bar; every end is told by the command itself."""
+    for name in ("prefect", "prefect.task_runs", "prefect.flow_runs", "EventsWorker", "APILogWorker"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)

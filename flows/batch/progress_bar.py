@@ -1,0 +1,104 @@
+"""What a person sees while a batch runs: a bar that moves with every attempt, or lines where there is no terminal.
+
+Everything goes to stderr; standard output is for the answer.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+
+from flows.batch.plan_batch import Job
+from flows.batch.summary import Tally
+from flows.case.chain import Ending
+from flows.terminal import escape
+from sgcad_core.result import counts_of
+
+LINES_AT_ONCE = 50
+"""Batches up to this size tell every case in a line; larger ones one line in LINE_EVERY_S."""
+LINE_EVERY_S = 10.0
+SHARE = {"road": 0.1, "scenario": 0.55}
+"""How far a case is, as a share of it, when its first attempt of a stage begins; each further one goes a third of
+what is left of that stage."""
+
+
+@dataclass
+class Watch:
+    """Told of attempts and endings, from any thread; calls what shows them."""
+
+    tally: Tally
+    total: int
+    bar: Progress | None = None
+    task: TaskID | None = None
+    console: Console | None = None
+    _parts: dict[str, float] = field(default_factory=dict)
+    _told: float = 0.0
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def ended(self, job: Job, ending: Ending, untracked: str = "") -> None:
+        """Count an ending."""
+        with self._lock:
+            self._parts.pop(job.name, None)
+            self.tally.add(job, ending, untracked)
+            if self.bar:
+                self._move(self.tally.in_words())
+            elif self._is_time():
+                status, spent = ending.result["status"], sum(ending.result["seconds"].values())
+                about = f"{job.name}: {status}{_lacking(ending)}" + (
+                    ", done before" if ending.reused else f" ({spent:.1f} s)"
+                )
+                self._say(about if self.total <= LINES_AT_ONCE else self.tally.in_words())
+
+    def turn(self, job: Job, attempt: str) -> None:
+        """An attempt begins, such as "road[2]"."""
+        stage, _, number = attempt.rstrip("]").partition("[")
+        start = SHARE.get(stage, 0.0)
+        room = (SHARE["scenario"] if stage == "road" else 1.0) - start
+        with self._lock:
+            self._parts[job.name] = start + room * (1 - (2 / 3) ** (int(number or 1) - 1))
+            if self.bar:
+                self._move(f"{self.tally.in_words() or 'working'}; {job.case.id}: {stage}, attempt {number or 1}")
+
+    def _move(self, told: str) -> None:
+        if self.bar and self.task is not None:
+            done = len(self.tally.endings)
+            self.bar.update(self.task, completed=done + sum(self._parts.values()), description=escape(told), done=done)
+
+    def _is_time(self) -> bool:
+        if self.total <= LINES_AT_ONCE or len(self.tally.endings) == self.total:
+            return True
+        now = time.monotonic()
+        if now - self._told < LINE_EVERY_S:
+            return False
+        self._told = now
+        return True
+
+    def _say(self, line: str) -> None:
+        if self.console:
+            self.console.print(escape(f"[{len(self.tally.endings)}/{self.total}] {line}"), soft_wrap=True)
+
+
+def _lacking(ending: Ending) -> str:
+    """How much of what is told lacks, where anything does."""
+    account = counts_of(ending.result)
+    return f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
+
+
+@contextmanager
+def watching(tally: Tally) -> Iterator[Watch]:
+    """A watch over a batch while the block lasts."""
+    total = len(tally.batch.configs) * len(tally.batch.cases)
+    console = Console(stderr=True, emoji=False, highlight=False)
+    if not console.is_terminal:
+        yield Watch(tally, total, console=console)
+        return
+    count = TextColumn("{task.fields[done]}/{task.total:.0f}")
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), count, TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        yield Watch(tally, total, bar, bar.add_task("starting", total=total, done=0))

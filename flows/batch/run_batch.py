@@ -1,0 +1,108 @@
+"""From a checked batch to its end: what is done already, the workers, the server, the flow, in this order.
+
+Knows when to import Prefect, and that a batch with nothing left to do needs none.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flows.batch import track_cases
+from flows.batch.plan_batch import Batch, Crew, Job, OnTurn
+from flows.batch.track_cases import OnEnding
+from flows.case.chain import Ending
+from flows.server import Server, ServerLost, prefect_server
+from sgcad_core import settings
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a batch cost beside its cases: processor seconds of this process (planning, Prefect's client, tracking; a
+    model too where one runs here) and of a Prefect server of our own (None: it was the user's)."""
+
+    done: int
+    """Cases that were done, without those found finished."""
+    elapsed_s: float
+    own_s: float = 0.0
+    server_s: float | None = None
+
+
+def evaluate(
+    batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None, on_turn: OnTurn | None = None
+) -> Cost:
+    """Run a batch, or some of its jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+
+    Finished cases stay, whatever happens.
+    """
+    settings.quiet_libraries()
+    started, spent = time.perf_counter(), time.process_time()
+    plan = batch.plan() if plan is None else plan
+    crew = Crew(batch, on_turn)
+    if (done := _all_done(plan, crew)) is not None:
+        for job, ending in done:
+            on_ending(job, ending, "")
+        return Cost(0, time.perf_counter() - started, time.process_time() - spent)
+    fresh = sum(crew.reusable(job) is None for job in plan)
+    server_s = _run(batch, plan, crew, on_ending)
+    return Cost(fresh, time.perf_counter() - started, time.process_time() - spent, server_s)
+
+
+def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+    """Do what is left to do; processor seconds of the server.
+
+    A server of our own that is lost gets one successor, since cases do not need it to be done: it only shows them.
+    """
+    told: set[str] = set()
+
+    def tell(job: Job, ending: Ending, untracked: str) -> None:
+        if job.name not in told:
+            told.add(job.name)
+            on_ending(job, ending, untracked)
+
+    try:
+        return _under_a_server(batch, plan, crew, tell)
+    except ServerLost as lost:
+        logging.getLogger(__name__).warning("%s; now another is started", lost.how)
+    return _under_a_server(batch, plan, Crew(batch, crew.on_turn, frozenset(told)), tell)
+
+
+def _under_a_server(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+    try:
+        with prefect_server() as server:
+            if server:  # it takes seconds to start
+                crew.begin(plan)
+            from flows.batch.evaluate_flow import run_flow
+
+            if server:
+                server.wait()
+            run_flow(batch, plan, crew, on_ending, lasting=server is None)
+            server_s = _processor_s(server) if server else None
+    except BaseException:
+        crew.stop()
+        raise
+    crew.close()
+    return server_s
+
+
+def _processor_s(server: Server) -> float | None:
+    import psutil
+
+    try:
+        times = psutil.Process(server.process.pid).cpu_times()
+    except psutil.Error:
+        return None
+    return float(times.user + times.system)
+
+
+def _all_done(plan: Sequence[Job], crew: Crew) -> list[tuple[Job, Ending]] | None:
+    """Endings of a batch whose cases are all finished and tracked; None if there is anything to do."""
+    done = []
+    for job in plan:
+        ending = crew.reusable(job)
+        if ending is None or not track_cases.tracked(job):
+            return None
+        done.append((job, ending))
+    return done

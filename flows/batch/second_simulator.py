@@ -1,0 +1,104 @@
+"""What a second simulator made of a batch: a table of how many scenarios loaded, moved alike and crashed as declared.
+
+Reads the `judge` part of results; also judges a folder of finished runs again. Knows no simulator.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from flows.case import case_folder
+from flows.terminal import escape
+from sgcad_core.case.records import ActorInfo, RoadNetwork, Scenario
+from sgcad_core.errors import BadInput
+from sgcad_core.execution.compare_executions import TOLERANCE_M, Judgement, judge
+from sgcad_core.execution.playback import execution_of
+from sgcad_core.interfaces import Simulator
+from sgcad_core.records.specs import Contact
+
+MAX_TOLD = 10
+
+
+# ------------------------------------------------------------------ the table
+def show(console: Console, results: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
+    """Print the table of all configs and the first few disagreements; nothing where nobody was judged."""
+    judged = {name: [r for r in those if "judge" in r] for name, those in results.items()}
+    if not any(judged.values()):
+        return
+    console.print(_table(judged))
+    told = [f"{name}/{r['case']}: {line}" for name, those in judged.items() for r in those if (line := _wrong(r))]
+    for line in told[:MAX_TOLD]:
+        console.print(escape(line[:300]), soft_wrap=True)
+    if len(told) > MAX_TOLD:
+        console.print(f"... and {len(told) - MAX_TOLD} more")
+
+
+def _table(judged: Mapping[str, Sequence[Mapping[str, Any]]]) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 2, 0, 0))
+    table.add_column("config", overflow="fold", min_width=12)
+    for name in ("judge", "loaded", f"within {TOLERANCE_M:g} m", "median m", "most m", "as declared"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for name, results in judged.items():
+        if results:
+            table.add_row(escape(name), *figures([r["judge"] for r in results]))
+    return table
+
+
+def figures(verdicts: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Judge, loaded, same motion, median and largest deviation, declared first contacts; counts as "n/m"."""
+    away = [v["deviation"]["distance_m"] for v in verdicts if v["deviation"]]
+    declared = [v for v in verdicts if v["declared"]]
+    return (
+        escape(", ".join(sorted({v["simulator"] for v in verdicts}))),
+        _share([v["loaded"] for v in verdicts]),
+        _share([v["same_motion"] for v in verdicts]),
+        f"{np.median(away):.4f}" if away else "-",
+        f"{max(away):.4f}" if away else "-",
+        _share([v["as_declared"] for v in declared]),
+    )
+
+
+def _share(hits: Sequence[bool]) -> str:
+    return f"{sum(hits)}/{len(hits)}" if hits else "-"
+
+
+def _wrong(result: Mapping[str, Any]) -> str:
+    told = Judgement.model_validate({k: result["judge"][k] for k in Judgement.model_fields}).lines()
+    return "; ".join(told)
+
+
+# ------------------------------------------------------------------ a folder of runs
+def judged_runs(folder: Path, simulator: Simulator) -> Iterator[dict[str, Any]]:
+    """result.json of every executed scenario file under a folder, with what the simulator makes of it now.
+
+    The files are believed: trajectories.csv is our playing, scenario.xosc and road.xodr are what is judged. Raises
+    BadInput where there is none, MissingTool.
+    """
+    files = sorted(folder.glob("**/scenario.xosc"))
+    cases = [file.parent for file in files if (file.parent / "trajectories.csv").is_file()]
+    if not cases:
+        raise BadInput(f"{folder}: no scenario.xosc with a trajectories.csv beside it; name a runs folder")
+    for case in cases:
+        yield _judged(case, simulator)
+
+
+def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads((case / "result.json").read_text(encoding="utf-8"))
+    actors = tuple(ActorInfo.model_validate(actor) for actor in result["actors"])
+    declared = result["collision"]["declared"]
+    scenario = Scenario(
+        xosc=(case / "scenario.xosc").read_text(encoding="utf-8"),
+        actors=actors,
+        declared=Contact.model_validate(declared) if declared else None,
+    )
+    network = RoadNetwork(xodr=(case / "road.xodr").read_text(encoding="utf-8"))
+    ours = execution_of("file", scenario, case_folder.read_trajectories(case / "trajectories.csv"))
+    return result | {"judge": judge(simulator, ours, scenario, network).summary()}

@@ -1,0 +1,208 @@
+"""Handing finished cases to their trackers, each once, whatever became of the batch in between.
+
+`following` encloses a batch: it tells every tracker what is about to run (`Arm`) and that it has ended. A mark in
+the config's folder stands between the two, so that a batch killed after its last case is still ended by the next.
+Knows the registry's interfaces; no Prefect, no MLflow.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from flows.batch import find_cases
+from flows.batch.find_cases import Case
+from flows.batch.plan_batch import Job
+from flows.case.chain import Ending
+from flows.study import machine
+from flows.study.plan import dataset_digest
+from sgcad_core.case.tracker_arm import Arm, Dataset
+from sgcad_core.config import SCALARS, SINGLE, Config
+from sgcad_core.errors import SgcadError
+from sgcad_core.interfaces import Plugin
+
+OnEnding = Callable[[Job, Ending, str], None]
+"""Told of every case as it ends, from one thread; the text says why it could not be tracked, if it could not."""
+
+PLAIN = {
+    "database is locked": "another program keeps the tracker's database locked: end it (`fuser FILE` names it)",
+    "disk is full": "no room is left on the disk: make some",
+    "No space left": "no room is left on the disk: make some",
+    "readonly database": "the tracker's database cannot be written: make it writable (chmod u+w)",
+}
+"""What databases and disks say, and how a person is told."""
+GIVE_UP_AFTER = 2
+"""Cases in a row that could not be logged, each after a database's own patience; the next run logs the rest."""
+_failed: dict[str, int] = {}
+"""Failures in a row, by tracker."""
+
+OPEN = ".tracking"
+"""In a config's folder while its tracker waits for more cases."""
+
+
+def track_safely(job: Job, ending: Ending) -> str:
+    """`track`; why it failed, or an empty text. Raises ConfigError: a tracker that can never work."""
+    mark = job.config.tracker.model_dump_json()
+    if _failed.get(mark, 0) >= GIVE_UP_AFTER:
+        return "not tried, since the cases before it could not be logged"
+    try:
+        track(job, ending)
+    except SgcadError:
+        raise
+    except Exception as fault:  # noqa: BLE001 - the case is safe on disk: a locked database must not end the batch
+        _failed[mark] = _failed.get(mark, 0) + 1
+        return plainly(fault)
+    _failed.pop(mark, None)
+    return ""
+
+
+def plainly(fault: Exception) -> str:
+    """A tracker's fault in one line with its remedy; of a database's, what it says itself and not the statement."""
+    for sign, plain in PLAIN.items():
+        if sign in str(fault):
+            return plain
+    lines = [line.strip() for line in str(fault).splitlines() if line.strip()]
+    said = next((line for line in lines if "Error) " in line), lines[0] if lines else "")
+    return f"{type(fault).__name__}: {said}"[:300]
+
+
+def track(job: Job, ending: Ending) -> None:
+    """Log a case to its tracker, once: a case that a killed batch had no time to log is logged now."""
+    if _has(job):
+        return
+    tracker = job.config.tracker
+    tracker.log_case(job.config.name, params_of(job.config), job.folder.path, ending.result)
+    for call in ending.calls:
+        tracker.log_generation(job.config.name, job.case.id, call.query, call.generation)
+    job.folder.mark_tracked(_mark(job))
+
+
+def tracked(job: Job) -> bool:
+    """Whether the job's tracker has its case already and waits for no end of the batch."""
+    return _has(job) and not _open(job).exists()
+
+
+def _has(job: Job) -> bool:
+    return job.folder.tracked(_mark(job))
+
+
+def _mark(job: Job) -> str:
+    """What identifies a tracker, and the place where it logs, to a case's folder."""
+    tracker = job.config.tracker
+    return f"{type(tracker).__module__} {tracker.model_dump_json()} {tracker.identity(job.folder.out)}".rstrip()
+
+
+def _open(job: Job) -> Path:
+    return job.folder.path.parent / OPEN
+
+
+# ------------------------------------------------------------------ before the first case and after the last
+@contextmanager
+def following(plan: Sequence[Job]) -> Iterator[None]:
+    """Tell the trackers what is about to run, and how it ended. Raises ConfigError: a tracker that can never work.
+
+    A config whose cases are all tracked is not told again.
+    """
+    _failed.clear()
+    arms = [(jobs[0], _arm(jobs)) for jobs in _by_config(plan) if not all(tracked(job) for job in jobs)]
+    for job, arm in arms:
+        _open(job).parent.mkdir(parents=True, exist_ok=True)
+        _open(job).touch()
+        _safely(job, lambda job=job, arm=arm: job.config.tracker.begin(arm))  # type: ignore[misc]
+    fault, finished = "", False
+    try:
+        yield
+        finished = True
+    except Exception as broken:
+        fault = plainly(broken)
+        raise
+    finally:
+        for job, arm in arms:
+            told = arm.model_copy(update={"fault": fault})
+            ended = _safely(job, lambda job=job, arm=told: job.config.tracker.end(arm, finished))  # type: ignore[misc]
+            if ended and finished:
+                _open(job).unlink(missing_ok=True)
+
+
+def _safely(job: Job, tell: Callable[[], None]) -> bool:
+    """Whether a tracker could be told; the batch goes on without it, and the next one tells it again."""
+    try:
+        tell()
+    except SgcadError:
+        raise
+    except Exception as fault:  # noqa: BLE001 - the cases are safe on disk: a locked database must not end the batch
+        if not _failed.get(job.config.tracker.model_dump_json()):  # else it is told of the cases already
+            told = logging.getLogger(__name__)
+            told.warning("%s: tracking, %s; then run again", job.config.name, plainly(fault))
+        return False
+    return True
+
+
+def _by_config(plan: Sequence[Job]) -> list[list[Job]]:
+    found: dict[str, list[Job]] = {}
+    for job in plan:
+        found.setdefault(job.config.name, []).append(job)
+    return list(found.values())
+
+
+# ------------------------------------------------------------------ what is told
+def _arm(jobs: Sequence[Job]) -> Arm:
+    job = jobs[0]
+    return Arm(
+        config=job.config.name,
+        params=params_of(job.config),
+        out=str(job.folder.out),
+        dataset=dataset_of(tuple(job.case for job in jobs)),
+        plugins=dict(_plugins(job.config)),
+        git_commit=_git_commit() or "",
+        hardware=_hardware(),
+    )
+
+
+@cache
+def dataset_of(found: tuple[Case, ...]) -> Dataset:
+    """The reports as one data set, whatever their order."""
+    place = Path(os.path.commonpath([case.source.resolve().parent for case in found]))
+    return Dataset(name=place.name or "cases", digest=dataset_digest(found), source=str(place), cases=len(found))
+
+
+_hardware = cache(machine.hardware)
+_git_commit = cache(machine.git_commit)
+
+
+def params_of(config: Config) -> dict[str, Any]:
+    """The effective configuration but for the tracker: plugins by kind with name and all fields, scalars, version."""
+    found: dict[str, Any] = {"sgcad": version("sg-cadvlm")} | {key: getattr(config, key) for key in SCALARS}
+    for kind in SINGLE:
+        plugin = getattr(config, kind)
+        if plugin is not None and kind != "tracker":
+            found[kind] = _fields(_name(config.raw[kind]), plugin)
+    if config.drive:
+        found["drive"] = {"drivers": [entry.raw for entry in config.drive.drivers], "roles": list(config.drive.roles)}
+    return found | {"validators": [_fields(name, plugin) for name, plugin in _validators(config)]}
+
+
+def _fields(name: str, plugin: Plugin) -> dict[str, Any]:
+    return {"name": name, **plugin.model_dump(mode="json")}
+
+
+def _validators(config: Config) -> Iterator[tuple[str, Plugin]]:
+    names = [_name(entry) for entry in config.raw.get("validators") or ()]
+    yield from zip(names, config.validators, strict=True)
+
+
+def _plugins(config: Config) -> Iterator[tuple[str, str]]:
+    named: list[tuple[str, Plugin | None]] = [(kind, getattr(config, kind)) for kind in SINGLE if kind != "tracker"]
+    for name, plugin in [*named, *((f"validator.{name}", plugin) for name, plugin in _validators(config))]:
+        if plugin is not None:
+            yield name, " ".join(filter(None, [find_cases.qualified(plugin), *find_cases.identity(plugin)]))
+
+
+def _name(entry: Any) -> str:
+    return str(entry["name"] if isinstance(entry, dict) else entry)

@@ -1,0 +1,34 @@
+"""The far end of a worker process: one case after the other, the plugins built once. Knows no Prefect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flows.batch.find_cases import Case
+from flows.batch.stage_cache import Sharing
+from flows.case.chain import Ending, run_case
+from sgcad_core.config import Config, build
+
+_configs: dict[str, Config] = {}
+
+
+@dataclass(frozen=True)
+class Order:
+    """A case to run: what can be pickled."""
+
+    raw: dict[str, Any]
+    name: str
+    case: Case
+    out: Path
+    digest: str
+    sharing: Sharing | None = None
+
+
+def run_in_worker(order: Order) -> Ending:
+    """`flows.case.chain.run_case` over there."""
+    name = order.name
+    if name not in _configs:
+        _configs[name] = build(order.raw, name, name)
+    return run_case(_configs[name], order.case, order.out, order.digest, sharing=order.sharing)

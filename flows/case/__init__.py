@@ -1,0 +1,1 @@
+"""One case: from a report to its folder, revised, explained, in words."""

@@ -1,0 +1,70 @@
+"""`sgcad explain`: what was read of a report, sentence by sentence, then what follows and what is assumed.
+
+Reads a run's case folder (its result.json and report.txt), or a report, which is read on the spot. Knows no model.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from sgcad_core.case.records import CrashReport, Fact
+from sgcad_core.errors import BadInput
+from sgcad_core.registry import plugin_class
+
+
+def explain(source: Path) -> str:
+    """The whole account as text. Raises BadInput for what is neither a case folder of a run nor a report."""
+    if (source / "result.json").is_file():
+        return _of_run(source)
+    reader = plugin_class("report_reader", "auto")()
+    report: CrashReport = reader.read(source)  # type: ignore[attr-defined]
+    return account(source.name, _sentences(report), report.reading.facts)
+
+
+def _of_run(folder: Path) -> str:
+    try:
+        result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+        facts = tuple(Fact.model_validate(row) for row in result["facts"])
+        places = [(s["start"], s["end"], s["text"]) for s in result["sentences"]]
+    except (OSError, ValueError, KeyError, TypeError, ValidationError) as fault:
+        raise BadInput(
+            f"{folder}: result.json tells no facts ({type(fault).__name__}): run the case again with this version"
+        ) from fault
+    return account(f"{result['case']} ({result['config']})", places, facts)
+
+
+def _sentences(report: CrashReport) -> list[tuple[int, int, str]]:
+    return [(s.start, s.end, report.reading.text_of(s)) for s in report.reading.sentences]
+
+
+def account(title: str, sentences: Sequence[tuple[int, int, str]], facts: Sequence[Fact]) -> str:
+    """Each sentence (begin, end, text) with the facts that it states, then inferred facts, then what is assumed."""
+    lines = [title, ""]
+    for start, end, text in sentences:
+        lines += [f"[{start}-{end}] {text}", *_rows(f for f in facts if f.status == "stated" and f.start == start)]
+    groups = {
+        "Inferred": [f for f in facts if f.status == "inferred" and f.basis == "text"],
+        "Answered by the model": [f for f in facts if f.basis in ("model", "diagram")],
+        "Assumed": [f for f in facts if f.status == "default"],
+    }
+    for name, group in groups.items():
+        lines += ["", f"{name}:", *_rows(group)] if group else []
+    return "\n".join(lines)
+
+
+def _rows(facts: Iterator[Fact] | Sequence[Fact]) -> list[str]:
+    return [f"    {f.field} = {_shown(f)}  ({f.rule}, confidence {f.confidence:g}{_ground(f)})" for f in facts]
+
+
+def _shown(fact: Fact) -> str:
+    told = ", ".join(fact.value) if isinstance(fact.value, tuple) else str(fact.value)
+    return f"{told} (assumed)" if fact.status == "default" else told
+
+
+def _ground(fact: Fact) -> str:
+    place = f", from [{fact.start}-{fact.end}]" if fact.status == "inferred" and fact.start is not None else ""
+    return place + (f", {fact.nats:.2f} nats" if fact.nats is not None else "")

@@ -1,0 +1,297 @@
+"""A person's facts on one finished case: laid over it, planned, simulated, checked and written anew in a second or so.
+
+    revise(folder, {"roads.N.lanes_forward": 2}, who="ann", why="the drawing shows two")
+    undo(folder)
+
+Nothing that was finished is asked of a model again: its answers are those that the case's folder keeps. A wrong edit
+raises WrongEdit and leaves facts.yaml and the case's folder as they were. Edits of one report wait in line, whoever
+makes them in whatever process. Knows the chain; no Prefect, no page.
+"""
+
+from __future__ import annotations
+
+import getpass
+import hashlib
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from flows.batch import config_folder, find_cases
+from flows.batch.find_cases import Case
+from flows.case import person_facts
+from flows.case.case_folder import CaseFolder
+from flows.case.chain import CaseRun, leave_run
+from sgcad_core.asking.refine import run_at_once
+from sgcad_core.case.records import Finding
+from sgcad_core.config import Config, build
+from sgcad_core.errors import BadInput, ConfigError, WrongEdit
+from sgcad_core.records.edits import AS_READ, Edit, effective
+from sgcad_core.result import STAGES, as_declared, result_of
+from sgcad_core.revision import CaseField, by_field, checked, fields_of, read_edits, report_digest, write_edits
+from sgcad_core.revision.applied import SOURCE
+from sgcad_core.revision.file import alone, merged, undone
+from sgcad_core.system.report_files import facts_file
+
+Given = Mapping[str, object]
+"""Field -> value, typed or as text; `AS_READ` takes a field's edits back."""
+
+
+@dataclass(frozen=True)
+class Revised:
+    """What a revision came to; the rest is in the case's folder."""
+
+    result: dict[str, Any]
+    """The content of result.json."""
+    findings: Mapping[str, tuple[Finding, ...]]
+    """By field, under "" those that concern none; the planner's notes among them."""
+    edits: tuple[Edit, ...]
+    """The effective edits of the case's report."""
+    seconds: float
+    stamp: str
+    """Fingerprint of the facts as they stand now, for `seen`."""
+    changed: bool = True
+    """False where the edits said what stood already: nothing was done."""
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A finished case, its report and its config."""
+
+    folder: Path
+    source: Path
+    config: Config
+    former: dict[str, Any]
+    specs: person_facts.Specs
+
+    @property
+    def case(self) -> Case:
+        """The case as the chain knows it."""
+        return Case(self.source, self.folder.name)
+
+    @property
+    def file(self) -> Path:
+        """Where its facts are kept."""
+        return facts_file(self.source)
+
+    def edits(self) -> tuple[Edit, ...]:
+        """All edits of its report. Raises BadInput."""
+        return read_edits(self.file, report_digest(self.source))
+
+
+# ------------------------------------------------------------------ looking
+def opened(folder: Path, report: Path | None = None) -> Opened:
+    """A finished case's folder, such as runs/template/crash-17; `report`: where its report is now, if it was moved.
+
+    Raises BadInput for a folder that is none, or whose report is gone; ConfigError where its config is lost.
+    """
+    folder = folder.resolve()
+    former = CaseFolder(folder.parent.parent, folder.parent.name, folder.name).result()
+    if former is None:
+        raise BadInput(f"{folder}: no result.json in it: give the folder of a finished case, such as runs/template/x")
+    source = report or _source(folder)
+    if not source.exists():
+        raise BadInput(f"{source}: the report of {folder.name} is gone: put it back, or name it with --report")
+    return Opened(folder, source, _config(folder.parent / config_folder.FILE), former, person_facts.read_specs(folder))
+
+
+def _source(folder: Path) -> Path:
+    try:
+        return Path((folder / person_facts.SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
+    except OSError as fault:
+        raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
+
+
+def _config(file: Path) -> Config:
+    try:
+        return _built(file, file.stat().st_mtime_ns)
+    except FileNotFoundError as fault:
+        raise ConfigError(f"{file}: the config of these results is gone: run the case again") from fault
+
+
+@lru_cache(maxsize=8)
+def _built(file: Path, changed_ns: int) -> Config:
+    """The config of a folder of results; plugins are built once while the file stays as it is."""
+    try:
+        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as fault:
+        raise ConfigError(f"{file}: no YAML ({fault}): run the case again") from fault
+    if not isinstance(raw, dict):
+        raise ConfigError(f"{file}: no config in it: run the case again")
+    return build(raw, file.parent.name, str(file))
+
+
+def editable(folder: Path) -> tuple[CaseField, ...]:
+    """What can be changed of a finished case, with what it is now. Raises BadInput."""
+    specs = person_facts.read_specs(folder)
+    return fields_of(specs.road, specs.behavior)
+
+
+def stamp_of(edits: Sequence[Edit]) -> str:
+    """Fingerprint of edits: two pages that show the same stamp show the same facts."""
+    return hashlib.sha256("\n".join(edit.model_dump_json() for edit in edits).encode()).hexdigest()[:16]
+
+
+# ------------------------------------------------------------------ changing
+def revise(
+    folder: Path, edits: Given, *, who: str = "", why: str = "", seen: str | None = None, report: Path | None = None
+) -> Revised:
+    """Lay a person's facts over a finished case and write its result files anew.
+
+    `who`: the user's name unless given. `seen`: the `stamp` of the facts that the person saw; others are refused.
+    Raises WrongEdit (nothing was changed), BadInput, ConfigError.
+    """
+    started = time.perf_counter()
+    case = opened(folder, report)
+    new = _edits(edits, who, why)
+    with alone(case.source):
+        before = _unchanged(case.edits(), seen)
+        after = merged(before, new)
+        if after == before:
+            return _as_it_stands(case, before, started)
+        return _written(case, before, after, {edit.field for edit in new}, started)
+
+
+def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -> Revised:
+    """Take the last revision of a case's report back, whoever made it. Raises WrongEdit where there is none."""
+    started = time.perf_counter()
+    case = opened(folder, report)
+    with alone(case.source):
+        before = _unchanged(case.edits(), seen)
+        if not before:
+            raise WrongEdit(f"{case.folder.name}: there is nothing to undo: nobody has changed a fact of it")
+        return _written(case, before, undone(before), set(), started)
+
+
+def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
+    """Keep facts beside a report without running anything: the next run goes by them. Raises WrongEdit, BadInput."""
+    new = _edits(edits, who, why)
+    with alone(source):
+        digest = report_digest(source)
+        after = merged(read_edits(facts_file(source), digest), new)
+        write_edits(facts_file(source), after, digest)
+    return effective(after)
+
+
+def _edits(given: Given, who: str, why: str) -> tuple[Edit, ...]:
+    """Typed edits of one moment. Raises WrongEdit with every fault found."""
+    faults: list[str] = []
+    found: list[Edit] = []
+    now = datetime.now(UTC)
+    for field, raw in given.items():
+        try:
+            name, value = checked(field, raw)
+            found.append(Edit(field=name, value=value, who=who or _user(), when=now, why=why[:1000]))
+        except WrongEdit as fault:
+            faults.append(str(fault))
+    if faults or not found:
+        raise WrongEdit("\n".join(faults) or "no fact is given: --set FIELD=VALUE; --list names the fields")
+    return tuple(found)
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):  # a container whose user has no name
+        return ""
+
+
+def _unchanged(edits: tuple[Edit, ...], seen: str | None) -> tuple[Edit, ...]:
+    """The edits, if they are those that were seen."""
+    if seen is None or seen == stamp_of(edits):
+        return edits
+    last = f"{edits[-1].who or 'somebody'} changed {edits[-1].field}" if edits else "the last edit was undone"
+    raise WrongEdit(f"the facts of this case have changed meanwhile ({last}): look at it again, then change it")
+
+
+# ------------------------------------------------------------------ running
+def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], new: set[str], started: float) -> Revised:
+    """Run the case with other edits; keep both, or neither."""
+    as_read = _as_read(case, before) if after else None
+    run = CaseRun(case.config, case.case, run_at_once, edits=after, kept=_kept(case), as_read=as_read)
+    run.go()
+    findings = _findings(run)
+    result = run.result = result_of(run.record())
+    _check(case, result, findings, [e for e in after if e.field in new], undoing=not new)
+    write_edits(case.file, after, report_digest(case.source))
+    try:
+        digest = find_cases.digest_of(case.case, case.config)
+        result = leave_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
+    except BaseException:
+        write_edits(case.file, before, report_digest(case.source))
+        raise
+    specs = person_facts.read_specs(case.folder)
+    said = by_field(findings, specs.road, specs.behavior, after)
+    return Revised(result, said, effective(after), time.perf_counter() - started, stamp_of(after))
+
+
+def _as_read(case: Opened, before: tuple[Edit, ...]) -> dict[str, Any] | None:
+    """The specs before anybody changed a fact; None: not known here, so the chain finds them out."""
+    if before:
+        return case.specs.as_read
+    raw: dict[str, Any] = json.loads((case.folder / person_facts.SPECS).read_text(encoding="utf-8"))
+    return raw
+
+
+def _kept(case: Opened) -> dict[str, person_facts.Kept]:
+    """The answers that a model gave, by stage. Raises BadInput where a stage has none yet."""
+    asks = {"road": case.config.road_writer.asks_model, "scenario": case.config.scenario_writer.asks_model}
+    asked = [stage for stage in STAGES if asks[stage]]
+    return {stage: person_facts.kept_of(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
+
+
+def _findings(run: CaseRun) -> list[Finding]:
+    """What validators say of the attempts that stand, and the planner's notes."""
+    told = [attempt for outcome in run.outcomes.values() if (attempt := outcome.told_by)]
+    found = [finding for attempt in told for finding in attempt.findings]
+    scenario = run.record().scenario
+    notes = scenario.notes if scenario else ()
+    return [*found, *(Finding(source="planner", severity="note", what=n, where=_place(n)) for n in notes)]
+
+
+def _place(note: str) -> str:
+    """The words of a note that name its actors, as `Finding.where` has them."""
+    return note.partition(":")[0][:120]
+
+
+def _check(
+    case: Opened, result: Mapping[str, Any], findings: Sequence[Finding], new: Sequence[Edit], undoing: bool
+) -> None:
+    """Raise WrongEdit where an edit does not stand, or where the case is worse for it."""
+    asked = {edit.field for edit in new if edit.value != AS_READ}
+    void = [f for f in findings if f.source == SOURCE and f.where in asked]
+    if void:
+        lines = [f"{f.where} = {f.value}: {f.what.partition(': ')[2]}" for f in void]
+        raise WrongEdit("; ".join(lines), void)
+    if undoing and result["status"] != "failed":
+        return
+    if _standing(result) < _standing(case.former) or result["status"] == "failed":
+        given = ", ".join(f"{e.field} = {e.value}" for e in new) or "undone"
+        raise WrongEdit(
+            f"with {given} the case is {_state(result)}; before it was {_state(case.former)}; nothing was changed",
+            findings,
+        )
+
+
+def _standing(result: Mapping[str, Any]) -> int:
+    """How far a case has come: as declared, generated, exhausted, no scenario at all; without a crash none declares."""
+    if result["status"] == "generated":
+        return 3 if as_declared(result) else 2
+    return {"exhausted": 1}.get(str(result["status"]), 0)
+
+
+def _state(result: Mapping[str, Any]) -> str:
+    if result["status"] != "generated":
+        return f"{result['status']} ({result['reason']})"
+    declared = {True: "as declared", False: "but not as declared", None: "but nobody touches or nearly touches anybody"}
+    return f"generated {declared[as_declared(result)]}"
+
+
+def _as_it_stands(case: Opened, edits: tuple[Edit, ...], started: float) -> Revised:
+    return Revised(case.former, {}, effective(edits), time.perf_counter() - started, stamp_of(edits), changed=False)

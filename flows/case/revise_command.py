@@ -1,0 +1,100 @@
+"""`sgcad revise`: facts that a person knows better, laid over one finished case. Answers go to stdout.
+
+Everything heavy is imported inside, so that --help is quick.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from flows.case.revise_case import Revised
+    from sgcad_core.revision import CaseField
+
+Case = Annotated[Path, typer.Argument(help="A finished case's folder, such as runs/template/x; with --later a report.")]
+Sets = Annotated[list[str] | None, typer.Option("--set", help="FIELD=VALUE, such as roads.N.lanes_forward=2.")]
+Why = Annotated[str, typer.Option("--why", help="The reason, kept beside the fact.")]
+Who = Annotated[str, typer.Option("--who", help="Who says so; default: the user's name.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Take the last revision back.")]
+Listed = Annotated[bool, typer.Option("--list", help="Name every field with what it is and may be.")]
+Report = Annotated[Path | None, typer.Option("--report", help="Where the report is now, if it was moved.")]
+Later = Annotated[bool, typer.Option("--later", help="Keep the facts beside a report; the next run goes by them.")]
+
+
+def revise(
+    case: Case, sets: Sets = None, why: Why = "", who: Who = "", undo: Undo = False, listed: Listed = False,
+    report: Report = None, later: Later = False,
+) -> None:  # fmt: skip
+    """Change facts of a finished case by hand: it is planned, simulated, checked and written anew.
+
+    The facts are kept in facts.yaml beside the report and win over every reader, on any later run and config. A wrong
+    one is refused with its reason and changes nothing. FIELD=as_read goes back to what was read.
+    """
+    from flows.case import revise_case
+    from sgcad_core.errors import ConfigError
+
+    if sum((bool(sets), undo, listed)) != 1:
+        raise ConfigError("give --set FIELD=VALUE (several are laid together), --undo or --list, one of the three")
+    if listed:
+        typer.echo("\n".join(_fields(case)))
+    elif later:
+        if undo:
+            raise ConfigError("--later keeps facts; with --undo give a finished case's folder")
+        edits = revise_case.note(report or case, _given(sets or ()), who=who, why=why)
+        typer.echo(f"kept for the next run: {len(edits)} facts of {(report or case).name}")
+    elif undo:
+        typer.echo("\n".join(_told(revise_case.undo(case, report=report))))
+    else:
+        typer.echo("\n".join(_told(revise_case.revise(case, _given(sets or ()), who=who, why=why, report=report))))
+
+
+def _given(sets: list[str] | tuple[str, ...]) -> dict[str, object]:
+    """FIELD=VALUE texts as a mapping. Raises ConfigError for one without a value."""
+    from sgcad_core.errors import ConfigError
+
+    pairs = [text.partition("=") for text in sets]
+    if wrong := [text for text, pair in zip(sets, pairs, strict=True) if not pair[0] or not pair[1]]:
+        raise ConfigError(f"--set {wrong[0]!r}: expected FIELD=VALUE, such as roads.N.lanes_forward=2")
+    return {field: value for field, _, value in pairs}
+
+
+def _told(revised: Revised) -> list[str]:
+    """What came of it, for people."""
+    from flows.terminal import escape_plain
+    from sgcad_core.result import as_declared
+
+    result = revised.result
+    as_told = {True: ", as declared", False: ", not as declared", None: ""}[as_declared(result)]
+    end = f"{result['case']}: {result['status']}{as_told}" + (f" ({result['reason']})" if result["reason"] else "")
+    lines = [end if revised.changed else f"{end}; nothing was changed: it stood so already"]
+    lines += [f"  {edit.line()}" for edit in revised.edits] or ["  no fact is a person's"]
+    findings = {finding.line(): None for said in revised.findings.values() for finding in said}
+    lines += [f"  {line}" for line in findings]
+    return [escape_plain(line) for line in (*lines, f"{revised.seconds:.2f} s")]
+
+
+def _fields(case: Path) -> list[str]:
+    """A line a field: name, value, what it may be, what it is."""
+    from flows.case.revise_case import editable
+
+    return [f"{f.name} = {_value(f.value)}  [{_range(f)}]  {f.kind.about}" for f in editable(case)]
+
+
+def _value(value: object) -> str:
+    if isinstance(value, tuple):
+        return ", ".join(value) or "usual"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return "open" if value is None else str(value)
+
+
+def _range(field: CaseField) -> str:
+    kind = field.kind
+    if field.choices:
+        return ("list of " if kind.form == "list" else "") + ", ".join(field.choices)
+    if kind.least is not None and kind.most is not None:
+        return f"{kind.least:g} to {kind.most:g}{', null' if kind.optional else ''}"
+    return "true, false" if kind.form == "flag" else kind.form

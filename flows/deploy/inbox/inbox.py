@@ -1,0 +1,108 @@
+"""The `inbox` deployment: reports that have come in since become scenarios, as one flow run.
+
+    python -m flows.deploy.inbox.inbox s3://reports/new --config fused.yaml --out runs
+
+does by hand what the schedule does. Several may run at once, on one machine or many. Import after
+`settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from prefect import flow
+
+from flows.batch.evaluate_flow import drive
+from flows.batch.find_cases import Case
+from flows.batch.plan_batch import MAX_JOBS, Crew, Job, batch_of
+from flows.batch.prefect_case_task import threads
+from flows.case.chain import Ending
+from flows.deploy.defaults import inbox_address, overrides_of
+from flows.deploy.inbox.claims import Claims
+from flows.deploy.inbox.intake import Do, Intake, OnResult
+from flows.deploy.storage import Place
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+from sgcad_core.system.temp_folders import scratch
+
+PORTION = 48
+"""Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
+
+
+@flow(name="inbox", task_runner=threads(MAX_JOBS), persist_result=False)
+def inbox_flow(
+    address: str | None = None,
+    config: str | None = None,
+    out: str = "runs",
+    overrides: list[str] | None = None,
+    jobs: int | None = None,
+    portion: int = PORTION,
+    settle_s: float = 10.0,
+    lease_s: float = 120.0,
+    wait_s: float = 30.0,
+    watch_s: float = 0.0,
+) -> dict[str, int]:
+    """Turn what lies at an address into scenarios; how many ended how.
+
+    `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as whole when
+    nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
+    when the inbox is empty or nothing could be taken for `wait_s`, but not before `watch_s` have passed.
+    """
+    address, named, config = inbox_address(address), overrides_of(overrides), config or settings.default_config()
+    batch_of((), [Path(config)], Path(out), named, jobs)  # a faulty config claims nothing
+    if min(settle_s, wait_s, watch_s) < 0 or lease_s <= 0 or portion < 1:
+        raise ConfigError(
+            f"settle_s {settle_s}, wait_s {wait_s}, watch_s {watch_s} must not be below 0, "
+            f"lease_s {lease_s}, portion {portion} not below or at 0"
+        )
+    place = Place(address)
+    with scratch("inbox") as staging:
+        intake = Intake(place, Claims(place, lease_s), staging, settle_s, config, Path(out))
+        return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s, watch_s)
+
+
+def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | None) -> Do:
+    """Runs cases as task runs of the current flow run."""
+
+    def do(cases: Sequence[Case], on_result: OnResult) -> None:
+        batch = batch_of(cases, [Path(config)], Path(out), overrides, jobs)
+        plan, crew = batch.plan(), Crew(batch)
+
+        def ended(job: Job, ending: Ending, untracked: str) -> None:
+            on_result(job.case, ending.result)
+
+        crew.begin(plan)
+        drive(plan, crew, ended)
+        crew.close()
+
+    return do
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """One run by hand, with a Prefect server for its length where none is named."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("address")
+    parser.add_argument("--config", default=settings.default_config())
+    parser.add_argument("--out", default="runs")
+    parser.add_argument("--jobs", type=int)
+    parser.add_argument("--portion", type=int, default=PORTION)
+    for name, value in (("settle", 10.0), ("lease", 120.0), ("wait", 30.0), ("watch", 0.0)):
+        parser.add_argument(f"--{name}-s", type=float, default=value)
+    asked = vars(parser.parse_args(arguments))
+    sys.stdout.write(json.dumps(inbox_flow(**asked)) + "\n")
+
+
+if __name__ == "__main__":
+    from prefect.settings import PREFECT_API_URL, temporary_settings
+
+    from flows.server import prefect_server
+
+    # Prefect was imported before the server was named, and would start one that outlives a kill.
+    with prefect_server() as server, temporary_settings({PREFECT_API_URL: settings.prefect_url()}):
+        if server:
+            server.wait()
+        main()

@@ -1,0 +1,203 @@
+"""The `nightly` deployment: a benchmark over a folder of cases, held against the last run that a person accepted.
+
+    python -m flows.deploy.nightly accept --out runs/nightly      # what was measured last is the measure now
+
+Each run writes latest.json; accepting copies it to accepted.json. A drop beyond tolerance fails the flow run, whose
+message names each figure, the accepted value and the new one. Import after `settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from prefect import flow
+from prefect.client.schemas.objects import State
+from prefect.states import Completed, Failed
+
+from flows.batch import find_cases as case_sets
+from flows.batch.evaluate_flow import drive
+from flows.batch.plan_batch import MAX_JOBS, Batch, Crew, Job, batch_of
+from flows.batch.prefect_case_task import threads
+from flows.case import case_folder
+from flows.case.chain import Ending
+from flows.deploy.defaults import cases_folder, overrides_of
+from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
+from flows.results.reading import Study, load_study
+from flows.study.machine import git_commit
+from flows.study.plan import dataset_digest
+from sgcad_core import settings
+from sgcad_core.errors import ConfigError
+
+LATEST, ACCEPTED = "latest.json", "accepted.json"
+SECONDS = Measure("seconds", "time a case", "mean", "s", "low")
+COMPARED = (*GENERATION, *NETWORK_WRONG, *NETWORK_MEAN, *TRUTH, SECONDS)
+
+Figures = Mapping[str, Mapping[str, float]]
+"""config -> measure -> value over its cases, fractions, counts and seconds."""
+
+
+class Tolerance(NamedTuple):
+    """How much worse is no drop: shares and errors by so much (0.02 = two of a hundred cases), others by a factor."""
+
+    share: float = 0.02
+    count_factor: float = 1.1
+    seconds_factor: float = 1.5
+
+
+@flow(name="nightly", task_runner=threads(MAX_JOBS), persist_result=False)
+def nightly_flow(
+    cases: str | None = None,
+    configs: list[str] | None = None,
+    truth: str | None = None,
+    out: str = "runs/nightly",
+    overrides: list[str] | None = None,
+    jobs: int | None = None,
+    fresh: bool = False,
+    tolerance: float = 0.02,
+    seconds_factor: float = 1.5,
+    accept: bool = False,
+) -> State[Any]:
+    """Run the benchmark; Failed if a figure is worse than the accepted one by more than the tolerance.
+
+    `cases` is a folder, by default SGCAD_CASES or the bundled reports; `truth` a folder of labels, without which only
+    what needs none is measured. Cases that nothing has changed for are not repeated unless `fresh`. `accept` makes this
+    run the measure.
+    """
+    paths = settings.configs_or_default(configs)
+    batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
+    if truth and not Path(truth).is_dir():
+        raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
+    _work(batch)
+    latest = _about(batch, figures_of(batch, Path(truth) if truth else None))
+    case_folder.write_json(batch.out / LATEST, latest)
+    if accept:
+        accept_latest(batch.out)
+    return _judged(batch.out, latest, Tolerance(tolerance, seconds_factor=seconds_factor))
+
+
+def _work(batch: Batch) -> None:
+    plan, crew = batch.plan(), Crew(batch)
+    crew.begin(plan)
+    drive(plan, crew, _nothing)
+    crew.close()
+
+
+def _nothing(job: Job, ending: Ending, untracked: str) -> None:
+    """Endings are read from disk afterwards."""
+
+
+def _judged(out: Path, latest: dict[str, Any], tolerance: Tolerance) -> State[Any]:
+    if (accepted := _read(out / ACCEPTED)) is None:
+        return Completed(message=f"measured; nothing is accepted yet: `{_accept_command(out)}` makes this the measure")
+    if accepted["dataset_digest"] != latest["dataset_digest"]:
+        return Failed(
+            message=f"accepted was measured on other cases; look at {out / LATEST}, then `{_accept_command(out)}`"
+        )
+    found = list(drops(accepted["figures"], latest["figures"], tolerance))
+    if found:
+        return Failed(message="; ".join(found) + f" (accepted {accepted['measured']})")
+    return Completed(message=f"no figure is worse than accepted on {accepted['measured']}")
+
+
+# ------------------------------------------------------------------ figures
+def figures_of(batch: Batch, truth: Path | None) -> dict[str, dict[str, float]]:
+    """Figures of a finished batch by config, from its folders; with truth the errors against it too."""
+    names, ids = {c.name for c in batch.configs}, tuple(c.id for c in batch.cases)
+    found = load_study(batch.out, truth)
+    study = replace(found, arms=tuple(a for a in found.arms if a.name in names), cases=ids)
+    return {arm.name: _figures(study, arm.name) for arm in study.arms}
+
+
+def _figures(study: Study, arm: str) -> dict[str, float]:
+    values = []
+    for case, ran in study.ran[arm].items():
+        seconds = {"seconds": float(sum(ran.result["seconds"].values()))}
+        values.append(values_of(ran, study.labels.get(case)) | seconds)
+    figures = {m.name: _value(m, values) for m in COMPARED}
+    return {name: round(value, 6) for name, value in figures.items() if value is not None}
+
+
+def _value(measure: Measure, values: Sequence[Mapping[str, float]]) -> float | None:
+    """Over cases that have it: the mean, or of a ratio the quotient of the sums; None if none has."""
+    if measure.kind == "ratio":
+        above, below = (sum(v.get(key, 0.0) for v in values) for key in measure.keys)
+        return above / below if below else None
+    found = [v[measure.key] for v in values if measure.key in v]
+    return sum(found) / len(found) if found else None
+
+
+def drops(accepted: Figures, latest: Figures, tolerance: Tolerance) -> Iterator[str]:
+    """What is worse than accepted by more than the tolerance, each in words; a figure that is gone is a drop."""
+    for config, figures in accepted.items():
+        for measure in COMPARED:
+            old, new = figures.get(measure.name), latest.get(config, {}).get(measure.name)
+            if old is None or not measure.better:
+                continue
+            if new is None:
+                yield f"{config}: {measure.name} was {old:.4g} and is not measured any more"
+            elif _is_worse(measure, old, new, tolerance):
+                yield f"{config}: {measure.name} was {old:.4g}, is {new:.4g} ({measure.better} is good)"
+
+
+def _is_worse(measure: Measure, old: float, new: float, tolerance: Tolerance) -> bool:
+    if measure.unit == "%":
+        worse = old - new if measure.better == "high" else new - old
+        return worse > tolerance.share + 1e-9
+    factor = tolerance.seconds_factor if measure is SECONDS else tolerance.count_factor
+    return new > old * factor if measure.better == "low" else new * factor < old
+
+
+# ------------------------------------------------------------------ what is accepted
+def accept_latest(out: Path) -> Path:
+    """Make the last run the measure; the file that says so. Raises ConfigError where nothing was measured."""
+    if _read(out / LATEST) is None:
+        raise ConfigError(f"{out / LATEST}: nothing was measured here yet; run the deployment `nightly` first")
+    partial = out / f".{ACCEPTED}.partial"
+    shutil.copyfile(out / LATEST, partial)
+    return partial.replace(out / ACCEPTED)
+
+
+def _accept_command(out: Path) -> str:
+    return f"python -m flows.deploy.nightly accept --out {out}"
+
+
+def _about(batch: Batch, figures: Figures) -> dict[str, Any]:
+    return {
+        "measured": datetime.now(UTC).isoformat(timespec="seconds"),
+        "package": version("sg-cadvlm"),
+        "git_commit": git_commit(),
+        "dataset_digest": dataset_digest(batch.cases),
+        "cases": len(batch.cases),
+        "figures": figures,
+    }
+
+
+def _read(file: Path) -> dict[str, Any] | None:
+    try:
+        about: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except ValueError as fault:
+        raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept anew") from fault
+    return about
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Accept what was measured last."""
+    parser = argparse.ArgumentParser(description="Accepts what the nightly benchmark measured last.")
+    parser.add_argument("what", choices=("accept",))
+    parser.add_argument("--out", type=Path, default=Path("runs/nightly"))
+    sys.stdout.write(f"{accept_latest(parser.parse_args(arguments).out)}\n")
+
+
+if __name__ == "__main__":
+    main()

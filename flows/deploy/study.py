@@ -1,0 +1,51 @@
+"""The `study` deployment: a study file, run by hand from Prefect's page with its parameters. Thin: see flows/study.
+
+Import after `settings.quiet_libraries()`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from prefect import flow
+
+from flows.batch.evaluate_flow import drive
+from flows.batch.plan_batch import MAX_JOBS, Crew, Job
+from flows.batch.prefect_case_task import threads
+from flows.case.chain import Ending
+from flows.deploy.defaults import overrides_of
+from flows.study.plan import plan
+from flows.study.spec import load_study
+
+
+@flow(name="study", flow_run_name="study {file}", task_runner=threads(MAX_JOBS), persist_result=False)
+def study_flow(
+    file: str,
+    cases: list[str] | None = None,
+    truth: str | None = None,
+    out: str = "runs",
+    overrides: list[str] | None = None,
+    jobs: int | None = None,
+    fresh: bool = False,
+) -> dict[str, int]:
+    """Run a study, as `sgcad study` does; how many cases ended in which status. `file`: a name or a path."""
+    made = plan(
+        load_study(Path(file)),
+        Path(out),
+        cases=[Path(c) for c in cases or ()],
+        truth=Path(truth) if truth else None,
+        overrides=overrides_of(overrides),
+        jobs=jobs,
+        fresh=fresh,
+    )
+    made.write()
+    crew, counts = Crew(made.batch), Counter[str]()
+
+    def count(job: Job, ending: Ending, untracked: str) -> None:
+        counts[ending.result["status"]] += 1
+
+    crew.begin(made.jobs)
+    drive(made.jobs, crew, count)
+    crew.close()
+    return dict(counts)

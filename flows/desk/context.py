@@ -1,0 +1,89 @@
+"""What the desk's pages share: the folder, its index, links, the mending worker, the templates."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from starlette.requests import Request
+from starlette.responses import HTMLResponse
+
+from flows.desk.index import RESULT, Index
+from flows.desk.links import Links
+from flows.desk.mending import Mender
+from flows.desk.views.list_rows import UNREADABLE, Row
+
+STATIC = Path(__file__).parent / "static"
+TRUST_WORDS: Mapping[str, str] = {
+    "broken": "no scenario", "lacking": "lacking", "doubtful": "doubtful", "refused": "refused", "whole": "holds",
+}  # fmt: skip
+BASIS_WORDS: Mapping[str, str] = {
+    "text": "report", "diagram": "drawing", "model": "model", "default": "assumed", "person": "person",
+    "coded": "coded",
+}  # fmt: skip
+
+
+class Gone(Exception):
+    """A case that is not there (any more); the message is for the person."""
+
+
+@dataclass
+class Desk:
+    """One results folder on the web."""
+
+    index: Index
+    links: Links
+    mender: Mender = field(default_factory=Mender)
+    templates: Environment = field(default_factory=lambda: _templates())
+
+    @property
+    def root(self) -> Path:
+        """The results folder."""
+        return self.index.root
+
+    def case(self, key: str) -> tuple[Row, Path]:
+        """A case's row and folder. Raises Gone, also for one whose result cannot be read."""
+        row, folder = self.index.row(key), self.index.folder(key)
+        if row is None or folder is None:
+            raise Gone(f"There is no case {key!r} in this folder: it was removed, or is being written anew just now.")
+        if row.status == UNREADABLE:
+            raise Gone(row.reason)
+        return row, folder
+
+    def result(self, folder: Path) -> dict[str, Any]:
+        """A case's result.json. Raises Gone where it cannot be read."""
+        try:
+            result = json.loads((folder / RESULT).read_bytes())
+        except (OSError, ValueError) as fault:
+            why = "is gone" if isinstance(fault, FileNotFoundError) else "cannot be read"
+            raise Gone(f"{RESULT} of this case {why}; reload in a moment, or run the case again.") from fault
+        return dict(result) if isinstance(result, dict) else {}
+
+    def render(self, request: Request, name: str, status: int = 200, **context: Any) -> HTMLResponse:
+        """A page from a template."""
+        text = self.templates.get_template(name).render(
+            desk=self,
+            csrf=request.state.csrf,
+            path_of=path_of,
+            trust_words=TRUST_WORDS,
+            basis_words=BASIS_WORDS,
+            **context,
+        )
+        return HTMLResponse(text.encode("utf-8", "replace"), status)
+
+
+def path_of(key: str) -> str:
+    """A case's key as part of a web address."""
+    return quote(key, safe="/")
+
+
+def _templates() -> Environment:
+    return Environment(
+        loader=PackageLoader("flows.desk"), autoescape=select_autoescape(default=True, default_for_string=True),
+        undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip

@@ -1,0 +1,294 @@
+"""What a case's page shows beside the map: the report in sentences, facts by the thing they tell of, the account.
+
+A *thing* is what lights up together: "V1", "road:main" (a road of the report), "leg:N" (a road as drawn), "contact",
+"junction", "conditions". Reads a case's folder; knows no page.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from flows.desk.views.field_words import name_of, shown
+from flows.desk.views.list_rows import account_counts, contact_of, disagreements, doubts_of, notes_of
+
+FILES: Mapping[str, str] = {
+    "scenario.xosc": "OpenSCENARIO", "scenario.rou.xml": "SUMO routes", "road.xodr": "OpenDRIVE",
+    "road.net.xml": "SUMO network", "trajectories.csv": "trajectories", "metrics.json": "metrics",
+    "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
+}  # fmt: skip
+"""What of a case's folder can be downloaded."""
+ATTEMPT = re.compile(r"(road|scenario)-\d{2,4}")
+ATTEMPT_FILES = ("prompt.txt", "answer.txt", "findings.json")
+_DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+_LARGEST = 4 * 2**20
+"""Characters of a text file that are read."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of the narrative; `number` of the sentence and what it tells of, where it tells anything."""
+
+    text: str
+    number: int = -1
+    things: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class FactRow:
+    """One fact as a line: `sentence` is its piece's number, -1 without one; `others`: what other readers say."""
+
+    field: str
+    name: str
+    value: str
+    basis: str
+    status: str
+    confidence: float
+    sentence: int = -1
+    others: tuple[tuple[str, str], ...] = ()
+    findings: tuple[str, ...] = ()
+    edit: str = ""
+    """How it can be changed, as JSON for the page's script; "" where it cannot."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """The facts of one thing. `remove`: the field that takes it out of the scenario, "" where none does."""
+
+    thing: str
+    title: str
+    facts: tuple[FactRow, ...]
+    remove: str = ""
+    findings: tuple[str, ...] = ()
+    """What concerns the thing as a whole."""
+
+
+@dataclass(frozen=True)
+class AccountLine:
+    """One item of the account: its words, why, the thing and the sentence."""
+
+    text: str
+    reason: str
+    thing: str
+    field: str
+    sentence: int
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One attempt of a writer: its folder's name, what was found, which files there are to read."""
+
+    name: str
+    findings: tuple[str, ...]
+    files: tuple[str, ...]
+    seconds: float | None = None
+
+
+@dataclass(frozen=True)
+class CasePage:
+    """Everything on the page but map and mending."""
+
+    pieces: tuple[Piece, ...]
+    groups: tuple[Group, ...]
+    counts: Mapping[str, int]
+    account: Mapping[str, Sequence[AccountLine]]
+    notes: tuple[AccountLine, ...]
+    attempts: tuple[Attempt, ...]
+    diagrams: int
+    files: tuple[tuple[str, str], ...]
+    player: bool
+    verdict: str
+    accounted: bool
+    """Whether the result says what of the report is in the scenario; older versions' do not."""
+    result: Mapping[str, Any] = field(repr=False)
+
+
+def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
+    """Read a case's folder. What is missing in it is left out."""
+    facts = list(result.get("facts") or ())
+    spans = spans_of(folder, result)
+    narrative = _text(folder / "report.txt")
+    pieces, numbers = pieces_of(narrative, spans, facts)
+    return CasePage(
+        pieces=pieces, groups=tuple(groups_of(facts, numbers, doubts_of(result))), counts=account_counts(result),
+        account=account_of(result, numbers), notes=tuple(_note(note, numbers) for note in notes_of(result)),
+        attempts=tuple(attempts_of(folder)), diagrams=len(diagrams_of(folder)),
+        files=tuple((name, about) for name, about in FILES.items() if (folder / name).is_file()),
+        player=(folder / "player.html").is_file(), verdict=verdict_of(result),
+        accounted=bool(result.get("account")), result=result,
+    )  # fmt: skip
+
+
+def verdict_of(result: Mapping[str, Any]) -> str:
+    """What came of the case in a line: why nothing did, or what happens and whether that is what was declared."""
+    if result["status"] != "generated":
+        return str(result.get("reason") or result["status"])
+    collision, near = result.get("collision") or {}, result.get("near_crash")
+    if near:
+        return f"near crash, {'as declared' if near['realised'] else 'not as declared'}"
+    if not collision.get("declared"):
+        return "no contact is declared"
+    seen = contact_of(result) or "nobody touches"
+    return f"{seen}, {'as declared' if collision['realised'] else 'not as declared'}"
+
+
+# ------------------------------------------------------------------ the report
+def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
+    """Where the sentences stand in the narrative as it is shown: their begin as it was written -> [begin, end).
+
+    The player knows it where parts of the report were taken out; else both are the same.
+    """
+    spans = {int(s["start"]): (int(s["start"]), int(s["end"])) for s in result.get("sentences") or ()}
+    found = _DATA.search(_text(folder / "player.html"))
+    try:
+        told = json.loads(found[1])["sentences"] if found else ()
+        return spans | {int(s["of"]): (int(s["start"]), int(s["end"])) for s in told}
+    except (ValueError, KeyError, TypeError):
+        return spans
+
+
+def pieces_of(
+    narrative: str, spans: Mapping[int, tuple[int, int]], facts: Iterable[Mapping[str, Any]]
+) -> tuple[tuple[Piece, ...], dict[int, int]]:
+    """The narrative cut into sentences that tell facts and what stands between; the number of each by its begin."""
+    things: dict[int, dict[str, None]] = {}
+    for fact in facts:
+        if fact.get("start") in spans:
+            things.setdefault(fact["start"], {}).update(dict.fromkeys([thing_of(fact["field"])]))
+    pieces, numbers, at = [], dict[int, int](), 0
+    for begin, told in sorted(things.items(), key=lambda item: spans[item[0]]):
+        start, end = spans[begin]
+        if not at <= start < end <= len(narrative):
+            continue
+        numbers[begin] = len(numbers)
+        pieces += [Piece(narrative[at:start])] if start > at else []
+        pieces.append(Piece(narrative[start:end], numbers[begin], tuple(filter(None, told))))
+        at = end
+    return (*pieces, Piece(narrative[at:])), numbers
+
+
+# ------------------------------------------------------------------ facts
+def thing_of(name: str) -> str:
+    """The thing that a field tells of; "" of what lights nothing up."""
+    group, _, rest = name.partition(".")
+    owner = rest.split(".")[0]
+    if group in ("vehicles", "others", "rest", "course"):
+        return owner
+    if group == "roads":
+        return f"road:{owner}" if owner[:1].islower() else f"leg:{owner}"
+    if group in ("contacts", "near_crash", "impacts"):
+        return "contact"
+    return group if group in ("junction", "conditions") else ""
+
+
+def title_of(thing: str) -> str:
+    """A thing's name for people."""
+    kind, _, name = thing.partition(":")
+    titles = {"road": f"Road told: {name}", "leg": f"Road {name}", "contact": "Contact", "": "Other"}
+    return titles.get(kind, kind.capitalize() if kind[1:2].isalpha() else kind)
+
+
+def order_of(thing: str) -> tuple[int, str]:
+    """Where a thing stands among the others: contact, actors, junction, roads, the rest."""
+    kind = thing.partition(":")[0]
+    order = {"contact": 0, "junction": 2, "leg": 3, "road": 4, "conditions": 5, "": 6}
+    return order.get(kind, 1), thing
+
+
+def groups_of(
+    facts: Sequence[Mapping[str, Any]], numbers: Mapping[int, int], doubts: Sequence[Mapping[str, Any]] = ()
+) -> Iterator[Group]:
+    """Facts by thing, actors and contact first; of each field the last fact, with what other readers say of it."""
+    disagree, found = disagreements(facts), dict[str, list[FactRow]]()
+    for fact in {fact["field"]: fact for fact in facts}.values():
+        row = _fact(fact, numbers, disagree.get(fact["field"], {}), doubts)
+        found.setdefault(thing_of(fact["field"]), []).append(row)
+    for thing in sorted(found, key=order_of):
+        yield Group(thing, title_of(thing), tuple(found[thing]))
+
+
+def _fact(
+    fact: Mapping[str, Any], numbers: Mapping[int, int], said: Mapping[str, Any], doubts: Sequence[Mapping[str, Any]]
+) -> FactRow:
+    name = str(fact["field"])
+    others = ((basis, shown(name, value)) for basis, value in said.items() if basis != fact["basis"])
+    return FactRow(
+        field=name, name=name_of(name), value=shown(name, fact["value"]), basis=str(fact["basis"]),
+        status=str(fact["status"]), confidence=float(fact["confidence"]), sentence=numbers.get(fact.get("start"), -1),  # type: ignore[arg-type]
+        others=tuple(others), findings=tuple(str(d["text"]) for d in doubts if d.get("field") == name),
+    )  # fmt: skip
+
+
+# ------------------------------------------------------------------ account, notes, attempts
+def account_of(result: Mapping[str, Any], numbers: Mapping[int, int]) -> dict[str, list[AccountLine]]:
+    """lacks, assumed, has: the account's items; of results without one, defaults are what is assumed."""
+    found: dict[str, list[AccountLine]] = {"lacks": [], "assumed": [], "has": []}
+    items = (result.get("account") or {}).get("items")
+    for item in items if items is not None else _items_of_facts(result.get("facts") or ()):
+        found.setdefault(item["kind"], []).append(_line(item, numbers))
+    return found
+
+
+def _items_of_facts(facts: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    for fact in {fact["field"]: fact for fact in facts}.values():
+        if fact["basis"] == "default":
+            owner = fact["field"].split(".")[1] if fact["field"].count(".") > 1 else ""
+            text = f"{owner} {name_of(fact['field'])} {shown(fact['field'], fact['value'])}".strip()
+            yield {"kind": "assumed", "field": fact["field"], "text": text, "reason": "not told", "start": None}
+
+
+def _line(item: Mapping[str, Any], numbers: Mapping[int, int]) -> AccountLine:
+    return AccountLine(
+        str(item["text"]), str(item.get("reason") or ""), thing_of(str(item.get("field") or "")),
+        str(item.get("field") or ""), numbers.get(item.get("start"), -1),  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def _note(note: Mapping[str, Any], numbers: Mapping[int, int]) -> AccountLine:
+    thing = thing_of(str(note.get("field") or "")) or str(note.get("subject") or "")
+    return AccountLine(str(note["text"]), str(note["kind"]), thing, str(note.get("field") or ""),
+                       numbers.get(note.get("start"), -1))  # type: ignore[arg-type]  # fmt: skip
+
+
+def attempts_of(folder: Path) -> Iterator[Attempt]:
+    """The writers' attempts in their order."""
+    stages = {"road": 0, "scenario": 1}
+    places = [p for p in (folder / "attempts").glob("*-*") if ATTEMPT.fullmatch(p.name)]
+    for place in sorted(places, key=lambda p: (stages[p.name.partition("-")[0]], p.name)):
+        found, about = _json(place / "findings.json"), _json(place / "attempt.json")
+        lines = (_finding(f) for f in found if isinstance(f, dict)) if isinstance(found, list) else ()
+        files = (name for name in ATTEMPT_FILES if (place / name).is_file() and (place / name).stat().st_size > 2)
+        seconds = about.get("seconds") if isinstance(about, dict) else None
+        yield Attempt(place.name, tuple(lines), tuple(files), seconds)
+
+
+def _finding(found: Mapping[str, Any]) -> str:
+    parts = [str(found.get(name) or "") for name in ("what", "where", "value", "remedy")]
+    what, where, value, remedy = parts
+    return f"{what}{f' at {where}' if where else ''}{f': {value}' if value else ''}{f' – {remedy}' if remedy else ''}"
+
+
+def diagrams_of(folder: Path) -> list[Path]:
+    """The report's drawings, in their order."""
+    first = folder / "diagram.png"
+    rest = sorted(folder.glob("diagram-*.png"), key=lambda file: (len(file.name), file.name))
+    return [file for file in (first, *rest) if file.is_file()]
+
+
+def _text(file: Path) -> str:
+    try:
+        with file.open(encoding="utf-8", errors="replace", newline="") as content:
+            return content.read(_LARGEST)
+    except OSError:
+        return ""
+
+
+def _json(file: Path) -> Any:
+    try:
+        return json.loads(_text(file))
+    except ValueError:
+        return {}

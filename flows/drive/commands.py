@@ -1,0 +1,134 @@
+"""`sgcad drive`: hand finished cases over to drivers, and a table of what came of it."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import Annotated, Any, TextIO
+
+import typer
+
+from sgcad_core.errors import ConfigError
+
+Cases = Annotated[list[Path], typer.Argument(help="Folders of finished cases, or a folder of runs.")]
+Drivers = Annotated[
+    list[str] | None,
+    typer.Option("--driver", "-d", help="A name, YAML such as '{name: reference, model: fuzzy}', or @FILE: a list."),
+]
+RoleOf = Annotated[
+    list[str] | None, typer.Option("--role-of", help="V1=responder: your word over what was read of the report.")
+]
+Release = Annotated[
+    float, typer.Option("--release", min=0.0, max=30.0, help="Seconds before the contact; then nobody heeds the ego.")
+]
+Factor = Annotated[
+    float, typer.Option("--factor", min=0.2, max=3.0, help="The ego's speed at the hand-over over the scripted one.")
+]
+
+
+def drive(
+    cases: Cases,
+    driver: Drivers = None,
+    ego: Annotated[str, typer.Option("--ego", help="The actor to be driven, such as V1.")] = "",
+    role: Annotated[str, typer.Option("--role", help="initiator, responder, bystander; both: the first two.")] = "both",
+    role_of: RoleOf = None,
+    release: Release = 4.0,
+    factor: Factor = 1.0,
+    jobs: Annotated[int, typer.Option("--jobs", "-j", min=1, help="Cases at a time.")] = 1,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Drive again what was driven.")] = False,
+    csv: Annotated[Path | None, typer.Option("--csv", help="Write one line a drive here.")] = None,
+    pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write drive.html beside drive.json.")] = True,
+) -> None:
+    """Put a driver into crashes: avoided, mitigated, unchanged, worse or lost; files go to drive/ in each case."""
+    from rich.console import Console
+
+    from flows.drive import table
+    from flows.drive.run_drive import Order, drive_folders
+    from flows.drive.script_of_case import case_folders
+    from sgcad_core.config import driver_entry
+
+    order = Order(
+        drivers=tuple(driver_entry(entry) for text in driver or ["reference"] for entry in _entries(text)),
+        ego=ego, roles=_roles(role), release_s=release, factor=factor, role_of=_given(role_of or []),
+        fresh=fresh, pages=pages,
+    )  # fmt: skip
+    told, tally = drive_folders(case_folders(cases), order, jobs), table.Tally()
+    with _opened(csv) as out:
+        for one in table.as_csv(out, told) if out else told:
+            tally.add(one)
+    table.show(Console(emoji=False, highlight=False), tally)
+    if csv:
+        typer.echo(f"written: {csv}")
+    raise typer.Exit(int(tally.failed > 0))
+
+
+def _opened(file: Path | None) -> AbstractContextManager[TextIO | None]:
+    return nullcontext() if file is None else file.open("w", encoding="utf-8", newline="")
+
+
+def _entries(text: str) -> list[Any]:
+    """Drivers of one --driver: one, or with @FILE all of a YAML list."""
+    if not text.startswith("@"):
+        return [_yaml(text)]
+    try:
+        listed = _yaml(Path(text[1:]).read_text(encoding="utf-8"))
+    except OSError as fault:
+        raise ConfigError(f"--driver {text}: cannot be read ({fault.strerror}); give a YAML file") from fault
+    if not isinstance(listed, list) or not listed:
+        raise ConfigError(f"--driver {text}: no list of drivers; write one driver a line, each behind a dash")
+    return listed
+
+
+def _yaml(text: str) -> Any:
+    import yaml
+
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as fault:
+        raise ConfigError(f"--driver {text!r}: no YAML ({fault}); give a name or {{name: ..., field: ...}}") from fault
+
+
+def _roles(role: str) -> tuple[str, ...]:
+    from sgcad_core.kinds import CRASH_ROLES
+
+    if role == "both":
+        return ("initiator", "responder")
+    if role not in CRASH_ROLES:
+        raise ConfigError(f"--role {role}: no such role; roles: {', '.join(CRASH_ROLES)}, both")
+    return (role,)
+
+
+def _given(entries: list[str]) -> dict[str, str]:
+    if wrong := next((e for e in entries if "=" not in e), None):
+        raise ConfigError(f"--role-of {wrong}: write ACTOR=ROLE, such as V1=responder")
+    return dict(e.split("=", 1) for e in entries)
+
+
+def vary(
+    cases: Cases,
+    count: Annotated[int, typer.Option("-n", "--count", min=1, max=10_000, help="Members of each family.")] = 200,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Equal seeds give equal families.")] = 1,
+    driver: Annotated[str, typer.Option("--driver", "-d", help="Look for the hardest ones for this driver.")] = "",
+    role: Annotated[str, typer.Option("--role", help="Whom it drives.")] = "responder",
+    search: Annotated[
+        str, typer.Option("--search", help="cross-entropy: the hardest corner; map-elites: the hardest in every way.")
+    ] = "cross-entropy",
+    role_of: RoleOf = None,
+) -> None:
+    """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
+    from flows.drive.families import METHODS, Search, family_of
+    from flows.drive.families import vary as write
+    from flows.drive.script_of_case import case_folders
+    from sgcad_core.config import driver_entry
+
+    entry = driver_entry(_yaml(driver)) if driver else None
+    roles = _roles(role)
+    if len(roles) != 1:
+        raise ConfigError(f"--role {role}: a family is driven in one role; give initiator or responder")
+    method = next((m for m in METHODS if m == search), None)
+    if method is None:
+        raise ConfigError(f"--search {search}: no such search; there are {', '.join(METHODS)}")
+    look = Search(entry, roles[0], method) if entry else None
+    for folder in case_folders(cases):
+        place = write(family_of(folder, _given(role_of or [])), count, seed, look)
+        typer.echo(str(place))

@@ -1,0 +1,68 @@
+"""The stage `drive` of a config: an executed case handed over in memory. Knows records and the config."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flows.drive.run_drive import FOLDER, Order, drive_script
+from flows.drive.script_of_case import roles_of
+from sgcad_core.config import DriveStage
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.handover.contact_figures import contact_figures, impact_told
+from sgcad_core.handover.outcome import OUTCOMES
+from sgcad_core.handover.script import Script
+from sgcad_core.result import CaseRecord
+
+FIGURES = ("braked_s", "braked_at_ttc_s", "hardest_mps2", "closest_m", "least_ttc_s", "pet_s", "lag_s")
+
+
+def driven(stage: DriveStage, record: CaseRecord, folder: Path) -> dict[str, Any]:
+    """Driver -> role -> figures (every outcome 0 or 1), for metrics.json and trackers; files go to drive/."""
+    script = script_in(record, stage.role_of)
+    order = Order(stage.drivers, roles=stage.roles, release_s=stage.release_s)
+    found: dict[str, Any] = {}
+    for told in drive_script(script, order, folder / FOLDER):
+        found.setdefault(told["driver"], {})[told["role"]] = _figures(told)
+    return found
+
+
+def contact(record: CaseRecord) -> dict[str, Any]:
+    """How hard the scripted contact is, and until when it could have been avoided."""
+    return contact_figures(script_in(record, {}), record.execution.contact if record.execution else None)
+
+
+def impact(record: CaseRecord) -> dict[str, Any] | None:
+    """What result.json tells of the scripted contact; None where nothing touches."""
+    return impact_told(script_in(record, {}), record.execution.contact if record.execution else None)
+
+
+def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:
+    """An executed case as a script. Raises ValueError for one that was not executed."""
+    scenario, execution, network = record.scenario, record.execution, record.network
+    if not (scenario and execution and network and network.net_xml):
+        raise ValueError(f"case {record.case}: nothing was executed")
+    facts = [fact.model_dump() for fact in record.reading.facts] if record.reading else []
+    return Script(
+        case=record.case,
+        actors=scenario.actors,
+        trajectories=execution.trajectories,
+        graph=parse_net(network.net_xml),
+        declared=scenario.declared,
+        roles=roles_of(facts, role_of),
+        surface=scenario.behavior.surface if scenario.behavior else None,
+        net_xml=network.net_xml,
+    )
+
+
+def _figures(told: Mapping[str, Any]) -> dict[str, Any]:
+    now, then = told.get("severity"), told.get("scripted")
+    hardness = {"delta_v_mps": _worst(now) if now else 0.0} if told["outcome"] != "failed" else {}
+    hardness |= {"scripted_delta_v_mps": _worst(then)} if then else {}
+    outcomes = {o: int(told["outcome"] == o) for o in (*OUTCOMES, "failed")}
+    return {"ego": told["ego"], **outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
+
+
+def _worst(hardness: Mapping[str, Any]) -> float:
+    return round(float(max(hardness["first"]["delta_v_mps"], hardness["second"]["delta_v_mps"])), 3)

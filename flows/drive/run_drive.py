@@ -1,0 +1,152 @@
+"""One script, one ego, one driver: the drive and its files. A drive that is there already is not driven again.
+
+    drive/<driver>/<ego>/   drive.json, trajectories.csv, drive.html
+
+Nothing that the script's case left is touched.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from flows.batch.find_cases import code_digest
+from flows.case import case_folder
+from flows.drive.script_of_case import egos, script_of
+from sgcad_core.config import DriverEntry
+from sgcad_core.errors import SgcadError
+from sgcad_core.handover.avoidance import avoidance
+from sgcad_core.handover.drive import Drive, drive
+from sgcad_core.handover.outcome import came, series
+from sgcad_core.handover.relative_clock import RELEASE_S
+from sgcad_core.handover.script import Script, Staging, staged
+from sgcad_core.system import temp_folders
+
+FOLDER = "drive"
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be driven of every case."""
+
+    drivers: tuple[DriverEntry, ...]
+    ego: str = ""
+    roles: tuple[str, ...] = ("initiator", "responder")
+    release_s: float = RELEASE_S
+    factor: float = 1.0
+    role_of: Mapping[str, str] = field(default_factory=dict)
+    fresh: bool = False
+    pages: bool = True
+
+
+def drive_folder(folder: Path, order: Order) -> list[dict[str, Any]]:
+    """Drive a finished case as ordered; the contents of its drive.json files. Raises BadInput, ConfigError."""
+    script = script_of(folder, order.role_of)
+    told = (folder / "trajectories.csv").read_bytes() + (folder / "road.net.xml").read_bytes()
+    return drive_script(script, order, folder / FOLDER, hashlib.sha256(told).hexdigest())
+
+
+def drive_script(script: Script, order: Order, place: Path, content: str = "") -> list[dict[str, Any]]:
+    """Drive a script as ordered. `content`: digest of what the script is made of; "": nothing is reused."""
+    found = []
+    for ego, role in egos(script, order.ego, order.roles):
+        told: _Told | None = None
+        for entry in order.drivers:
+            target = place / entry.label / ego
+            digest = _digest(content, entry, order, ego, role)
+            done = _done(target, digest) if content and not order.fresh else None
+            if done is None and told is None:
+                told = _Told.of(script, ego)
+            found.append(done or _one(cast("_Told", told), order, entry, role, target, digest))
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """An ego's staging with what could have been done: the same for all drivers."""
+
+    staging: Staging
+    avoidance: dict[str, Any] | None
+
+    @staticmethod
+    def of(script: Script, ego: str) -> _Told:
+        staging = staged(script, ego)
+        could = avoidance(staging)
+        return _Told(staging, could.model_dump(mode="json") if could else None)
+
+
+def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str) -> str:
+    about = [content, entry.raw, type(entry.driver).version, order.release_s, order.factor, ego, role]
+    return hashlib.sha256(json.dumps([*about, code_digest(asks_model=False)], default=str).encode()).hexdigest()
+
+
+def _done(target: Path, digest: str) -> dict[str, Any] | None:
+    try:
+        told = json.loads((target / "drive.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return told if isinstance(told, dict) and told.get("digest") == digest else None
+
+
+def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path, digest: str) -> dict[str, Any]:
+    started, staging = time.perf_counter(), told.staging
+    about: dict[str, Any] = {
+        "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
+        "release_s": order.release_s, "factor": order.factor, "digest": digest,
+        "script_contact_s": round(staging.contact_s, 3) if staging.contact else None,
+    }  # fmt: skip
+    try:
+        driven = drive(staging, entry.driver, release_s=order.release_s, factor=order.factor)
+    except SgcadError as fault:
+        return about | {"outcome": "failed", "reason": str(fault)}
+    about |= came(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
+    about |= {"seconds": round(time.perf_counter() - started, 4)}
+    _leave(driven, about | {"series": series(driven)}, target, order)
+    return about
+
+
+def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
+    """The drive's files, whole or not at all."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with temp_folders.beside(target) as partial:
+        partial.chmod(0o755)
+        case_folder.write_trajectories(partial / "trajectories.csv", driven.trajectories)
+        if order.pages:
+            from flows.drive.page import page
+
+            (partial / "drive.html").write_text(page(driven, told), encoding="utf-8")
+        case_folder.write_json(partial / "drive.json", told)
+        shutil.rmtree(target, ignore_errors=True)
+        partial.rename(target)
+
+
+def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[dict[str, Any]]:
+    """Drive many cases, some at a time; results as they come, in the order of the folders, failures among them.
+
+    Nothing is kept: who wants many results counts them.
+    """
+    if jobs <= 1 or len(folders) == 1:
+        for folder in folders:
+            yield from _safely(folder, order)
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from functools import partial
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        work = partial(_safely, order=order)
+        for found in pool.map(work, folders):
+            yield from found
+
+
+def _safely(folder: Path, order: Order) -> list[dict[str, Any]]:
+    try:
+        return drive_folder(folder, order)
+    except SgcadError as fault:
+        return [{"case": folder.name, "driver": "", "role": "", "ego": "", "outcome": "failed", "reason": str(fault)}]

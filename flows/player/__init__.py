@@ -1,0 +1,1 @@
+"""The player page and the overview picture of a case, and any scenario file in the player."""

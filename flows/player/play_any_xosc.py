@@ -1,0 +1,150 @@
+"""`sgcad play`: any scenario file in our player, as a table of motion, a page, contacts and metrics.
+
+Knows the player's files and the page; no report, no config. What is played otherwise than the file may mean it stands
+in played.json and in the page; what the player lacks ends with an error that names the element and its line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flows.case import case_folder
+from flows.player import player_page
+from flows.player.player_data import COLORS, Mover, View
+from flows.player.road_shapes import Drawing, Strip
+from sgcad_core.case.records import ActorInfo, CrashReport, Execution, ObservedContact, Scenario
+from sgcad_core.errors import ConfigError
+from sgcad_core.execution.contact import first_contact
+from sgcad_core.formats.openscenario.playing.body import Body
+from sgcad_core.formats.openscenario.playing.player import Played
+from sgcad_core.formats.openscenario.reading.files import Variation, play_file, variations
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.metrics import measure
+from sgcad_core.records.specs import ActorKind
+from sgcad_core.result import CaseRecord
+
+BESIDE_M = 60.0
+"""The map is drawn as far as this around where entities go."""
+_KINDS: dict[str, ActorKind] = {
+    "car": "car", "van": "van", "truck": "truck", "semitrailer": "trailer", "trailer": "trailer", "bus": "bus",
+    "motorbike": "motorcycle", "bicycle": "bicycle", "train": "bus", "tram": "bus", "Pedestrian": "pedestrian",
+    "MiscObject": "object",
+}  # fmt: skip
+
+
+def play(file: Path, out: Path, given: Sequence[str], maps: Sequence[Path], most: int, until_s: float) -> list[Path]:
+    """Play a scenario file, or the parameter sets of a distribution file; the folders that were written.
+
+    `given`: NAME=VALUE for parameters. Raises ConfigError, BadInput, InvalidOutput, Unsupported.
+    """
+    asked = variations(file, _parameters(given))
+    written = []
+    for variation in asked[:most]:
+        folder = out / file.stem / variation.name if variation.name else out / file.stem
+        _one(variation, folder, maps, until_s, len(asked))
+        written.append(folder)
+    return written
+
+
+def _parameters(given: Sequence[str]) -> dict[str, str]:
+    if wrong := next((entry for entry in given if "=" not in entry), None):
+        raise ConfigError(f"--set {wrong}: write NAME=VALUE")
+    return dict(entry.split("=", 1) for entry in given)
+
+
+def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: float, of: int) -> None:
+    played, xodr = play_file(variation, maps, until_s=until_s)
+    actors = [_info(name, played.bodies[name]) for name in (t.actor for t in played.trajectories)]
+    sizes = {a.id: (a.length_m, a.width_m) for a in actors}
+    execution = Execution(
+        simulator="player", trajectories=played.trajectories, contact=first_contact(played.trajectories, sizes)
+    )
+    metrics = measure(execution, Scenario(actors=tuple(actors)))
+    folder.mkdir(parents=True, exist_ok=True)
+    case_folder.write_trajectories(folder / "trajectories.csv", played.trajectories)
+    case_folder.write_json(folder / "contacts.json", [c.model_dump() for c in _contacts(played, sizes)])
+    case_folder.write_json(folder / "metrics.json", metrics)
+    case_folder.write_json(folder / "played.json", _played_row(variation, played, of))
+    view = _view(variation, played, execution, metrics, actors, xodr)
+    (folder / "player.html").write_text(player_page.page(view), encoding="utf-8")
+
+
+def _contacts(played: Played, sizes: Mapping[str, tuple[float, float]]) -> list[ObservedContact]:
+    """First contact of every pair that touches while both are there, in order of time; not of what is hitched on."""
+    found = []
+    for a, b in combinations(played.trajectories, 2):
+        first, second = played.bodies[a.actor], played.bodies[b.actor]
+        contact = None if first.tow is second or second.tow is first else first_contact((a, b), sizes)
+        if contact and all(_there(played, name, contact.t_s) for name in (a.actor, b.actor)):
+            found.append(contact)
+    return sorted(found, key=lambda contact: contact.t_s)
+
+
+def _there(played: Played, name: str, t_s: float) -> bool:
+    begin, end = played.presence[name]
+    return begin - 1e-9 <= t_s <= end + 1e-9
+
+
+def _info(name: str, body: Body) -> ActorInfo:
+    kind = _KINDS.get(body.category) or _KINDS.get(body.kind, "car")
+    return ActorInfo(id=name, type=kind, length_m=body.box.length_m, width_m=body.box.width_m, maneuver="other")
+
+
+def _played_row(variation: Variation, played: Played, of: int) -> dict[str, Any]:
+    return {
+        "file": variation.file.name,
+        "set": variation.name,
+        "sets": of,
+        "parameters": variation.given,
+        "seconds": round(float(played.trajectories[0].t_s[-1]), 6),
+        "entities": [
+            {"name": t.actor, "from_s": played.presence[t.actor][0], "to_s": played.presence[t.actor][1]}
+            for t in played.trajectories
+        ],
+        "notes": [{k: v for k, v in note.model_dump().items() if v} for note in played.notes],
+    }
+
+
+# ------------------------------------------------------------------ page
+def _view(
+    variation: Variation,
+    played: Played,
+    execution: Execution,
+    metrics: Mapping[str, Any],
+    actors: Sequence[ActorInfo],
+    xodr: str | None,
+) -> View:
+    pairs = enumerate(zip(actors, played.trajectories, strict=True))
+    movers = [Mover(actor, track, COLORS[k % len(COLORS)]) for k, (actor, track) in pairs]
+    seen = execution.contact.model_dump() if execution.contact else None
+    result = {
+        "status": "played",
+        "collision": {"declared": None, "realised": False, "observed": seen},
+        "network": None,
+        "grounding": {},
+        "attempts": {"road": 0, "scenario": 0},
+        "seconds": {},
+    }
+    notes = "\n".join(note.line() for note in played.notes)
+    report = CrashReport(case=variation.file.stem, narrative=notes or "Played as the file says, without notes.")
+    record = CaseRecord(case=variation.file.stem, config=variation.name or "player", execution=execution)
+    return View(record, report, metrics, result, _drawing(xodr, played), tuple(movers))
+
+
+def _drawing(xodr: str | None, played: Played) -> Drawing:
+    """The lanes near the entities."""
+    if xodr is None:
+        return Drawing(areas=(), strips=(), lines=())
+    x, y = (np.concatenate([getattr(t, axis) for t in played.trajectories]) for axis in ("x_m", "y_m"))
+    low, high = np.array([x.min(), y.min()]) - BESIDE_M, np.array([x.max(), y.max()]) + BESIDE_M
+    strips = [
+        Strip(points, width_m, cars)
+        for points, width_m, cars in XodrRoads(xodr).strips()
+        if ((points >= low) & (points <= high)).all(axis=1).any()
+    ]
+    return Drawing(areas=(), strips=tuple(strips), lines=())

@@ -1,0 +1,208 @@
+"""What a case looks like: everything that the player and the picture show, in plain values.
+
+Knows records and the network drawing; no HTML, no matplotlib.
+"""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from flows.player.player_highlights import facts_by_thing, road_along, road_axes, sentences_of
+from flows.player.road_shapes import Drawing, drawing_of
+from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
+from sgcad_core.geometry.plane import Box, overlap_polygon
+from sgcad_core.metrics.conflict import Track, box_distance, time_to_collision
+from sgcad_core.reading.text.traced_text import redactions
+from sgcad_core.result import CaseRecord
+
+COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
+"""Okabe and Ito's palette (told apart by color-blind readers); first red and blue, as crash diagrams draw V1 and V2."""
+DIAGRAM_LIMIT = 3
+"""Diagrams shown beside a player."""
+
+
+@dataclass(frozen=True)
+class Mover:
+    """One actor with its motion and color."""
+
+    info: ActorInfo
+    track: Trajectory
+    color: str
+
+
+@dataclass(frozen=True)
+class View:
+    """One executed case."""
+
+    record: CaseRecord
+    report: CrashReport
+    metrics: Mapping[str, Any]
+    result: Mapping[str, Any]
+    drawing: Drawing
+    movers: tuple[Mover, ...]
+    runs: Mapping[str, Sequence[Trajectory]] = field(default_factory=dict)
+    """Other runs of the same scenario, such as with drivers, by name."""
+    name: str = "script"
+    """What this run is called beside another one."""
+    over: str = ""
+    """The other run that is shown over this one from the start."""
+
+    @staticmethod
+    def of(
+        record: CaseRecord,
+        report: CrashReport,
+        metrics: Mapping[str, Any],
+        result: Mapping[str, Any],
+        runs: Mapping[str, Sequence[Trajectory]] | None = None,
+    ) -> View:
+        """Gather what is shown. Raises InvalidOutput where the network cannot be read."""
+        network, scenario, execution = record.network, record.scenario, record.execution
+        if not (network and network.net_xml and scenario and execution):
+            raise ValueError(f"case {record.case}: nothing was executed, so there is nothing to show")
+        infos = {actor.id: actor for actor in scenario.actors}
+        movers = tuple(
+            Mover(infos[track.actor], track, COLORS[k % len(COLORS)])
+            for k, track in enumerate(execution.trajectories)
+            if track.actor in infos
+        )
+        return View(record, report, metrics, result, drawing_of(network.net_xml), movers, runs or {})
+
+    def contact_point(self) -> tuple[float, float] | None:
+        """Middle of the first overlap, metres; None if nothing touched."""
+        contact = self.record.execution.contact if self.record.execution else None
+        boxes = [self._box(actor, contact.t_s) for actor in (contact.actor, contact.other)] if contact else []
+        if len(boxes) != 2 or boxes[0] is None or boxes[1] is None:
+            return None
+        middle = overlap_polygon(boxes[0], boxes[1]).mean(axis=0)
+        return float(middle[0]), float(middle[1])
+
+    def pair(self) -> tuple[Mover, Mover] | None:
+        """The two that touch, come near each other, or are declared to touch."""
+        near = (self.result.get("near_crash") or {}).get("observed")
+        collision = self.result["collision"]
+        told = collision["observed"] or near or collision["declared"] or {}
+        names = [told.get("actor") or told.get("striker"), told.get("other") or told.get("struck")]
+        found = [mover for name in names for mover in self.movers if mover.info.id == name]
+        return (found[0], found[1]) if len(found) == 2 else None
+
+    def _nearness(self, run: Sequence[Trajectory] = ()) -> dict[str, Any] | None:
+        """Of the pair, over time: metres between the outlines, and seconds until they touch at constant velocity.
+
+        `run`: how it is in another run; None where one of both has no motion there.
+        """
+        pair = self.pair()
+        if pair is not None and run:
+            tracks = {t.actor: t for t in run}
+            found = [replace(m, track=tracks[m.info.id]) for m in pair if m.info.id in tracks]
+            pair = (found[0], found[1]) if len(found) == 2 else None
+        if pair is None:
+            return None
+        first, second = (_track(mover) for mover in pair)
+        ttc = time_to_collision(first, second)
+        return {
+            "pair": [mover.info.id for mover in pair],
+            "clearance_m": _rounded(box_distance(first, second), 2),
+            "ttc_s": [round(v, 2) if math.isfinite(v) else None for v in ttc.tolist()],
+        }
+
+    def _box(self, actor: str, t_s: float) -> Box | None:
+        mover = next((m for m in self.movers if m.info.id == actor), None)
+        if mover is None:
+            return None
+        track = mover.track
+        k = int(np.abs(track.t_s - t_s).argmin())
+        pose = float(track.x_m[k]), float(track.y_m[k]), float(track.heading_rad[k])
+        return Box(*pose, mover.info.length_m, mover.info.width_m)
+
+    def as_json(self) -> dict[str, Any]:
+        """What the page's script reads; centimetres and milliradians are kept, no more."""
+        contact = dict(self.result["collision"]["observed"] or {})
+        if point := self.contact_point():
+            contact |= {"x": round(point[0], 2), "y": round(point[1], 2)}
+        return {
+            "case": self.record.case,
+            "config": self.record.config,
+            "status": self.result["status"],
+            "collision": {**self.result["collision"], "observed": contact or None},
+            "near_crash": self.result.get("near_crash"),
+            "account": self.result.get("account"),
+            "redactions": redactions(self.report.places),
+            "network": self.result["network"],
+            "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
+            "actors": [_actor(mover) for mover in self.movers],
+            "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
+            "near": self._nearness(),
+            "runs": [
+                {"name": name, "actors": [_path(t) for t in tracks], "near": self._nearness(tracks)}
+                for name, tracks in self.runs.items()
+            ],
+            "name": self.name,
+            "over": self.over,
+            "conditions": _conditions(self.record.scenario),
+            "narrative": self.report.narrative,
+            "sentences": sentences_of(self.report, self.result.get("facts", ())),
+            "facts": facts_by_thing(self.result.get("facts", ())),
+            "diagrams": [_data_url(d.png) for d in self.report.diagrams[:DIAGRAM_LIMIT]],
+            "metrics": self.metrics,
+            "grounding": self.result["grounding"],
+            "attempts": self.result["attempts"],
+            "seconds": self.result["seconds"],
+        }
+
+
+def _track(mover: Mover) -> Track:
+    t = mover.track
+    velocity = np.column_stack((t.speed_mps * np.cos(t.heading_rad), t.speed_mps * np.sin(t.heading_rad)))
+    pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+    return Track(t.t_s, pose, velocity, (mover.info.length_m, mover.info.width_m))
+
+
+def _actor(mover: Mover) -> dict[str, Any]:
+    return {**mover.info.model_dump(), "color": mover.color, **_path(mover.track)}
+
+
+def _path(track: Trajectory) -> dict[str, Any]:
+    return {
+        "id": track.actor,
+        "x": _rounded(track.x_m, 2),
+        "y": _rounded(track.y_m, 2),
+        "heading": _rounded(track.heading_rad, 3),
+        "speed": _rounded(track.speed_mps, 2),
+        **({} if track.roll_rad is None else {"roll": _rounded(track.roll_rad, 2)}),
+    }
+
+
+def _drawing(drawing: Drawing, axes: Mapping[str, float]) -> dict[str, Any]:
+    strips = ([round(s.width_m, 2), int(s.cars), _rounded(s.points.ravel(), 2), road_along(s, axes)]
+              for s in drawing.strips)  # fmt: skip
+    return {
+        "areas": [_rounded(a.ravel(), 2) for a in drawing.areas],
+        "strips": list(strips),
+        "lines": [[line.style, _rounded(line.points.ravel(), 2)] for line in drawing.lines],
+        "crossings": [[round(c.width_m, 2), _rounded(c.points.ravel(), 2)] for c in drawing.crossings],
+        "cones": _rounded(drawing.cones.ravel(), 2),
+        "gores": [_rounded(gore.ravel(), 2) for gore in drawing.gores],
+        "marks": [
+            [m.kind, round(m.x_m, 2), round(m.y_m, 2), round(m.heading_rad, 3), m.directions] for m in drawing.marks
+        ],
+    }
+
+
+def _conditions(scenario: Scenario | None) -> dict[str, str]:
+    behavior = scenario.behavior if scenario else None
+    found = {"light": behavior.light, "weather": behavior.weather, "surface": behavior.surface} if behavior else {}
+    return {name: str(value) for name, value in found.items() if value}
+
+
+def _rounded(values: Floats, digits: int) -> list[float]:
+    return [round(v, digits) for v in values.tolist()]
+
+
+def _data_url(png: bytes) -> str:
+    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")

@@ -1,0 +1,1 @@
+"""Figures of a study: plots, scenes, the case gallery."""

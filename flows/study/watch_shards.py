@@ -1,0 +1,132 @@
+"""Watching the shards of a study: who has one, whose lease stands still, what has come home.
+
+Prefect leaves the run of a killed worker RUNNING for good, and a pool's limit counts it; so whoever started the
+study watches: a run without a sign of life is given up (marked crashed, which frees its place) and its shard is
+submitted again. Finished cases are found by their marks; only what was running is done again. The watcher may
+die too: started again it reads the marks and goes on. Knows runs by their ids only, no Prefect, and no clock
+but the one it is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+from flows.study.shard_lease import lease_name
+from flows.study.shards import Work
+from flows.study.shared_storage import Mark, Share, Unreachable
+from sgcad_core.errors import ConfigError
+
+State = Literal["waiting", "taken", "ended"]
+PATIENCE_S = 60.0
+"""A lease that stands still for so long is lost: twelve beats, longer than a switch needs to come back."""
+START_S = 180.0
+"""From a worker's taking a run to its lease: a process, Prefect's import, on a busy machine."""
+FRUITLESS = 3
+"""So many runs of a shard in a row that end without a new case end the study."""
+
+
+class Pool(Protocol):
+    """Where runs are submitted."""
+
+    def submit(self, shard: int) -> str:
+        """Ask for a run of a shard; its id."""
+
+    def states(self, runs: Sequence[str]) -> dict[str, tuple[State, str]]:
+        """State of each run, with the message it ended with."""
+
+    def give_up(self, run: str, reason: str) -> None:
+        """Mark a run as crashed, whatever it does."""
+
+
+@dataclass
+class _Turn:
+    """A shard's latest run: since when its lease stands still, and how often the shard came to nothing."""
+
+    run: str
+    since: float
+    left: int
+    seen: int = -1
+    fruitless: int = 0
+
+
+@dataclass
+class Watch:
+    """Submits shards and keeps them going; call `step` until it says that nothing is left."""
+
+    share: Share
+    pool: Pool
+    shards: Sequence[Sequence[Work]]
+    on_mark: Callable[[Mark], None]
+    patience_s: float = PATIENCE_S
+    start_s: float = START_S
+    again: list[str] = field(default_factory=list)
+    _turns: dict[int, _Turn] = field(default_factory=dict)
+    _home: set[str] = field(default_factory=set)
+
+    def step(self, now: float) -> bool:
+        """Look once; False when every job has ended and is home. Raises ConfigError for a shard that never moves."""
+        states = self.pool.states([turn.run for turn in self._turns.values()])  # before the marks: a run that ends
+        ended = self.share.names("done/") | self.share.names("failed/")  # in between has its last mark among them
+        self._bring_home(ended)
+        left = {n: sum(not ({w.mark, w.failure} & ended) for w in shard) for n, shard in enumerate(self.shards)}
+        open_shards = [n for n, jobs in left.items() if jobs]
+        self._turns = {n: turn for n, turn in self._turns.items() if left[n]}
+        for number in open_shards:
+            if number in self._turns:
+                self._look(number, left[number], states[self._turns[number].run], now)
+            else:
+                self._turns[number] = _Turn(self.pool.submit(number), now, left[number])
+        return bool(open_shards)
+
+    def _bring_home(self, ended: set[str]) -> None:
+        wanted = {name for shard in self.shards for work in shard for name in (work.mark, work.failure)}
+        for name in sorted((ended & wanted) - self._home):
+            if mark := self.share.mark(name):
+                self.on_mark(mark)
+                self._home.add(name)
+
+    def _look(self, number: int, left: int, told: tuple[State, str], now: float) -> None:
+        turn, (state, message) = self._turns[number], told
+        if state == "ended":
+            self._submit_again(number, left, f"ended with {left} jobs left ({message})", now)
+        elif state == "waiting" or self._moved(number, turn):
+            turn.since = now
+        elif now - turn.since > (self.patience_s if turn.seen >= 0 else self.start_s):
+            reason = f"no sign of life for {now - turn.since:.0f} s"
+            self.pool.give_up(turn.run, reason)
+            self._submit_again(number, left, reason, now)
+
+    def _moved(self, number: int, turn: _Turn) -> bool:
+        """Whether the run's lease counts on."""
+        held = self.share.json(lease_name(number))
+        if held is None or held["run"] != turn.run or held["count"] == turn.seen:
+            return False
+        turn.seen = held["count"]
+        return True
+
+    def _submit_again(self, number: int, left: int, reason: str, now: float) -> None:
+        turn = self._turns[number]
+        fruitless = turn.fruitless + 1 if left == turn.left else 0
+        if fruitless >= FRUITLESS:
+            raise ConfigError(
+                f"shard {number} came to nothing {fruitless} times in a row, at last: {reason}; look at flow run "
+                f"{turn.run} and mend what it says, then start the study again"
+            )
+        self.again.append(f"shard {number}: {reason}")
+        self._turns[number] = _Turn(self.pool.submit(number), now, left, fruitless=fruitless)
+
+
+def follow(watch: Watch, clock: Callable[[], float], wait: Callable[[], None], cut_s: float = 600.0) -> None:
+    """Step until everything is home. A storage that does not answer is waited for, `cut_s` seconds at most."""
+    fine = clock()
+    while True:
+        try:
+            if not watch.step(clock()):
+                return
+            fine = clock()
+        except Unreachable:
+            if clock() - fine > cut_s:
+                raise
+        wait()

@@ -1,1 +1,0 @@
-"""The embedded vision-language model: its report generator, renderer, trainer and weights."""

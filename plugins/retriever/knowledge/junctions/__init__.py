@@ -1,0 +1,1 @@
+"""Real junctions of OpenStreetMap extracts as chunks."""

@@ -1,0 +1,1 @@
+"""Runnable snippets on scenariogeneration, and how they become chunks."""

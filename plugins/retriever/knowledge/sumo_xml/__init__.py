@@ -1,0 +1,1 @@
+"""SUMO's plain-XML elements and attributes as chunks."""

@@ -1,0 +1,1 @@
+"""What is not shipped: generator of made reports, renderer, model training, benchmarks."""

@@ -1,0 +1,1 @@
+"""Benchmarks of decoding, retrieval, the evidence gate and the model."""

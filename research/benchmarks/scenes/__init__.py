@@ -1,0 +1,1 @@
+"""Benchmarks of roads, plans and players."""

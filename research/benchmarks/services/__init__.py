@@ -1,0 +1,1 @@
+"""Benchmarks of cost: stages, batches, services, several machines."""

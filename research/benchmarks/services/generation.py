@@ -1,0 +1,75 @@
+"""How often files and scenarios came out right, and where the others failed: the table of a runs folder.
+
+    python -m research.benchmarks.services.generation runs [CONFIG ...]
+
+Reads result.json and attempts/ of every case. First attempt and last are given apart: what a model writes by
+itself, and what refinement makes of it. Counts are per file (AER, the paper's) and per scenario (GSR).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from sgcad_core.case.records import Finding
+from sgcad_core.metrics.generation import LAYERS, AttemptSeen, CaseSeen, Layer, Quality, quality
+
+HEAD = (
+    "| config | cases | refused | GSR first | GSR | AER first | AER | scenarios with an error, first | last | "
+    "attempts a case | files failed at first by layer | after refinement |"
+)
+
+
+def cases_of(config: Path) -> Iterator[CaseSeen]:
+    """The finished cases of one config's folder."""
+    for file in sorted(config.glob("*/result.json")):
+        result = json.loads(file.read_text(encoding="utf-8"))
+        attempts = (_attempt(place) for place in sorted((file.parent / "attempts").glob("*-*")))
+        yield CaseSeen(result["status"], tuple(attempts))
+
+
+def _attempt(place: Path) -> AttemptSeen:
+    stage = place.name.rsplit("-", 1)[0]
+    if stage not in ("road", "scenario"):
+        raise SystemExit(f"{place}: no attempt of a stage; expected road-NN or scenario-NN")
+    findings = json.loads((place / "findings.json").read_text(encoding="utf-8"))
+    return AttemptSeen("road" if stage == "road" else "scenario", tuple(Finding(**f) for f in findings))
+
+
+def table(runs: Path, configs: list[str]) -> str:
+    """The Markdown table of all configs in a folder, or of those named."""
+    folders = [runs / c for c in configs] or sorted(p for p in runs.iterdir() if p.is_dir())
+    found = {folder.name: quality(cases) for folder in folders if (cases := list(cases_of(folder)))}
+    lines = [HEAD, "|" + "---|" * (HEAD.count("|") - 1), *(_row(name, q) for name, q in found.items())]
+    return "\n".join(lines)
+
+
+def _row(name: str, q: Quality) -> str:
+    shares = (
+        q.first_success, q.success, q.first_file_errors, q.file_errors, q.first_scenario_errors, q.scenario_errors,
+    )  # fmt: skip
+    percents = " | ".join(f"{100 * share:.1f} %" for share in shares)
+    ends = f"{q.attempts:.1f} | {_layers(q.first_layers)} | {_layers(q.layers)}"
+    return f"| {name} | {q.cases} | {q.refused} | {percents} | {ends} |"
+
+
+def _layers(counts: Mapping[Layer, int]) -> str:
+    return ", ".join(f"{layer} {counts[layer]}" for layer in LAYERS if layer in counts) or "-"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", type=Path, help="the folder given to --out")
+    parser.add_argument("configs", nargs="*", help="config names; default: all")
+    options = parser.parse_args()
+    if not options.runs.is_dir():
+        raise SystemExit(f"{options.runs}: no such folder; give the one that `sgcad evaluate --out` wrote")
+    sys.stdout.write(table(options.runs, options.configs) + "\n")
+
+
+if __name__ == "__main__":
+    main()

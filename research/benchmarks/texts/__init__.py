@@ -1,0 +1,1 @@
+"""Benchmarks of reading: what share of reports is read right."""

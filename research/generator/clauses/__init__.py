@@ -1,0 +1,1 @@
+"""Clauses of made reports, fact by fact."""

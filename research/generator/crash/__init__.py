@@ -1,0 +1,1 @@
+"""Made crashes: roads, actors, motion, impacts."""

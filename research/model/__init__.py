@@ -1,0 +1,1 @@
+"""The architecture of the embedded model, its tokens and its answers."""

@@ -1,0 +1,72 @@
+"""Boxes on the ground, metres: how large the actors are drawn, where they stand and whether they share ground."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from research.renderer.lines import Points
+
+Size = tuple[float, float]
+"""Length and width, metres."""
+SIZES = {
+    "car": (4.8, 2.0),
+    "suv": (4.9, 2.1),
+    "pickup": (5.6, 2.1),
+    "van": (5.1, 2.1),
+    "truck": (13.0, 2.7),
+    "bus": (11.0, 2.7),
+    "motorcycle": (3.4, 1.5),
+    "bicycle": (3.0, 1.3),
+    "pedestrian": (1.2, 1.2),
+    "object": (1.4, 1.4),
+    "trailer": (10.0, 2.6),
+}
+"""Length and width in metres as drawn: what is small is drawn larger than it is, or nobody could tell what it is."""
+SIDE = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}
+
+
+@dataclass
+class Pose:
+    """Center and heading, metres and radians."""
+
+    x: float
+    y: float
+    heading: float
+
+
+def wrap(angle: Any) -> Any:
+    """An angle, or an array of them, to [-pi, pi)."""
+    return (angle + math.pi) % (2 * math.pi) - math.pi
+
+
+def half(size: Size, area: str) -> float:
+    """From the center to a side."""
+    return size[0] / 2 if area in ("front", "back") else size[1] / 2
+
+
+def overlap(first: Pose, size: Size, second: Pose, other: Size) -> bool:
+    """Whether two boxes share ground (separating axes)."""
+    boxes = corners(first, size), corners(second, other)
+    for heading in (first.heading, second.heading):
+        for angle in (heading, heading + math.pi / 2):
+            a, b = (box @ (math.cos(angle), math.sin(angle)) for box in boxes)
+            if a.max() <= b.min() or b.max() <= a.min():
+                return False
+    return True
+
+
+def corners(pose: Pose, size: Size) -> Points:
+    """The four corners of a box, (4, 2), front left first."""
+    return within(pose, size, [(0.5, 0.5), (0.5, -0.5), (-0.5, -0.5), (-0.5, 0.5)])
+
+
+def within(pose: Pose, size: Size, shares: Sequence[tuple[float, float]]) -> Points:
+    """World points (n, 2) of shares of a box: ahead and to the left of its middle."""
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    laid: Points = np.array(shares) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
+    return laid

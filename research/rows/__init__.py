@@ -1,0 +1,1 @@
+"""Training rows: reports as tokens, with labels."""

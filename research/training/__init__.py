@@ -1,0 +1,1 @@
+"""Trainers of the embedded model and of the learned reader."""

@@ -1,0 +1,90 @@
+"""What was made of a report, as the account's parts see it: the reading, the roads, the course of the execution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sgcad_core.account.records import Item
+from sgcad_core.account.words import phrase
+from sgcad_core.case.records import Execution, ObservedContact, RoadNetwork, Scenario, Trajectory
+from sgcad_core.execution.contact import observe
+from sgcad_core.execution.playback import sizes_of
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.geometry.plane import Size
+from sgcad_core.metrics.labels.motion_label_match import Path
+from sgcad_core.metrics.labels.observed_crash import Crash
+from sgcad_core.reading.reading import Reading
+from sgcad_core.records.facts import Fact, Value
+from sgcad_core.roads.compiled_facts import DrawnRoad, drawn_roads
+from sgcad_core.roads.lane_graph import LaneGraph
+
+
+@dataclass(frozen=True)
+class Made:
+    """One executed case. Roads are looked at as compiled, motion as executed: not what a writer says of them."""
+
+    reading: Reading
+    network: RoadNetwork
+    scenario: Scenario
+    execution: Execution
+    pictured: bool = False
+    """Whether a drawing may show lanes that the text does not count."""
+
+    @cached_property
+    def graph(self) -> LaneGraph:
+        """The compiled roads."""
+        return parse_net(self.network.net_xml or "<net/>")
+
+    @cached_property
+    def drawn(self) -> list[DrawnRoad]:
+        """The roads of the graph with their lanes and headings."""
+        return drawn_roads(self.graph)
+
+    @cached_property
+    def sizes(self) -> Mapping[str, Size]:
+        """Length and width by actor, metres."""
+        return sizes_of(self.scenario)
+
+    @cached_property
+    def tracks(self) -> Mapping[str, Trajectory]:
+        """Executed motion by actor."""
+        return {track.actor: track for track in self.execution.trajectories if track.actor in self.sizes}
+
+    @cached_property
+    def crash(self) -> Crash:
+        """The execution as the scorers see it."""
+        paths = {
+            name: Path(t.t_s, np.column_stack((t.x_m, t.y_m, t.heading_rad)), self.sizes[name])
+            for name, t in self.tracks.items()
+        }
+        return Crash(paths, self.graph)
+
+    @cached_property
+    def told(self) -> Mapping[str, Fact]:
+        """Facts read of the report, by name."""
+        return {fact.field: fact for fact in self.reading.facts}
+
+    def touch(self, t_s: float, pair: tuple[str, str]) -> ObservedContact:
+        """A contact that begins at a time, with the sides that touch."""
+        a, b = (self.tracks[name] for name in pair)
+        return observe(a, b, int(np.abs(a.t_s - t_s).argmin()), self.sizes)
+
+    def item(self, has: bool, field: str, value: Value, seen: Value = None, *, why: str = "", text: str = "") -> Item:
+        """Something told that the scenario has, or lacks and why; its sentence is that of the field's fact."""
+        fact = self.told.get(field)
+        place = (fact.start, fact.end) if fact else (None, None)
+        subject = ".".join(field.split(".")[:2]) if field.startswith(("roads", "contacts", "impacts")) else ""
+        subject = subject or (field.split(".")[1] if field.startswith(("vehicles", "others")) else field.split(".")[0])
+        return Item(
+            kind="has" if has else "lacks", field=field, subject=subject, value=value, seen=None if has else seen,
+            text=text or phrase(field, value), reason="" if has else why, start=place[0], end=place[1],
+        )  # fmt: skip
+
+
+def is_told(fact: Fact) -> bool:
+    """Whether a sentence, or a person, says it; what only follows from sentences is no telling."""
+    return fact.basis == "person" or (fact.basis == "text" and fact.status == "stated")

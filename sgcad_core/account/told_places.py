@@ -1,0 +1,120 @@
+"""Where somebody is told to be: at a stop sign, in a roundabout, on foot on one leg of the junction.
+
+A second look at the story's sentences that knows words only, held against where the scenario has them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from sgcad_core.account.inputs import Made
+from sgcad_core.account.records import Item
+from sgcad_core.geometry.distances import distance_to
+from sgcad_core.metrics.rest_error import COMPASS_DEG
+from sgcad_core.reading.language import rule, values
+from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES
+from sgcad_core.roads.compiled_facts import near
+
+_AT_SIGN, _AROUND, _ON_LEG = rule("account.at_sign"), rule("account.around"), rule("account.on_leg")
+_LEG_DEG = 50.0
+_ON_LANE_M = 2.0
+_APPROACH_S = 2.0
+"""Time before its first contact in which one who circulates is looked for on the circle."""
+
+
+def whereabouts_items(made: Made) -> Iterator[Item]:
+    """One item a thing told, the first time that it is told."""
+    found: dict[str, Item] = {}
+    for sentence in made.reading.sentences:
+        if sentence.role in STORY_ROLES:
+            for item in (*_at_sign(made, sentence), *_around(made, sentence), *_on_leg(made, sentence)):
+                found.setdefault(f"{item.field} {item.subject} {item.value}", item)
+    yield from found.values()
+
+
+def _item(has: bool, sentence: Sentence, about: tuple[str, str, str], text: str, why: str) -> Item:
+    what, subject, value = about
+    return Item(
+        kind="has" if has else "lacks", field=f"text.{what}", subject=subject, value=value, text=text,
+        reason="" if has else why, start=sentence.start, end=sentence.end,
+    )  # fmt: skip
+
+
+# ------------------------------------------------------------------ signs
+def _at_sign(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Who stops at a sign comes on a leg that has one."""
+    spec, behavior = made.network.spec, made.scenario.behavior
+    for match in _AT_SIGN.finditer(sentence.text):
+        actor = (
+            next((a for a in behavior.actors if a.id == made.reading.actor(match["who"])), None) if behavior else None
+        )
+        road = next((r for r in spec.roads if actor and r.id == actor.road), None) if spec else None
+        if spec is None or actor is None or road is None:
+            continue
+        end = road.to_node if actor.direction == "forward" else road.from_node
+        control = next(node.control for node in spec.nodes if node.id == end)
+        signed = control == "all_way_stop" or (control in ("stop", "yield", "flashing") and road.minor)
+        text = f"{actor.id} at its {match['sign']}"
+        about = ("sign", actor.id, match["sign"])
+        yield _item(signed, sentence, about, text, f"the road {road.id} on which it comes has no sign")
+
+
+# ------------------------------------------------------------------ roundabouts
+def _around(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Who circulates is on the circle before the first contact, in the told lane of it."""
+    for match in _AROUND.finditer(sentence.text):
+        if match["who"] in made.tracks and made.graph.circles:
+            lane = _circle_lane(made, match["who"])
+            inner = values("circle_lane").get((match["lane"] or "").lower())
+            fits = lane is not None and (inner is None or lane[0] == (lane[1] if inner == "inner" else 1))
+            seen = f"it is in lane {lane[0]} of {lane[1]} around" if lane else "it is not on the circle"
+            about = ("around", match["who"], match["lane"] or "circulates")
+            yield _item(fits, sentence, about, f"{match['who']} in the roundabout{f', {inner} lane' if inner else ''}",
+                        f"{seen} in the {_APPROACH_S:.0f} s before its contact")  # fmt: skip
+
+
+def _circle_lane(made: Made, who: str) -> tuple[int, int] | None:
+    """(lane from the outer edge, lanes) of the circle in which somebody comes to the contact; None: in none."""
+    path = made.crash.paths[who]
+    hit = made.crash.first_of(who)
+    early = max(0, int(np.searchsorted(path.t_s, float(path.t_s[hit]) - _APPROACH_S)))
+    at = path.pose[early : early + 1, :2]
+    lanes = [
+        (float(distance_to(lane.shape, at)[0]), place, len(edge.car_lanes))
+        for edge in made.graph.edges.values() if made.graph.is_around(edge)
+        for place, lane in enumerate(edge.car_lanes, 1)
+    ]  # fmt: skip
+    best = min(lanes, default=None)
+    return (best[1], best[2]) if best and best[0] <= _ON_LANE_M else None
+
+
+# ------------------------------------------------------------------ on foot
+def _on_leg(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Somebody on foot or on a bicycle who is told on one leg of the junction is struck there."""
+    match = _ON_LEG.search(sentence.text)
+    walker = next((name for name in made.tracks if name[0] in "PB"), None)
+    hub = _hub(made)
+    if not match or walker is None or hub is None:
+        return
+    at = made.crash.paths[walker].pose[made.crash.first_of(walker), :2]
+    bearing = math.atan2(float(at[1]) - hub[1], float(at[0]) - hub[0])
+    wanted = match["way"].upper()[0]
+    fits = near(bearing, math.radians(90.0 - COMPASS_DEG[wanted]), _LEG_DEG)
+    about = ("leg", walker, wanted)
+    yield _item(fits, sentence, about, f"{walker} on the {match['way'].lower()} leg", "it is struck elsewhere")
+
+
+def _hub(made: Made) -> tuple[float, float] | None:
+    """The place of the node where most edges meet."""
+    counts: dict[str, int] = {}
+    for edge in made.graph.edges.values():
+        counts[edge.to_node] = counts.get(edge.to_node, 0) + 1
+    most = max(counts, key=lambda node: counts[node], default=None)
+    if most is None or counts[most] < 3:
+        return None
+    node = made.graph.nodes[most]
+    return node.x_m, node.y_m

@@ -1,0 +1,156 @@
+"""What the text names and no fact carries: numbers nobody has, further vehicles, people and animals, places, contacts.
+
+A second look at the sentences that knows words only and trusts no reading: what the readers passed over is told all the
+same. Sentences that retell or judge (interviews, codes, injuries) are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sgcad_core.account.inputs import Made
+from sgcad_core.account.records import Item
+from sgcad_core.kinds import JUNCTIONS, ROUNDABOUT
+from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.text.normalise import NUMBERS, Sentence
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
+from sgcad_core.roads.compiled_facts import junctions
+
+_VEHICLE = rule("common.vehicle")
+_COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
+    rule("account.counted"), rule("account.further"), rule("account.animal"), rule("account.many_legs"),
+    rule("account.introduced"),
+)  # fmt: skip
+_TURNING = rule("deeds.turning")
+_ASIDE = ("lane_change", "merge", "overtaking", "crossing_centerline", "turn_", "u_turn", "departing_road")
+_SATISFIED_BY: dict[str, tuple[str, ...]] = {
+    "turn_left": ("turn_left", "u_turn", "merge"), "turn_right": ("turn_right", "merge"), "u_turn": ("u_turn",),
+    "lane_change_left": _ASIDE, "lane_change_right": _ASIDE, "lane_change": _ASIDE, "overtaking": _ASIDE,
+    "merge": _ASIDE, "crossing_centerline": _ASIDE, "departing_road_left": _ASIDE, "departing_road_right": _ASIDE,
+    "backing": ("backing",),
+}  # fmt: skip
+"""Deed in the text -> beginnings of the maneuvers that show it; other deeds come before and behind many maneuvers."""
+
+
+def unread_items(made: Made) -> Iterator[Item]:
+    """Items of the story's sentences, each thing once."""
+    story = [s for s in made.reading.sentences if s.role in STORY_ROLES]
+    found: dict[str, Item] = {}
+    for sentence in story:
+        for item in _of_sentence(made, sentence):
+            found.setdefault(f"{item.field} {item.value}", item)
+    yield from found.values()
+
+
+def _of_sentence(made: Made, sentence: Sentence) -> Iterator[Item]:
+    yield from _numbers(made, sentence)
+    yield from _further(made, sentence)
+    yield from _struck(made, sentence)
+    yield from _places(made, sentence)
+    yield from _contact(made, sentence)
+    yield from _deeds(made, sentence)
+
+
+def _lacks(sentence: Sentence, what: str, value: str, text: str, reason: str) -> Item:
+    return Item(
+        kind="lacks", field=f"text.{what}", subject="", value=value, text=text, reason=reason,
+        start=sentence.start, end=sentence.end,
+    )  # fmt: skip
+
+
+# ------------------------------------------------------------------ who
+def _named(made: Made, sentence: Sentence) -> set[str]:
+    """Ids of everybody whom a sentence names."""
+    return {made.reading.actor(m[0]) for m in _VEHICLE.finditer(sentence.text)}
+
+
+def _numbers(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Numbered vehicles that nobody read, and more vehicles counted than there are."""
+    known = {v.id for v in made.reading.crash.vehicles} | set(made.tracks)
+    for name in sorted(_named(made, sentence) - known):
+        who = next((f"{m['words']!r}" for m in _INTRODUCED.finditer(sentence.text) if m["id"] == name), name)
+        yield _lacks(sentence, "vehicle", name, f"{who} is named", "it is not in the scenario")
+    for match in _COUNTED.finditer(sentence.text):
+        count = NUMBERS.get(match["n"].lower()) or int(match["n"])
+        there = sum(name.startswith("V") for name in made.tracks)
+        if count > there:
+            text = f"{count} vehicles are told ({match[0]!r})"
+            yield _lacks(sentence, "vehicles", str(count), text, f"the scenario has {there}")
+
+
+def _further(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Vehicles without a number, in reports that number the others."""
+    if made.reading.crash.unnumbered:
+        return
+    for match in _FURTHER.finditer(sentence.text):
+        yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+
+
+def _struck(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """People and animals in sentences that tell a contact, where the scenario has nobody of their kind."""
+    if not is_impact(sentence.text):
+        return
+    kinds = [(user, str(user.yields["letter"])) for user in of_role("road_user")]
+    for user, letters in [*kinds, (_ANIMAL, "AO")]:
+        match = user.search(sentence.text)
+        if match and not any(name[0] in letters for name in made.tracks):
+            yield _lacks(sentence, "struck", match[0].lower(), f"{match[0]!r} in a contact", "not in the scenario")
+
+
+# ------------------------------------------------------------------ where
+def _places(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Junctions of a named kind that is not the one drawn."""
+    legs = {len(found) for found in junctions(made.graph)}
+    for match in _MANY_LEGS.finditer(sentence.text):
+        count = NUMBERS.get(match["n"].lower()) or int(match["n"])
+        if count not in legs:
+            yield _lacks(sentence, "junction", str(count), f"a junction of {count} legs", "drawn with fewer")
+    if made.reading.roads.junction.kind == ROUNDABOUT or made.graph.circles:
+        return
+    circle = next(rule(record.rule) for record in JUNCTIONS if record.round)
+    if named := circle.search(sentence.text):
+        yield _lacks(sentence, "junction", ROUNDABOUT, f"{named[0]!r} is named", "no roundabout is drawn")
+
+
+# ------------------------------------------------------------------ what happens
+def _contact(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """Two vehicles in a sentence that tells a contact, of whom no contact was read."""
+    if sentence.role != "impact" or made.reading.crash.near_crash:
+        return
+    names = _named(made, sentence)
+    crash = made.reading.crash
+    pairs = [{c.striker, c.struck} for c in crash.contacts if c.stated] + [{i.actor, i.other} for i in crash.impacts]
+    carried = any(f.start == sentence.start and f.field.startswith(("contacts", "impacts")) for f in made.reading.facts)
+    if len(names) > 1 and not carried and not any(pair <= names for pair in pairs):
+        who = " and ".join(sorted(names))
+        yield _lacks(sentence, "contact", who, f"a contact of {who} seems told", "nobody read it")
+
+
+def _deeds(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """A turn, a change of lane or the like before the first contact that none of the named vehicles makes or means."""
+    names = _named(made, sentence)
+    vehicles = [v for v in made.reading.crash.vehicles if v.id in names]
+    if not vehicles or sentence.start > _first_told(made):
+        return
+    done = {str(word) for v in vehicles for word in (v.maneuver, v.meant) if word}
+    done |= {"departing_road"} if made.reading.lost_control else set()
+    for deed, words in _told_deeds(sentence.text):
+        if not any(made_so.startswith(_SATISFIED_BY.get(deed, (deed,))) for made_so in done):
+            who = " and ".join(v.id for v in vehicles)
+            yield _lacks(sentence, "deed", f"{who} {deed}", f"{who}: {words!r}", "nobody there does so in the scenario")
+
+
+def _told_deeds(text: str) -> Iterator[tuple[str, str]]:
+    """(deed, words) of a sentence that tells what was done, not what could not be."""
+    if match := _TURNING.search(text):
+        side = next((g for name, g in match.groupdict().items() if name.startswith("side") and g), "")
+        yield f"turn_{side.lower()}", match[0].strip()
+    for deed in of_role("deed"):
+        if deed.yields["deed"] in _SATISFIED_BY and (match := deed.search(text)):
+            yield str(deed.yields["deed"]), match[0].strip()
+
+
+def _first_told(made: Made) -> int:
+    """Where the sentence of the first contact begins; the text's end where none is told."""
+    fact = made.told.get("contacts.0.striker")
+    return fact.start if fact and fact.start is not None else len(made.reading.narrative) * 2

@@ -1,0 +1,99 @@
+"""The evidence of one crash, as a reader gives it: narrative, diagrams, and what the rules read of the narrative.
+
+Knows no network and no scenario. The narrative is read at most once a case: `CrashReport.reading`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Self
+
+from pydantic import Field
+
+from sgcad_core.record_base import Record
+from sgcad_core.records.edits import Edit
+from sgcad_core.records.second_reader import Opinion
+
+if TYPE_CHECKING:
+    from sgcad_core.reading.reading import Reading
+
+
+class Diagram(Record):
+    """A crash diagram, always re-encoded as RGB PNG by the reader, so that later stages trust it."""
+
+    png: bytes = Field(repr=False)
+    width_px: int
+    height_px: int
+
+
+class ReadOnce(Record):
+    """A narrative that is read at most once (`reading`, a cached property). Fields alone are pickled and compared."""
+
+    narrative: str
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy; of another narrative nothing has been read yet."""
+        copied = super().model_copy(update=update, deep=deep)
+        if update:
+            copied.__dict__.pop("reading", None)
+        return copied
+
+    def __getstate__(self) -> dict[Any, Any]:
+        state = super().__getstate__()
+        return state | {"__dict__": {k: v for k, v in state["__dict__"].items() if k != "reading"}}
+
+
+class CrashReport(ReadOnce):
+    """What is known of one crash. `coded` is None unless the config sets use_coded_fields."""
+
+    case: str
+    narrative: str
+    diagrams: tuple[Diagram, ...] = ()
+    coded: Mapping[str, Any] | None = None
+    notes: tuple[str, ...] = ()
+    """What the reader changed or left out, for result.json and the log."""
+    edits: tuple[Edit, ...] = ()
+    """What people know better than the reading; they win over it (`sgcad_core.revision`)."""
+    places: tuple[tuple[int, int, int], ...] = Field((), repr=False)
+    """Where the narrative stands in the text as it was written (`sgcad_core.reading.text.traced_text.runs`); (): as it
+    is."""
+
+    opinion: Opinion | None = None
+    """What a model says of the crash's gist, where a config asks for a second opinion."""
+
+    @cached_property
+    def reading(self) -> Reading:
+        """What is read of the narrative, with places in the text as it was written: by the rules and, where there is a
+        second opinion, as both together have it; and all that as people have it."""
+        from sgcad_core.reading.reading import read
+        from sgcad_core.reading.reading_with_edits import mended  # patterns of half a second, which not everybody needs
+        from sgcad_core.reading.second_reader.fuse_gist import fused
+        from sgcad_core.reading.second_reader.fuse_whole import whole
+        from sgcad_core.reading.text.traced_text import placed
+
+        found = read(placed(self.narrative, self.places))
+        if self.opinion:
+            found = whole(found, self.opinion) if self.opinion.answered else fused(found, self.opinion)
+        return mended(found, self.edits)
+
+
+class Context(ReadOnce):
+    """CAD's c: the crash evidence, which the context-free row does not see."""
+
+    narrative: str
+    diagrams: tuple[Diagram, ...] = ()
+
+    @staticmethod
+    def of(report: CrashReport) -> Context:
+        """A report's evidence; its reading is the report's own."""
+        context = Context(narrative=report.narrative, diagrams=report.diagrams)
+        context.__dict__["reading"] = report.reading  # where cached_property keeps it
+        return context
+
+    @cached_property
+    def reading(self) -> Reading:
+        """What the rules read of the narrative."""
+        from sgcad_core.reading.reading import read
+
+        return read(self.narrative)

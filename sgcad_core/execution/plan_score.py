@@ -1,0 +1,162 @@
+"""What our own checks doubt in a planned behavior, as one number, and the reading that is doubted least.
+
+The checks are those of the validators `meeting` and `drivable`, and that the declared contact is the planned one; where
+a report tells a loss of control, odd driving is no doubt. Plans in ordinary driving only: a reading that needs force is
+no better than the first.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.case.records import Scenario, Trajectory
+from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.execution.contact import first_contact, realised
+from sgcad_core.metrics.drivability import WHEELED, driven, first_touches
+from sgcad_core.planner import plan
+from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.maneuver_visible import TURNED_RAD
+from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.inference.hypotheses import ONWARD, Hypothesis, hypotheses
+from sgcad_core.records.specs import BehaviorSpec, Maneuver, size_m
+from sgcad_core.roads.lane_graph import LaneGraph
+
+ODD_FROM = 0.5
+"""Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
+_UNMET, _OVER = 10.0, 1.0
+_AWRY_RAD: dict[Maneuver, float] = {
+    **dict.fromkeys(("straight", "slowing"), math.radians(30)),
+    **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
+}  # fmt: skip
+"""Who goes along a road and has turned by more is not seen to do so."""
+MOST = 4
+"""Other readings that are planned."""
+
+
+class Tried(NamedTuple):
+    """One reading that was planned: in what it differs, and what is left of the doubt."""
+
+    words: str
+    doubt: float
+
+
+class Least(NamedTuple):
+    """The facts that are doubted least, which reading they are ("" the first), and what was tried."""
+
+    facts: CrashFacts
+    words: str
+    tried: tuple[Tried, ...]
+
+    def notes(self) -> list[str]:
+        """What was tried, for result.json."""
+        if not self.tried:
+            return []
+        first, *others = self.tried
+        said = "; ".join(f"{one.words}: {one.doubt:.1f}" for one in others)
+        kept = self.words or "the first reading"
+        return [f"doubt {first.doubt:.1f} on the first reading; tried {said or 'no other'}; kept: {kept}"]
+
+
+def doubt(behavior: BehaviorSpec, motions: Sequence[Trajectory], oddity: float) -> float:
+    """0 where the declared pair meets as declared in ordinary driving; the more the less that is so."""
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    if behavior.contacts and not realised(behavior.contacts[0], first_contact(motions, sizes)):
+        return _UNMET
+    return (oddity if oddity >= ODD_FROM else 0.0) + _OVER * _undrivable(behavior, motions)
+
+
+def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
+    """Vehicles that leave the limits of driving before anything touches them."""
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    touches = first_touches(motions, sizes)
+    count = 0
+    for actor, track in zip(behavior.actors, motions, strict=True):
+        if actor.kind in WHEELED:
+            motion = driven(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+            count += bool(motion.excesses(behavior.surface))
+    return count
+
+
+def least_doubted(
+    facts: CrashFacts,
+    behave: Callable[[CrashFacts], BehaviorSpec],
+    graph: LaneGraph,
+    first: Scenario,
+    may_be: Callable[[CrashFacts], bool] = lambda facts: True,
+) -> Least:
+    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned,
+    `may_be`: whether another reading is possible at all (none that contradicts a person is).
+
+    What the text tells gives way only where the declared contact does not come about at all: on the development reports
+    a corner's other side and other headings resolved three doubts of seven, and each time the codes had it as it was
+    first read. What would resolve a doubt is told all the same. Of a report that numbers nobody a corner's other side
+    also stands in where the first one hides what somebody is told to do: the words fit both.
+    """
+    most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
+    if most <= 0.0:
+        return Least(facts, "", ())
+    hidden = first.behavior is not None and _hides(first.behavior, first.planned)
+    tried = [Tried("the first reading", most)]
+    best: tuple[float, CrashFacts, str] = (most, facts, "")
+    for other in [one for one in hypotheses(facts) if may_be(one.facts)][:MOST]:
+        left = _left(other, behave, graph)
+        if left is None:
+            continue
+        tried.append(Tried(other.words, left))
+        gives_way = other.open or most >= _UNMET or (other.corner and hidden)
+        if gives_way and left < ODD_FROM and left + other.price < best[0]:
+            best = (left + other.price, other.facts, other.words)
+        if left <= 0.0 and gives_way:
+            break
+    if best[0] >= _UNMET and (met := _by_force(facts, behave, graph)):
+        best = (met[1], met[0].facts, met[0].words)
+        tried.append(Tried(f"{met[0].words}, by force", met[1]))
+    return Least(best[1], best[2], tuple(tried))
+
+
+def _by_force(
+    facts: CrashFacts, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph
+) -> tuple[Hypothesis, float] | None:
+    """Somebody who does not slow, with whom the declared contact comes about at least in odd driving."""
+    for other in hypotheses(facts):
+        left = _left(other, behave, graph, by_force=True) if other.words.endswith(ONWARD) else None
+        if left is not None and left < _UNMET:
+            return other, left
+    return None
+
+
+def _hides(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> bool:
+    """Whether one of the first pair, before it is touched, turns though it goes straight, or hardly turns though it is
+    to turn."""
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    touches = first_touches(motions, sizes)
+    pair = {name for c in behavior.contacts[:1] for name in (c.striker, c.struck)}
+    return any(
+        _turned_otherwise(actor.maneuver, track, touches.get(actor.id, math.inf))
+        for actor, track in zip(behavior.actors, motions, strict=True)
+        if actor.id in pair
+    )
+
+
+def _turned_otherwise(maneuver: Maneuver, track: Trajectory, until_s: float) -> bool:
+    heading = np.asarray(track.heading_rad)[: int(np.searchsorted(track.t_s, until_s, side="right"))]
+    turned = float(np.unwrap(heading)[-1] - heading[0]) if len(heading) else 0.0
+    if maneuver in TURNING:
+        return (-turned if maneuver == "turn_right" else turned) < TURNED_RAD
+    return abs(turned) > _AWRY_RAD.get(maneuver, math.inf)
+
+
+def _left(
+    other: Hypothesis, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph, *, by_force: bool = False
+) -> float | None:
+    """The doubt that another reading leaves; None where it cannot be placed on the roads."""
+    try:
+        behavior = behave(other.facts)
+        planned = plan(behavior, graph, by_force=by_force)
+    except (InvalidOutput, Refused):
+        return None
+    return doubt(behavior, planned.trajectories, planned.oddity)

@@ -1,0 +1,1 @@
+"""What is wrong with an OpenDRIVE file, and an index of its roads and lanes."""

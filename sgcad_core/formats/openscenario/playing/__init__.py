@@ -1,0 +1,1 @@
+"""Scenario files played: entities, storyboard, positions, distances, signals."""

@@ -1,0 +1,1 @@
+"""Scenario files and catalogs read into elements, with expressions and distributions."""

@@ -1,0 +1,91 @@
+"""Catalogs beside a scenario file: entries by catalog and entry name, read from the folders that the file names.
+
+Reads regular .xosc and .xml files only, and of each folder no more than 200.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+
+from sgcad_core.errors import BadInput, InvalidOutput
+from sgcad_core.formats.openscenario.reading.elements import Book, Node, read_root
+
+MAX_FILES = 200
+MAX_BYTES = 20_000_000
+MAX_DEPTH = 10
+_SUFFIXES = (".xosc", ".xml", ".xodr")
+
+
+def read_text(file: Path) -> str:
+    """A scenario's or map's text. Raises BadInput for what is no such file, or too large."""
+    if file.suffix.lower() not in _SUFFIXES or not file.is_file():
+        raise BadInput(f"{file}: no such file ({', '.join(_SUFFIXES)} are read)")
+    if (size := file.stat().st_size) > MAX_BYTES:
+        raise BadInput(f"{file}: {size} bytes, at most {MAX_BYTES} are read")
+    data = file.read_bytes()
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def located(folder: Path, path: str) -> Path:
+    """A path in a file, relative to the folder that it lies in; Windows' separators are understood."""
+    return folder / path.replace("\\", "/")
+
+
+class CatalogFolders:
+    """Implements `read.Catalogs` for the folders in a file's <CatalogLocations>."""
+
+    def __init__(self, root: Node, folder: Path) -> None:
+        self._root, self._folder = root, folder
+
+    def entry(self, reference: Node) -> Node:
+        """The entry with its parameters assigned. Raises InvalidOutput naming what there is."""
+        if reference.book.depth >= MAX_DEPTH:
+            raise reference.fault(f"catalogs refer to each other more than {MAX_DEPTH} deep")
+        catalog, name = reference.text("catalogName"), reference.text("entryName")
+        if (catalog, name) not in self._entries:
+            known = ", ".join(entry for of, entry in self._entries if of == catalog)
+            names = ", ".join(sorted({of for of, _ in self._entries}))
+            has = f"{catalog} has: {known[:500]}" if known else f"catalogs found: {names[:500] or 'none'}"
+            raise reference.fault("no such catalog entry", f"{catalog}/{name}", has)
+        file, found = self._entries[catalog, name]
+        own = reference.book
+        book = Book(file.name, self, own.notes, own.strict, own.depth + 1)
+        return Node(found.element, reference.scope, book).scoped(_assigned(reference))
+
+    @cached_property
+    def _entries(self) -> dict[tuple[str, str], tuple[Path, Node]]:
+        found: dict[tuple[str, str], tuple[Path, Node]] = {}
+        for file in dict.fromkeys(self._files()):
+            root = read_root(read_text(file), book=Book(file.name))
+            if (catalog := root.find("Catalog")) is None:
+                continue
+            for entry in catalog.children():
+                found.setdefault((catalog.text("name"), entry.name), (file, entry))
+        for (_, name), place in list(found.items()):  # some call a catalog by its file
+            found.setdefault((place[0].stem, name), place)
+        return found
+
+    def _files(self) -> Iterator[Path]:
+        locations = self._root.find("CatalogLocations")
+        for kind in locations.children() if locations else ():
+            path = located(self._folder, kind.need("Directory").text("path"))
+            files = sorted(path.glob("*.xosc"))[: MAX_FILES + 1] if path.is_dir() else [path] if path.is_file() else []
+            if len(files) > MAX_FILES:
+                raise kind.fault(f"more than {MAX_FILES} catalog files in one folder", str(path))
+            yield from files
+
+
+def _assigned(reference: Node) -> dict[str, str]:
+    """Values that a reference gives to the entry's parameters."""
+    holder, given = reference.find("ParameterAssignments"), dict[str, str]()
+    for entry in holder.children("ParameterAssignment") if holder else ():
+        try:
+            given[str(entry.element.get("parameterRef", "")).lstrip("$")] = entry.text("value")
+        except InvalidOutput as fault:
+            entry.doubt(fault.findings[0].what, fault.findings[0].value, "the parameter's default is taken")
+    return given

@@ -1,0 +1,1 @@
+"""Plans written as OpenSCENARIO: timed polylines, maneuver events, logical scenarios."""

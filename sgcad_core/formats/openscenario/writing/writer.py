@@ -1,0 +1,192 @@
+"""Trajectories to OpenSCENARIO 1.0 to 1.3: timed world polylines for every actor, the same motion in every player.
+
+Lane following, routes and time-to-collision triggers differ between players by metres; absolute times,
+`position` following and condition edge `none` do not. Knows no planner and no road geometry.
+"""
+
+from __future__ import annotations
+
+import datetime
+import re
+import threading
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scenariogeneration import xosc
+from scenariogeneration.xosc.enumerations import VersionBase
+
+from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.opendrive.signals import Controller
+from sgcad_core.formats.openscenario.writing.entities import HEIGHT_M, center_ahead_m, entity, environment
+from sgcad_core.formats.openscenario.writing.events import EventActor, Handover, event_actors
+from sgcad_core.formats.openscenario.writing.parts import (
+    CrossSection,
+    Happening,
+    at_once,
+    at_time,
+    group,
+    number,
+    positions,
+)
+from sgcad_core.formats.openscenario.writing.vertices import settled, vertex_rows
+from sgcad_core.records.specs import BehaviorSpec
+
+Version = Literal["1.0", "1.1", "1.2", "1.3"]
+DEFAULT_VERSION: Version = "1.2"
+Encoding = Literal["timed", "events"]
+DEFAULT_ENCODING: Encoding = "timed"
+END = "EndTime"
+"""The file's parameter for people who cut a scenario short: when it stops, seconds."""
+_WRITING = threading.Lock()
+"""scenariogeneration keeps its version in a class: one file at a time."""
+DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
+"""Fixed, so that equal scenarios are equal files."""
+_NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def write_xosc(
+    actors: Sequence[ActorInfo],
+    trajectories: Sequence[Trajectory],
+    behavior: BehaviorSpec | None,
+    road_file: str = "road.xodr",
+    name: str = "crash",
+    version: Version = DEFAULT_VERSION,
+    handover: Handover | None = None,
+    signals: Sequence[Controller] = (),
+) -> str:
+    """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
+
+    What the file holds are the entities' origins, for vehicles the rear axle; trajectories are those of box centers.
+    One trajectory an actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise. The versions
+    differ in names and in what surroundings they can tell; the motion is the same. With a `handover` the plan is told
+    as maneuver events instead (`events`): near the trajectories until the contact, free behind it. `signals`: what the
+    map's controllers show in turn from the start on.
+    """
+    moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
+    minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
+    sizes = [(actor.width_m, HEIGHT_M[actor.type]) for actor in actors]
+    timed = [_Timed(settled(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
+    told = timed if handover is None else None
+    parts = told or event_actors(moves, reaches, handover or Handover())
+    with _WRITING:
+        VersionBase().setVersion(minor=minor)
+        scenario = xosc.Scenario(
+            _NOT_XML.sub("?", name),
+            "SG-CADVLM",
+            _parameters(moves),
+            _entities(actors, minor),
+            _storyboard(parts, environment(behavior, minor)),
+            _road_network(road_file, signals),
+            xosc.Catalog(),
+            osc_minor_version=minor,
+            creation_date=DATE,
+        )
+        root = scenario.get_element()
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _road_network(road_file: str, signals: Sequence[Controller]) -> xosc.RoadNetwork:
+    """The map, and the phases of its signals by the ids of its controllers."""
+    network = xosc.RoadNetwork(road_file)
+    for controller in signals:
+        told = xosc.TrafficSignalController(controller.id)
+        for k, shown in enumerate(controller.phases, 1):
+            phase = xosc.Phase(f"{k} {next(iter(shown.states.values()), 'off')}", number(shown.duration_s))
+            for head, state in shown.states.items():
+                phase.add_signal_state(head, state)
+            told.add_phase(phase)
+        network.add_traffic_signal_controller(told)
+    return network
+
+
+def _parameters(moves: Sequence[Trajectory]) -> xosc.ParameterDeclarations:
+    end = number(max(t.t_s[-1] for t in moves))
+    declared = xosc.ParameterDeclarations()
+    declared.add_parameter(xosc.Parameter(END, xosc.ParameterType.double, str(end)))
+    return declared
+
+
+def _paired(actors: Sequence[ActorInfo], trajectories: Sequence[Trajectory]) -> list[Trajectory]:
+    by_actor = {t.actor: t for t in trajectories}
+    ids = [a.id for a in actors]
+    if not ids or len(set(ids)) != len(ids) or sorted(by_actor) != sorted(ids) or len(trajectories) != len(ids):
+        raise InvalidOutput(f"actors {ids} and trajectories {[t.actor for t in trajectories]}: give each actor one")
+    for t in by_actor.values():
+        rows = np.column_stack((t.t_s, t.x_m, t.y_m, t.heading_rad))
+        if len(rows) < 2 or not np.isfinite(rows).all() or t.t_s[0] < 0 or (np.diff(t.t_s) <= 0).any():
+            raise InvalidOutput(f"trajectory of {t.actor}: needs two or more finite rows with rising times from 0")
+    return [by_actor[i] for i in ids]
+
+
+def origin_motion(actor: ActorInfo, center: Trajectory) -> Trajectory:
+    """The motion of the entity's origin, which lies behind the box center."""
+    ahead, heading = center_ahead_m(actor), center.heading_rad
+    x, y = center.x_m - ahead * np.cos(heading), center.y_m - ahead * np.sin(heading)
+    return center.model_copy(update={"x_m": x, "y_m": y})
+
+
+def _entities(actors: Sequence[ActorInfo], minor: int) -> xosc.Entities:
+    entities = xosc.Entities()
+    for actor in actors:
+        entities.add_scenario_object(actor.id, entity(actor, minor))
+    return entities
+
+
+@dataclass(frozen=True)
+class _Timed:
+    """One actor whose origin's whole motion is a timed polyline."""
+
+    move: Trajectory
+    ahead_m: float
+    size: CrossSection
+
+    @property
+    def first_mps(self) -> float:
+        return float(self.move.speed_mps[0])
+
+    def start(self) -> xosc.WorldPosition:
+        return positions(self.move, [0])[0]
+
+    def init_actions(self) -> tuple[object, ...]:
+        return ()
+
+    def group(self) -> xosc.ManeuverGroup:
+        name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
+        path = xosc.Trajectory(f"{name}_path", False)
+        path.add_shape(xosc.Polyline([number(self.move.t_s[k]) for k in rows], positions(self.move, rows, self.size)))
+        absolute = xosc.ReferenceContext.absolute
+        follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, 1.0, 0.0)
+        event = Happening(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
+        return group(name, {f"{name}_maneuver": [event]})
+
+
+def _storyboard(
+    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None
+) -> xosc.StoryBoard:
+    end = at_time("end", f"${END}", xosc.Rule.greaterThan, "stop")
+    board = xosc.StoryBoard(_init(actors, surroundings), end)
+    act = xosc.Act("act", at_once("start"))
+    for actor in actors:
+        act.add_maneuver_group(actor.group())
+    story = xosc.Story("crash", xosc.ParameterDeclarations())
+    story.add_act(act)
+    board.add_story(story)
+    return board
+
+
+def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None) -> xosc.Init:
+    init = xosc.Init()
+    if surroundings:
+        init.add_global_action(xosc.EnvironmentAction(surroundings))
+    step = xosc.TransitionDynamics(xosc.DynamicsShapes.step, xosc.DynamicsDimension.time, 0.0)
+    for actor in actors:
+        init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
+        for action in actor.init_actions():
+            init.add_init_action(actor.move.actor, action)
+        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(number(actor.first_mps), step))
+    return init

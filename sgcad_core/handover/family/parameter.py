@@ -1,0 +1,65 @@
+"""One thing that varies in a family: its distribution, the fact that it rests on, and why it is so wide.
+
+Latent values are standard normal and independent; a parameter's value is its distribution's quantile there. Draws none.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from itertools import accumulate
+from statistics import NormalDist
+from typing import Any, Literal
+
+from sgcad_core.record_base import Record
+
+_UNIT = NormalDist()
+Told = Literal["stated", "inferred", "default"]
+
+
+class Parameter(Record):
+    """One thing that varies. `normal`: cut to [low, high]; `uniform`: over it; `choice`: one of `values`."""
+
+    name: str
+    kind: Literal["normal", "uniform", "choice"]
+    mean: float
+    spread: float
+    """Standard deviation of a normal one."""
+    low: float
+    high: float
+    nominal: float
+    """The script's own value."""
+    told: Told
+    field: str
+    """The fact that it rests on; "" where the report is silent."""
+    reason: str
+    values: tuple[float, ...] = ()
+    """Of a choice, rising; `shares` are their probabilities, `words` what they stand for."""
+    shares: tuple[float, ...] = ()
+    words: tuple[str, ...] = ()
+
+    def value(self, latent: float) -> float:
+        """The quantile of a standard normal value."""
+        share = min(max(_UNIT.cdf(latent), 1e-9), 1 - 1e-9)
+        if self.kind == "uniform":
+            return self.low + share * (self.high - self.low)
+        if self.kind == "choice":
+            return self.values[min(bisect_right(list(accumulate(self.shares)), share), len(self.values) - 1)]
+        normal = NormalDist(self.mean, self.spread)
+        first, last = normal.cdf(self.low), normal.cdf(self.high)
+        return min(max(normal.inv_cdf(first + share * (last - first)), self.low), self.high)
+
+
+Facts = Mapping[str, Mapping[str, Any]]
+"""By field."""
+
+
+def field_at(actor: str, name: str) -> str:
+    """A fact's field of an actor."""
+    return f"{'vehicles' if actor.startswith('V') else 'others'}.{actor}.{name}"
+
+
+def told_of(known: Facts, field: str) -> Told:
+    """How a field is known."""
+    status = known.get(field, {}).get("status", "default")
+    return status if status in ("stated", "inferred") else "default"

@@ -1,0 +1,108 @@
+"""Whether a motion can be driven: sideways acceleration, yaw rate and slip angle of a box, and how far boxes overlap.
+
+Pure functions on trajectories. Knows sizes and the surface; not who was meant to meet whom, nor what a report tells.
+
+The box of a vehicle rolls without slip at its rear axle (the kinematic bicycle model: R. Rajamani, Vehicle Dynamics
+and Control, ch. 2.2), which lies `REAR_AXLE` of its length behind its center, as the writer of the .xosc has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from sgcad_core.case.records import Record, Trajectory
+from sgcad_core.geometry.plane import Floats, Size, box_gaps, wrap_angle
+from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.records.specs import ActorKind, Surface
+
+STEP_S = 0.05
+REAR_AXLE = 0.3
+"""From the center of a box to its rear axle, as a share of its length."""
+WHEELED: frozenset[ActorKind] = frozenset(
+    {"car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "trailer"}
+)
+_MOVING_MPS = 1.0
+"""A slower box tells no direction of travel."""
+
+
+class Driven(Record):
+    """The peaks of one motion: lateral acceleration (m/s2), yaw rate (rad/s) and slip at the rear axle (rad)."""
+
+    lateral_mps2: float
+    yaw_radps: float
+    slip_rad: float
+
+    def excesses(self, surface: Surface | None) -> tuple[str, ...]:
+        """What is over its limit, in words with value and limit; empty where everything can be driven."""
+        friction = DRIVING.friction_mps2(surface)
+        rows = (
+            ("lateral acceleration", self.lateral_mps2, friction, "m/s2"),
+            ("yaw rate", self.yaw_radps, DRIVING.yaw_radps, "rad/s"),
+            ("slip angle", float(np.degrees(self.slip_rad)), DRIVING.slip_deg, "degrees"),
+        )
+        return tuple(f"{what} {value:.1f} of {most:g} {unit}" for what, value, most, unit in rows if value > most)
+
+
+def driven(motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False) -> Driven:
+    """The peaks before the sample `until` (the first touch, which falls between that sample and the one before).
+
+    `backing`: the box is meant to travel against its heading, slip is told from that.
+    """
+    x, y, heading = (np.asarray(c, dtype=float)[:until] for c in (motion.x_m, motion.y_m, motion.heading_rad))
+    if len(x) < 3:
+        return Driven(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
+    heading = np.unwrap(heading)
+    center = np.column_stack((x, y))
+    ahead = np.column_stack((np.cos(heading), np.sin(heading)))
+    yaw = float(np.abs(np.diff(heading)).max()) / STEP_S
+    slip = _slip(center - REAR_AXLE * length_m * ahead, heading, backing=backing)
+    return Driven(lateral_mps2=_lateral(center), yaw_radps=yaw, slip_rad=slip)
+
+
+def _lateral(center: Floats) -> float:
+    """Peak acceleration across the direction of travel, from second differences of the positions."""
+    along = center[2:] - center[:-2]
+    gained = (center[2:] - 2 * center[1:-1] + center[:-2]) / STEP_S**2
+    way = np.hypot(*along.T)
+    across = np.abs(along[:, 0] * gained[:, 1] - along[:, 1] * gained[:, 0]) / np.maximum(way, 1e-9)
+    return float(np.where(way > 2 * STEP_S * 0.1, across, 0.0).max())
+
+
+def _slip(axle: Floats, heading: Floats, *, backing: bool) -> float:
+    step = np.diff(axle, axis=0)
+    middle = (heading[1:] + heading[:-1]) / 2 + (np.pi if backing else 0.0)
+    slip = np.abs(wrap_angle(np.arctan2(step[:, 1], step[:, 0]) - middle))
+    return float(np.where(np.hypot(*step.T) > _MOVING_MPS * STEP_S, slip, 0.0).max())
+
+
+# ------------------------------------------------------------------ overlaps
+def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> dict[str, int]:
+    """Actor -> the sample at which it first overlaps anybody; actors that never do are left out."""
+    found: dict[str, int] = {}
+    for a, b in combinations(motions, 2):
+        hits = np.flatnonzero(gaps(a, b, sizes) <= 0)
+        for name in (a.actor, b.actor) if len(hits) else ():
+            found[name] = min(found.get(name, len(a.t_s)), int(hits[0]))
+    return found
+
+
+def deepest(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False) -> tuple[float, str]:
+    """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and of whom.
+
+    The depth is the least way that parts the boxes. Pairs that overlap in the first sample are skipped: parts of one.
+    """
+    worst, who = 0.0, ""
+    for a, b in combinations(motions, 2):
+        gap = gaps(a, b, sizes)
+        depth = 0.0 if gap[0] <= 0 else -float(gap[-1] if at_rest else gap.min())
+        worst, who = (depth, f"{a.actor} and {b.actor}") if depth > worst else (worst, who)
+    return worst, who
+
+
+def gaps(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> Floats:
+    """Separation of two moving boxes at each sample, metres; negative where they overlap."""
+    first, second = (np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in (a, b))
+    return box_gaps(first, sizes[a.actor], second, sizes[b.actor])

@@ -1,0 +1,100 @@
+"""A result against the ground truth of its case: every field that the label states, as 1 right, 0 wrong or an error.
+
+Labels are the dictionaries of truth/<case>.json. What a run says about itself is not used: lanes and junctions are
+counted in its network, contacts found in its motion (`truth_motion`). A case without output counts as wrong. Knows
+no file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from sgcad_core.kinds import FOUR_LEG
+from sgcad_core.metrics.labels.motion_label_match import Path, motion_marks
+from sgcad_core.metrics.road_network import any_error, relative_error
+from sgcad_core.roads.lane_graph import RoadCounts, road_counts
+
+NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
+"""Errors; each also stands as `<name>_any`, 1 where there is any."""
+_LEGS = {"t": 3, FOUR_LEG: 4}
+
+Label = Mapping[str, Any]
+
+
+class Made(NamedTuple):
+    """What a generated case left behind: its roads in numbers, the paths of its actors (empty if none ran)."""
+
+    roads: RoadCounts
+    paths: Mapping[str, Path]
+
+
+class TruthFigures(NamedTuple):
+    """What a label states of the network; None where it cannot be read."""
+
+    intersections: int | None
+    components: int | None
+    mean_lanes: float | None
+
+
+def compare(label: Label, made: Made | None) -> dict[str, float]:
+    """field -> 1.0 right, 0.0 wrong, a share right, or an error in [0, 1]; fields left open are absent.
+
+    `made` is None for a case that was refused, exhausted, failed or cannot be read.
+    """
+    roads = made.roads if made else None
+    return {
+        **_network_errors(truth_figures(label), roads),
+        **_coded_roads(label, roads),
+        **motion_marks(label, made.paths if made else {}),
+    }
+
+
+def truth_figures(label: Label) -> TruthFigures:
+    """Counts of a label; mean lanes come from its segments, contracted as a made network's are."""
+    network = label["network"]
+    lanes = truth_lanes(label)
+    mean = road_counts(lanes).figures.mean_lanes if lanes else None
+    return TruthFigures(network.get("intersections"), network.get("components"), mean)
+
+
+def truth_lanes(label: Label) -> dict[tuple[str, str], int]:
+    """Lanes by (from, to) node of a label's segments; empty where it has none."""
+    found: dict[tuple[str, str], int] = {}
+    for segment in label["network"].get("segments") or ():
+        there, back = (segment["from"], segment["to"]), (segment["to"], segment["from"])
+        for ends, lanes in ((there, segment.get("lanes_towards_to")), (back, segment.get("lanes_towards_from"))):
+            if lanes:
+                found[ends] = found.get(ends, 0) + lanes
+    return found
+
+
+def _network_errors(truth: TruthFigures, roads: RoadCounts | None) -> dict[str, float]:
+    found: dict[str, float] = {}
+    made = roads.figures if roads else None
+    if truth.intersections is not None:
+        error = relative_error(truth.intersections, made.intersections) if made else 1.0
+        found["intersection_count_error"] = error
+    if truth.mean_lanes:
+        found["lane_count_error"] = relative_error(truth.mean_lanes, made.mean_lanes) if made else 1.0
+    if truth.components:
+        found["connectivity_error"] = float(made is None or made.components != truth.components)
+    return found | {f"{name}_any": any_error(error) for name, error in found.items()}
+
+
+def _coded_roads(label: Label, roads: RoadCounts | None) -> dict[str, float]:
+    """Lane totals of the trafficways named (with or without a two-way left-turn lane), and the number of legs."""
+    found: dict[str, float] = {}
+    coded = [road for road in label["network"].get("roads", ()) if road.get("lanes_total")]
+    if coded:
+        found["lanes_total"] = sum(_total_right(road, roads) for road in coded) / len(coded)
+    if legs := _LEGS.get(label["network"].get("layout_best") or ""):
+        found["legs"] = float(roads is not None and roads.max_degree == legs)
+    return found
+
+
+def _total_right(road: Mapping[str, Any], roads: RoadCounts | None) -> bool:
+    chains = roads.chains if roads else ()
+    undivided = road.get("lanes_scope") == "both_directions"
+    counted = {sum(both) for both in chains} if undivided else {n for both in chains for n in both if n}
+    return bool({road["lanes_total"], road["lanes_total"] - bool(road.get("twltl"))} & counted)

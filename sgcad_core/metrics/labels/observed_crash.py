@@ -1,0 +1,162 @@
+"""An executed crash as labels are held against it: who touched when, and one vehicle's way up to its own first contact.
+
+Told from the motion and the roads alone. Knows no label.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, box_gaps, prolonged, wrap_angle
+from sgcad_core.metrics.labels.motion_label_match import Path
+from sgcad_core.metrics.rest_error import rest_errors
+from sgcad_core.records.course import RestTold
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.roads.surface import RoadSurface, road_surface
+
+BEFORE_S = 3.5
+"""Time before the own first contact in which an evasion is looked for."""
+STEP_S = 0.05
+_APART_S = 0.15
+"""Two that touched touch again after so long apart."""
+_FAR_M = 8.0
+"""Beyond a lane so far off nobody starts on it."""
+
+
+@dataclass(frozen=True)
+class Crash:
+    """An execution as these marks see it: all actors' motion, and the roads."""
+
+    paths: Mapping[str, Path]
+    graph: LaneGraph
+
+    @cached_property
+    def surface(self) -> RoadSurface:
+        """The paved surface."""
+        return road_surface(self.graph)
+
+    @cached_property
+    def touches(self) -> list[tuple[float, str, str]]:
+        """Every contact's begin in order: (time, actor, actor); again only after both were apart."""
+        return sorted(hit for a, b in combinations(sorted(self.paths), 2) for hit in _touches(self.paths, a, b))
+
+    def first_of(self, actor: str) -> int:
+        """The sample of an actor's first contact; the last one where it has none."""
+        path = self.paths[actor]
+        times = [t for t, a, b in self.touches if actor in (a, b)]
+        return int(np.searchsorted(path.t_s, times[0] - 1e-6)) if times else len(path.t_s) - 1
+
+
+def _touches(paths: Mapping[str, Path], a: str, b: str) -> Iterator[tuple[float, str, str]]:
+    count = min(len(paths[a].t_s), len(paths[b].t_s))
+    gaps = box_gaps(paths[a].pose[:count], paths[a].size, paths[b].pose[:count], paths[b].size)
+    if gaps[0] <= 0:
+        return
+    last = -math.inf
+    for k in np.flatnonzero(gaps <= 0):
+        t = float(paths[a].t_s[k])
+        if t - last > _APART_S:
+            yield t, a, b
+        last = t
+
+
+@dataclass(frozen=True)
+class Driven:
+    """One vehicle's motion, seen from its own first contact."""
+
+    crash: Crash
+    actor: str
+
+    @cached_property
+    def path(self) -> Path:
+        return self.crash.paths[self.actor]
+
+    @cached_property
+    def hit(self) -> int:
+        return self.crash.first_of(self.actor)
+
+    @cached_property
+    def before(self) -> Floats:
+        """(n, 3) poses up to the contact."""
+        return self.path.pose[: self.hit + 1]
+
+    @cached_property
+    def speed(self) -> Floats:
+        """(n - 1,) m/s between the samples before the contact."""
+        found: Floats = np.hypot(*np.diff(self.before[:, :2], axis=0).T) / np.diff(self.path.t_s[: self.hit + 1])
+        return found
+
+    @cached_property
+    def home(self) -> tuple[Edge, Lane] | None:
+        """The lane on which it starts: the nearest that leads its way."""
+        heading = self.before[0, 2]
+        best: tuple[float, Edge, Lane] | None = None
+        for edge in self.crash.graph.edges.values():
+            for lane in edge.car_lanes:
+                off, way = beside(lane.shape, self.before[:1, :2])
+                turned = abs(float(wrap_angle(way[0] - heading)))
+                cost = abs(float(off[0])) + (_FAR_M if turned > math.pi / 2 else 0.0)
+                best = (cost, edge, lane) if best is None or cost < best[0] else best
+        return None if best is None or best[0] > _FAR_M else best[1:]
+
+    @cached_property
+    def aside(self) -> Floats:
+        """(n,) metres to the left of the lane on which it starts, and of what goes on from it, up to the contact."""
+        return self._aside_of(ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2])
+
+    @cached_property
+    def off_line(self) -> Floats:
+        """(n,) metres to the left of the straight line on which its first lane would go on."""
+        return self._aside_of(self.home[1].shape if self.home else self.before[:2, :2])
+
+    def _aside_of(self, line: Floats) -> Floats:
+        return beside(prolonged(line, 200.0), self.before[:, :2])[0]
+
+    def recent(self) -> slice:
+        """The samples of the last seconds before the contact."""
+        return slice(max(0, self.hit - round(BEFORE_S / STEP_S)), self.hit + 1)
+
+    def turned_deg(self) -> float:
+        """Heading change up to the contact, left positive."""
+        return math.degrees(float(wrap_angle(np.diff(self.before[:, 2])).sum()))
+
+    def moved_m(self) -> float:
+        return float(np.hypot(*(self.before[-1, :2] - self.before[0, :2])))
+
+    def rest(self, told: RestTold) -> dict[str, bool]:
+        """Which parts of the told rest the last pose gets right."""
+        return rest_errors(told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface).right()
+
+
+def ahead_of(graph: LaneGraph, edge: Edge, lane: Lane) -> Floats:
+    """(n, 2) center line of a lane and of those that lead straight on from it, node after node."""
+    line, seen = [lane.shape], {edge.id}
+    while on := next((c for c in graph.leaving(edge.id, lane.index) if c.direction == "through"), None):
+        if on.to_edge in seen:
+            break
+        edge = graph.edges[on.to_edge]
+        lane = next(other for other in edge.lanes if other.index == on.to_lane)
+        seen.add(edge.id)
+        line += [on.via_shape, lane.shape]
+    return np.vstack(line)
+
+
+def beside(line: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """(n,) metres to the left of a line and the line's (n,) heading there."""
+    along = np.diff(line, axis=0)
+    length = np.maximum(np.hypot(*along.T), 1e-9)
+    unit = along / length[:, None]
+    from_start = points[:, None] - line[None, :-1]
+    share = np.clip((from_start * unit[None]).sum(axis=2), 0.0, length[None])
+    away = from_start - share[:, :, None] * unit[None]
+    nearest = np.argmin((away**2).sum(axis=2), axis=1)
+    rows = np.arange(len(points))
+    left = unit[nearest, 0] * away[rows, nearest, 1] - unit[nearest, 1] * away[rows, nearest, 0]
+    signed = np.copysign(np.hypot(*away[rows, nearest].T), left)
+    return signed, np.arctan2(unit[nearest, 1], unit[nearest, 0])

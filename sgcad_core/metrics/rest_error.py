@@ -1,0 +1,107 @@
+"""How far a pose is from the rest that a report tells: facing, place and side, each as an error of its own.
+
+The planner fits the run-out of a wreck by these errors, `sgcad score` counts them: what may be missed by how much
+stands here once. Angles in radians counter-clockwise from east unless a name says otherwise; metres.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, wrap_angle
+from sgcad_core.records.course import Attitude, Hand, RestTold
+from sgcad_core.records.specs import Compass
+from sgcad_core.roads.surface import RoadSurface
+
+COMPASS_DEG: dict[str, float] = {
+    "N": 0.0, "NE": 45.0, "E": 90.0, "SE": 135.0, "S": 180.0, "SW": 225.0, "W": 270.0, "NW": 315.0,
+}  # fmt: skip
+FACING_RAD = math.radians(45.0)
+"""A facing is right within an eighth of the circle: half an eighth for the word, half for the fit."""
+SIDE_RAD = math.radians(68.0)
+"""A side is right where the point lies within so much of it, seen from the nearest lane or the junction's center; of
+what stands in the road no side is right."""
+SPINS_RAD = math.radians(8.0)
+"""Turned by so much behind its first contact a vehicle is seen to spin."""
+SHOULDER_M = (-1.2, 4.0)
+"""How far beyond the edge of the nearest lane the center of a box lies that stands on a shoulder."""
+OFF_M = 0.0
+"""Off the road from here on: the center is beyond the edge."""
+_JUNCTION_M = 1.5
+"""How far out of the junction's area a center may lie that is still in the intersection."""
+_CORNER_M = 45.0
+"""A side is seen from the center of a junction that is nearer than this."""
+
+
+class RestErrors(NamedTuple):
+    """(n,) errors of poses: 0 or less is right, None what is not told."""
+
+    facing_rad: Floats | None
+    """Beyond what is allowed."""
+    where_m: Floats | None
+    side_rad: Floats | None
+
+    def right(self) -> dict[str, bool]:
+        """Which of the told parts the only pose gets right."""
+        return {
+            name: bool(error[0] <= 1e-9)
+            for name, error in zip(("facing", "where", "side"), self, strict=True)
+            if error is not None
+        }
+
+
+def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSurface) -> RestErrors:
+    """Errors of (n, 3) poses at rest; `came_rad`: the vehicle's heading before its first contact."""
+    off, bearing = surface.off(poses[:, :2])
+    facing = None if told.facing_deg is None else _apart(poses[:, 2], compass_rad(told.facing_deg)) - FACING_RAD
+    where = None if told.where is None else _misplaced(told, poses, off, surface)
+    side = None if told.side is None or told.where in ("road", "intersection") else (
+        np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
+    )  # fmt: skip
+    return RestErrors(facing, where, side)
+
+
+def attitude_of(roll_rad: float) -> Attitude:
+    """On what a vehicle lies after a roll, positive to the right: the nearest quarter turn."""
+    lies: tuple[Attitude, ...] = ("wheels", "right", "roof", "left")
+    return lies[round(roll_rad / (math.pi / 2)) % 4]
+
+
+def compass_rad(degrees: float) -> float:
+    """Clockwise degrees from north as radians counter-clockwise from east."""
+    return math.radians(90.0 - degrees)
+
+
+def _apart(angles: Floats, wanted: float) -> Floats:
+    return np.abs(wrap_angle(angles - wanted))
+
+
+def _misplaced(told: RestTold, poses: Floats, off: Floats, surface: RoadSurface) -> Floats:
+    """By how many metres the told kind of place is missed."""
+    if told.where == "road":
+        return off - OFF_M
+    if told.where == "shoulder":
+        return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
+    if told.where == "intersection" and surface.junctions:
+        out = [np.hypot(poses[:, 0] - x, poses[:, 1] - y) - r for x, y, r in surface.junctions]
+        nearest: Floats = np.min(out, axis=0) - _JUNCTION_M
+        return nearest
+    if told.where == "intersection":
+        return off - OFF_M
+    return OFF_M + 0.05 - off
+
+
+def _beside(side: Compass | Hand, poses: Floats, bearing: Floats, came_rad: float, surface: RoadSurface) -> Floats:
+    """Angle between the told side and where the point lies: from the nearest lane, or from the junction's center."""
+    if side in ("left", "right"):
+        return _apart(bearing, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
+    wanted = compass_rad(COMPASS_DEG[side])
+    best = _apart(bearing, wanted)
+    for x, y, _ in surface.junctions:
+        dx, dy = poses[:, 0] - x, poses[:, 1] - y
+        near = np.hypot(dx, dy) < _CORNER_M
+        best = np.where(near, np.minimum(best, _apart(np.arctan2(dy, dx), wanted)), best)
+    return best

@@ -1,0 +1,208 @@
+"""What one actor brings into the planning of an encounter, and what its usual driving is.
+
+Knows one actor, its course and its meeting place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from sgcad_core.geometry.plane import SIDES, Size
+from sgcad_core.metrics.rest_error import compass_rad
+from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.encounter.meeting_place import STANDING, STOP_LINE_M, TURNING, Place
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor, Area, Surface
+from sgcad_core.units import MPS_PER_MPH
+
+IN_STALL_M = -1.0
+"""Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
+BRAKED_TO = 0.72
+"""Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
+PUSHED_M = 0.8
+"""Who stands and is pushed into another rolls so far."""
+_STEEP_DEG = 60.0
+"""Bearing of a vehicle alongside that is to be hit with the front."""
+
+
+@dataclass(frozen=True)
+class Role:
+    """What one actor brings into the planning of an encounter."""
+
+    actor: Actor
+    course: Course
+    size: Size
+    place: Place
+    side: Area | None = None
+    """The side on which it is to be touched."""
+    other_mps: float = 0.0
+    """How fast the other one comes."""
+    other_width_m: float = 1.8
+    other_side: Area | None = None
+    other_road: str | None = None
+    """The road on which the other one starts."""
+    surface: Surface | None = None
+    other_spins: bool = False
+    """Whether the blow is to turn the other one in a told way."""
+    may_skid: bool = False
+    """The report tells that somebody lost control."""
+    pushed: bool = False
+    """Whether it stands until right before the contact, and is then set rolling into the other one."""
+    told: CourseTold = field(default_factory=CourseTold)
+    """What the report tells of its evasion."""
+
+    @cached_property
+    def kept(self) -> dict[str, Any]:
+        """What was made for this role and is asked for again."""
+        return {}
+
+    @property
+    def glances(self) -> bool:
+        """Whether it goes off the road behind the blow, which a full one would not let it do."""
+        return self.told.rest.where in ("off_road", "shoulder", "median")
+
+    @property
+    def spins(self) -> float:
+        """How the blow is to turn it: 1 counter-clockwise, -1 clockwise; less where only the told facing asks."""
+        if self.told.spin:
+            return 1.0 if self.told.spin == "counterclockwise" else -1.0
+        if self.told.rest.facing_deg is None or self.actor.kind == "object":
+            return 0.0
+        came = float(self.course.path.poses([self.place.station_m])[0, 2])
+        turn = math.remainder(compass_rad(self.told.rest.facing_deg) - came, 2 * math.pi)
+        return math.copysign(0.6, turn) if math.radians(50) < abs(turn) < math.radians(170) else 0.0
+
+    @property
+    def grip_mps2(self) -> float:
+        """What tires transmit on the surface."""
+        return DRIVING.friction_mps2(self.surface)
+
+
+class Drift(NamedTuple):
+    """A change of line: to the left by `left_m` over `length_m`, ending at a station; `back`: and back again."""
+
+    cost: float
+    left_m: float = 0.0
+    length_m: float = 30.0
+    end_m: float = 0.0
+    back: bool = False
+    before_m: float = 0.0
+    """Beside its lane already before the change (a lane that it comes from), metres to the left."""
+    ahead_m: float = 0.0
+    """Displaced along the heading at the meeting place as well (a course bent towards the other one's)."""
+    note: str = ""
+    evades: bool = False
+    """It is the evasion that the report tells."""
+
+
+class Pacing(NamedTuple):
+    """A choice of speed: factor on the usual one, or from a standing start."""
+
+    cost: float
+    factor: float = 1.0
+    from_stop: bool = False
+    note: str = ""
+
+
+class Twist(NamedTuple):
+    """A box turned before contact: steered aside, in a skid, or standing askew."""
+
+    cost: float
+    angle_rad: float = 0.0
+    note: str = ""
+    skids: bool = False
+    """The box turns against its line; else the line turns with it."""
+    through: bool = False
+    """It swings out to the other side first, so that it comes through the meeting place all the same."""
+    radius_m: float | None = None
+    """Of the bend; None: as tight as the speed allows."""
+
+
+def is_standing(role: Role) -> bool:
+    """Whether the actor does not move before contact."""
+    return role.actor.maneuver in STANDING or role.actor.kind == "object"
+
+
+def usual_speed(role: Role) -> float:
+    """Stated speed, else the limit as far as the kind of actor goes, m/s."""
+    actor = role.actor
+    top = {"pedestrian": 1.5, "bicycle": 5.5}.get(actor.kind, min(role.course.limit_mps, 26.0))
+    if actor.speed_mph:
+        return max(actor.speed_mph * MPS_PER_MPH, 1.0)
+    if actor.maneuver == "backing":
+        return 2.5
+    return min(top, 11.0) if actor.maneuver in TURNING else top
+
+
+def speed_there(role: Role) -> float:
+    """Usual speed at the meeting place: turning traffic has slowed down."""
+    if is_standing(role):
+        return 0.0
+    speed = min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+    return BRAKED_TO * speed if role.told.brakes else speed
+
+
+def mismatch(role: Role) -> float:
+    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi].
+
+    Seen in the actor's own frame as both pass the meeting place at their usual speeds.
+    """
+    if role.side is None or role.actor.kind == "object":
+        return 0.0
+    bearing = _bearing_along(role) if along_with(role) else _bearing_across(role)
+    return 0.0 if bearing is None else math.remainder(bearing - facing(role.side), 2 * math.pi)
+
+
+def along_with(role: Role) -> bool:
+    """Whether both drive the same way, so that the choice of speeds decides who comes from where."""
+    return abs(role.place.angle_rad) < 0.6 and not is_standing(role) and role.other_mps > 0
+
+
+def is_beside(side: Area | None) -> bool:
+    """Whether a side is left or right."""
+    return side in ("left", "right")
+
+
+def _bearing_along(role: Role) -> float | None:
+    """Ahead of the one behind, behind the one ahead; None where they run side by side."""
+    own, other = role.side, role.other_side
+    if own == "front" and is_beside(other):
+        return math.radians(-_STEEP_DEG if other == "left" else _STEEP_DEG)
+    if "back" not in (own, other) or own == other:
+        return None
+    return math.pi if own == "back" else 0.0
+
+
+def _bearing_across(role: Role) -> float | None:
+    own = speed_there(role)
+    angle, other = role.place.angle_rad, role.other_mps
+    ahead, left = own - other * math.cos(angle), -other * math.sin(angle)
+    return None if math.hypot(ahead, left) < 3.0 else math.atan2(left, ahead)
+
+
+def facing(side: Area) -> float:
+    """Bearing of a side as seen from its box, radians left of ahead."""
+    return SIDES.index(side) * math.pi / 2
+
+
+def starts_at_m(role: Role, pacing: Pacing) -> float | None:
+    """The station up to which it stands; None for who does not start from a stop."""
+    if role.pushed:
+        return role.place.station_m - PUSHED_M
+    if pacing.from_stop and role.course.turn is not None:
+        return role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
+    if pacing.from_stop:
+        return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
+    return None
+
+
+def line_m(role: Role) -> float:
+    """Where it would stand at the last stop line before the meeting place; in its stall where it backs out of one."""
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return IN_STALL_M
+    entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
+    return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2

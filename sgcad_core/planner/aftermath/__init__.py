@@ -1,0 +1,1 @@
+"""What follows the first contact: impulse, sliding, later contacts, rest."""

@@ -1,0 +1,157 @@
+"""What the ground does to a body that slides or rolls on it: friction against its way and against its turning.
+
+Plain floats, one step of time after another; `run_out` does the same for many ways of running out at once. Knows one
+body; no touches, no clock but the time that is left. SI units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.aftermath.impact import Body
+
+_SLIP_LEVER = 0.25
+"""Mean lever of ground friction against turning, as a share of the box's diagonal."""
+_STIFF_RAD = 0.14
+"""Slip at which rolling tires give all their side force (R. Rajamani, Vehicle Dynamics and Control, ch. 2)."""
+_STEERED_SHARE = 0.7
+"""Of the side force, for a steered bend; the rest is for what it slides besides."""
+_STEERS_MPS = 1.0
+"""Slower wheels steer nothing worth telling."""
+
+
+class Drag(NamedTuple):
+    """Deceleration along and across the box by tires, brakes and ground, m/s2."""
+
+    along: float
+    across: float
+
+
+class RunOut(NamedTuple):
+    """What wheels and driver do once a body runs out from a blow: all within what a damaged car can do."""
+
+    from_s: float
+    """World time from which on it counts; before that the body slides with its drag."""
+    along_mps2: float
+    bend_per_m: float = 0.0
+    """Curvature of the steered way, left positive."""
+    turning: float = 1.0
+    """Resistance to turning, as a share of that of four locked wheels."""
+    rolls_s: float = 0.0
+    """So long from `from_s` on its engine makes up for what its wheels lose, then it brakes."""
+
+    def along_at(self, now_s: float) -> float:
+        """Deceleration along the box at a time, m/s2."""
+        return 0.0 if now_s < self.from_s + self.rolls_s else self.along_mps2
+
+
+class Released(NamedTuple):
+    """A body at the moment from which its ways of running out are told: place, heading, velocity, spin; its mass."""
+
+    body: Body
+    at_s: float
+
+
+def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0) -> None:
+    """Ground friction over a step; more of it where the body would not stand in the time that is left.
+
+    `now_s`: world time, which only a `run` asks for.
+    """
+    vx, vy, spin = one.vx, one.vy, one.spin
+    if vx == vy == spin == 0.0:
+        return
+    speed = math.hypot(vx, vy)
+    target = 0.0
+    if speed > 0.0:
+        c, s = math.cos(one.heading), math.sin(one.heading)
+        along, across = (vx * c + vy * s) / speed, (vy * c - vx * s) / speed
+        way = run.along_at(now_s) if run else drag.along
+        side = across if run is None else max(-1.0, min(1.0, across / _STIFF_RAD))
+        brake = math.hypot(way * along, drag.across * across)
+        more = max(1.0, speed / (left_s * max(brake, 1e-6)))
+        if brake * more * step >= speed:
+            one.vx = one.vy = 0.0
+        else:
+            ahead, left = way * along * more * step, drag.across * side * (more if run is None else 1.0) * step
+            if run:
+                left = math.copysign(min(abs(left), abs(across) * speed), left)
+            one.vx = vx - (ahead * c - left * s)
+            one.vy = vy - (ahead * s + left * c)
+            if run and speed > _STEERS_MPS:
+                target = _steered(run.bend_per_m, speed, drag.across) * along * speed
+    if target == spin:
+        return
+    off = spin - target
+    turning = _turning_mps2(one, drag) * (run.turning if run else 1.0)
+    turning = max(turning, abs(off) / left_s) * step
+    one.spin = target if abs(off) <= turning else spin - math.copysign(turning, off)
+
+
+def _steered(bend: float, speed: float, across_mps2: float) -> float:
+    """The curvature that tires can give at a speed."""
+    most = _STEERED_SHARE * across_mps2 / max(speed, 1.0) ** 2
+    return max(-most, min(most, bend))
+
+
+def _turning_mps2(one: Body, drag: Drag) -> float:
+    """Angular deceleration of a body on locked wheels, rad/s2."""
+    return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
+
+
+def run_out(
+    released: Sequence[Released],
+    drags: Sequence[Drag],
+    runs: Sequence[Sequence[RunOut]],
+    end_s: float,
+    step: float,
+) -> list[Floats]:
+    """(m, n, 3) poses of each body that runs out in n ways, a step apart, from its release to rest at `end_s`.
+
+    The bodies are released at one time and know nothing of each other: the ways of all are told in one row.
+    """
+    counts = [len(ways) for ways in runs]
+    state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
+    turns = [_turning_mps2(one.body, drag) for one, drag in zip(released, drags, strict=True)]
+    way, bend, share, rolls = np.array([run[1:] for ways in runs for run in ways]).T
+    wheels = bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
+    at_s = released[0].at_s
+    found = np.empty((max(round((end_s - at_s) / step), 1), len(way), 3))
+    for k in range(len(found)):
+        left_s = max(end_s - at_s - k * step, 0.1)
+        state = _run_on(state, np.where(k * step < rolls, 0.0, way), wheels, left_s, step)
+        found[k] = state[:3].T
+    return np.split(found, np.cumsum(counts)[:-1], axis=1)
+
+
+def _moving(one: Body) -> tuple[float, ...]:
+    return one.x, one.y, one.heading, one.vx, one.vy, one.spin
+
+
+def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
+    """(6, n) place, heading, velocity, spin a step later; `way`: braking, `wheels`: bend, turning and grip of each."""
+    bend, turning, grip = wheels
+    moved = state[:3] + state[3:] * step
+    vx, vy, spin = state[3:]
+    c, s, speed = np.cos(moved[2]), np.sin(moved[2]), np.hypot(vx, vy)
+    moving = np.maximum(speed, 1e-9)
+    along, across = (vx * c + vy * s) / moving, (vy * c - vx * s) / moving
+    side = np.minimum(np.maximum(across / _STIFF_RAD, -1.0), 1.0)
+    pull = way * along
+    brake = np.hypot(pull, grip * across)
+    more = np.maximum(1.0, speed / (left_s * np.maximum(brake, 1e-6)))
+    stands = brake * more * step >= speed
+    ahead = pull * more * step
+    left = np.copysign(np.minimum(np.abs(grip * side * step), np.abs(across) * speed), side)
+    most = _STEERED_SHARE * grip / np.maximum(speed, 1.0) ** 2
+    steers = ~stands & (speed > _STEERS_MPS)
+    target = np.where(steers, np.minimum(np.maximum(bend, -most), most) * along * speed, 0.0)
+    off = spin - target
+    by = np.maximum(turning, np.abs(off) / left_s) * step
+    turned = np.where(np.abs(off) <= by, target, spin - np.copysign(by, off))
+    slowed = (np.where(stands, 0.0, vx - ahead * c + left * s), np.where(stands, 0.0, vy - ahead * s - left * c))
+    return np.concatenate((moved, (*slowed, turned)))

@@ -1,0 +1,199 @@
+"""Bringing wrecks to rest where and as the report tells: the impact's and the drivers' free choices are fitted.
+
+Free are, within physical bounds, friction and restitution between the bodies, and for every vehicle its braking, its
+steering and its resistance to turning once it runs out. The blow itself is simulated once for each choice of friction
+and restitution, the ways of running out all at once (`ground.run_out`); the best are then simulated whole, since wrecks
+meet again, and what that shows corrects the next choice. What cannot be reached is said, with by how much.
+Deterministic; a fixed number of simulations at most.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
+from sgcad_core.planner.aftermath.ground_friction import Released, run_out
+from sgcad_core.planner.aftermath.rest_candidates import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
+from sgcad_core.planner.aftermath.rollover import rolls_over
+from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.scene import Scene
+from sgcad_core.records.course import Courses, CourseTold, RestTold
+from sgcad_core.roads.surface import RoadSurface
+
+Impact = tuple[float, float]
+IMPACTS: Sequence[Impact] = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
+"""Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where
+they graze each other, more friction where they lock."""
+_BLOW_S = 0.3
+"""After the first touch the bodies have parted or slide together; then drivers and wheels count."""
+_COARSE_S = 0.1
+_WHOLE = 3
+"""Choices that are simulated whole, at most, beyond one for each friction and restitution."""
+_WELL_RAD, _WELL_M = math.radians(15.0), 0.8
+"""Within the allowed by so much is as good as can be."""
+_TOLD = 1.0
+_USUAL_SHARE = 0.6
+"""Of the friction: one brakes, some wheels drag."""
+_SPIN_RAD = math.radians(15.0)
+
+
+def leaving(course: CourseTold) -> CourseTold:
+    """The course of one who strikes something beside the road: where no place is told, it leaves the road."""
+    where = course.rest.where or "off_road"
+    return replace(course, rest=replace(course.rest, where=where))
+
+
+@dataclass(frozen=True)
+class Rests:
+    """What the vehicles of a scene are to come to."""
+
+    scene: Scene
+    told: Courses
+    surface: RoadSurface
+    rolling: frozenset[str] = frozenset()
+    """Vehicles that are to reach something: of two ways the one that leads further is taken."""
+    impacts: Sequence[Impact] = IMPACTS
+    """Friction and restitution that are tried."""
+
+    def fit(self) -> None:
+        """Choose, and settle the scene so."""
+        if not self.wanted:
+            return
+        best, least = self._choice(), self.cost()
+        ways: list[BlowWays] = []
+        for number in range(len(self.impacts) + _WHOLE):
+            if least <= self._well:
+                break
+            if number < len(self.impacts):
+                ways.append(self._ways(*self.impacts[number]))
+            left = [w for w in ways if w.best()]
+            if not left:
+                continue
+            way = min(left, key=lambda w: w.predicted())
+            if number >= len(self.impacts) and way.predicted() >= least:
+                break
+            choice = way.choice()
+            self._take(choice)
+            way.learn(choice, {name: self.scene.tracks[name].poses[-1] for name in way.vehicles})
+            if (cost := self.cost()) < least - 1e-9:
+                best, least = self._choice(), cost
+        if self._choice() != best:
+            self._take(best)
+
+    @property
+    def _well(self) -> float:
+        """A cost below which nothing is gained by further tries."""
+        return 0.35 * len(self.wanted)
+
+    @cached_property
+    def wanted(self) -> dict[str, CourseTold]:
+        """Told courses of the vehicles that are struck and of whose end anything is told, or who meet again."""
+        again = {name for pair in self.scene.again for name in pair}
+        struck = {name for touch in self.scene.touches for name in (touch.first, touch.second)}
+        return {
+            name: course
+            for name in self.scene.tracks
+            if (course := self.told.get(name, CourseTold())) is not None
+            and name in struck
+            and (not course.rest.empty or course.spin or name in again or name in self._makes_way)
+        }
+
+    @cached_property
+    def _makes_way(self) -> frozenset[str]:
+        """Who is struck first by one that is to reach something, and must not stand in its way."""
+        first = {name for touch in self.scene.touches[:1] for name in (touch.first, touch.second)}
+        return frozenset(first if first & self.rolling else ())
+
+    # -------------------------------------------------------------- choices
+    def _choice(self) -> Choice:
+        return Choice(self.scene.friction, self.scene.restitution, dict(self.scene.runs))
+
+    def _take(self, choice: Choice) -> None:
+        self.scene.friction, self.scene.restitution = choice.friction, choice.restitution
+        self.scene.runs = dict(choice.runs)
+        self.scene.settle()
+
+    def _ways(self, friction: float, restitution: float) -> BlowWays:
+        """For one choice of the impact all ways of running out, each vehicle for itself."""
+        scene = self.scene
+        scene.friction, scene.restitution, scene.runs = friction, restitution, {}
+        until = scene.contact + round(_BLOW_S / STEP_S)
+        wreck = scene.wreck()
+        wreck.settle(until)
+        found = BlowWays(friction, restitution, bool(scene.again))
+        free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
+        if not free:
+            return found
+        at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
+        drags = [scene.drag(scene.tracks[name]) for name in free]
+        upright = [not rolls_over(self.wanted[name]) for name in free]
+        runs = [all_runs(at_s, drag.across, on_wheels=on) for drag, on in zip(drags, upright, strict=True)]
+        released = [Released(wreck.named[name].body, at_s) for name in free]
+        each = run_out(released, drags, runs, end_s, _COARSE_S)
+        for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
+            odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
+            judge = partial(self._costs, name, self.wanted[name])
+            found.vehicles[name] = VehicleWays(mine, ways, odd, judge, scene.tracks[name].size)
+        return found
+
+    # -------------------------------------------------------------- how well
+    def cost(self) -> float:
+        """How far the scene as it is settled is from what is told."""
+        ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
+        missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
+        return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
+
+    def _meet_again(self, pair: frozenset[str]) -> bool:
+        """Whether two touch a second time."""
+        return sum({t.first, t.second} == pair for t in self.scene.touches) > 1
+
+    def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
+        """(n,) costs of (n, 3) last poses: 1 and more for every told part that is missed."""
+        errors = rest_errors(course.rest, ends, self._came_rad(name), self.surface)
+        total = np.zeros(len(ends))
+        for error, well, scale in zip(
+            errors, (_WELL_RAD, _WELL_M, _WELL_RAD), (FACING_RAD, 5.0, SIDE_RAD), strict=True
+        ):
+            if error is not None:
+                total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
+        return total + self._unspun(name, course, ends) if course.spin else total
+
+    def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
+        """(n,) costs of turning otherwise than told: by other degrees, or to the other hand."""
+        turned = ends[:, 2] - self._came_rad(name)
+        way = 1.0 if course.spin == "counterclockwise" else -1.0
+        wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
+        off = np.minimum(np.abs(way * turned - wanted) / (2 * wanted), 1.5)
+        told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
+        return told + _TOLD * (way * turned < SPINS_RAD)
+
+    def _came_rad(self, name: str) -> float:
+        """An actor's heading at the first contact, as its motion had it."""
+        return float(self.scene.tracks[name].driven[self.scene.contact, 2])
+
+    def missed(self) -> list[str]:
+        """What of the told rests is not reached, and by how much."""
+        apart = [" and ".join(sorted(pair)) for pair in self.scene.again if not self._meet_again(pair)]
+        notes = [f"{pair} do not touch a second time, as is told" for pair in apart]
+        return notes + [note for name, course in self.wanted.items() for note in self._missed(name, course.rest)]
+
+    def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
+        errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
+        yield from (f"{name} {words}" for words in _in_words(rest, errors))
+
+
+def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
+    facing, where, side = errors
+    if facing is not None and facing[0] > 0:
+        off = math.degrees(float(facing[0]) + FACING_RAD)
+        yield f"comes to rest facing {off:.0f} degrees off what is told"
+    if where is not None and where[0] > 0:
+        yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
+    if side is not None and side[0] > 0:
+        yield f"comes to rest on another side than told ({rest.side})"

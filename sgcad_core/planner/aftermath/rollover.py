@@ -1,0 +1,66 @@
+"""How a vehicle of which a rollover is told turns about its long axis: onto its side, its roof, or over and over.
+
+A plane simulation has no roll. Here it is told beside it, once the way to rest is known: the vehicle rolls as it moves,
+from shortly after its first contact on, towards where it slides, and lies as told when it stands. Knows poses only.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.motion import STEP_S
+from sgcad_core.records.course import Attitude, CourseTold
+
+TRIPPED_S = 0.3
+"""From the contact on until it begins: it first slides, or leaves the road."""
+_ROLLS_RADPS = math.radians(400.0)
+"""At most; measured are 300 to 500 degrees a second (NHTSA, dolly and curb-trip tests)."""
+_SLIDES_MPS = 0.5
+"""Slower sideways it rolls to the nearer side."""
+_TO_THE_RIGHT: dict[Attitude, float] = {"right": 0.5, "roof": 1.0, "left": 1.5, "wheels": 2.0}
+"""Half turns to the right until it lies so."""
+
+
+def rolls_over(told: CourseTold) -> bool:
+    """Whether a rollover is told of a vehicle."""
+    return told.rolls or told.rest.attitude not in (None, "wheels")
+
+
+def rolled(poses: Floats, hit: int, told: CourseTold) -> Floats:
+    """(n,) roll of (n, 3) poses whose first contact is sample `hit`, radians, positive to the right (about x, z up)."""
+    first = min(hit + round(TRIPPED_S / STEP_S), len(poses) - 1)
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))
+    total = _total(_sideways_mps(poses, first), told.rest.attitude)
+    least = math.ceil(abs(total) / _ROLLS_RADPS / STEP_S)
+    share = way / way[-1] if way[-1] > 0.0 else np.ones(len(way))
+    slowest = np.arange(len(way)) / max(least, 1)
+    roll = np.zeros(len(poses))
+    roll[first:] = total * np.minimum(_eased(share), slowest)
+    return roll
+
+
+def _eased(share: Floats) -> Floats:
+    """A roll is fastest in its middle."""
+    eased: Floats = share * share * (3 - 2 * share)
+    return eased
+
+
+def _sideways_mps(poses: Floats, at: int) -> float:
+    """Speed to the left of the box at a sample."""
+    dx, dy = (poses[min(at + 1, len(poses) - 1), :2] - poses[max(at - 1, 0), :2]) / (2 * STEP_S)
+    heading = float(poses[at, 2])
+    return float(dy * math.cos(heading) - dx * math.sin(heading))
+
+
+def _total(left_mps: float, attitude: Attitude | None) -> float:
+    """Radians in all: by the way it slides where it does, else the shorter way. Where no end is told, onto its side."""
+    to_left = left_mps > 0.0
+    wanted = attitude or ("left" if to_left else "right")
+    right = _TO_THE_RIGHT[wanted] * math.pi
+    left = right - 2 * math.pi if wanted != "wheels" else -right
+    if abs(left_mps) < _SLIDES_MPS:
+        return min(right, left, key=abs)
+    return left if to_left else right

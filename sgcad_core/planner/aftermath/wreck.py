@@ -1,0 +1,282 @@
+"""What follows a first touch: bodies that push, turn, drag and stop each other until all stand.
+
+Time-stepped rigid bodies in the plane: impulses at every touch, over all pairs again and again until nobody approaches
+anybody (sequential impulses; E. Catto, Iterative Dynamics with Temporal Coherence, 2005), friction on the ground in
+between, steps short enough that boxes never sink into each other by more than centimetres (conservative advancement;
+B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes on as its script says. SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, box_gaps, gaps_where_near
+from sgcad_core.planner.aftermath.ground_friction import slow
+from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, pull
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
+from sgcad_core.planner.aftermath.wreck_bodies import (
+    Mover,
+    Pair,
+    Touch,
+    all_apart,
+    follow,
+    key_of,
+    last_move,
+    may_meet,
+    shift,
+    state_of,
+)
+from sgcad_core.planner.encounter.box_scalar import Apart, apart, mean, touch_points
+from sgcad_core.planner.motion import STEP_S
+
+SEEN_M = 0.022
+"""Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
+APART_M = 0.008
+"""Gap that is left between bodies that touched."""
+_PARTED_M = 0.05
+"""Two that are so far apart touch anew when they meet again."""
+_SHOWN_M = 0.008
+"""Overlap that is left for the sample behind a touch."""
+_SHORTEST_S, _LONGEST_S = 0.0005, 0.01
+_NEAR_M = 0.15
+"""Bodies that are further apart move in steps of the clock, as long as these cannot bring them together."""
+_PARTING_MPS = 0.3
+"""How fast bodies that sank into each other are moved apart."""
+_HELD_S = 0.11
+"""A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
+_TOLD_S, _TOLD_HELD_S = 0.2, 0.25
+"""For so long two hold, and stay as they are, whose touch is told: where a body is set rolling from a standstill, the
+next vertex of a file is only 0.11 m further."""
+_DEEPEST_M = 0.03
+"""Deeper overlaps are parted at once."""
+_ROUNDS, _ROUNDS_OF_MANY = 6, 60
+"""Of impulses over all touching pairs in one step: who is caught between two a hundred times as heavy gives way to both
+only after many; after six a man between two trucks lay 0.17 m in one of them."""
+_LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
+_FASTER_MPS = 4.0
+"""Two that both get so much faster within a sample stay within the room that `may_meet` leaves (0.5 m)."""
+
+
+@dataclass
+class Wreck:
+    """Movers on one clock of `count` samples; all stand `ends` samples after the start of it."""
+
+    movers: Sequence[Mover]
+    count: int
+    hitches: Sequence[Hitch] = ()
+    friction: float = FRICTION
+    restitution: float = RESTITUTION
+    again: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch a second time as told: the new touch is seen as the first was."""
+    told: frozenset[frozenset[str]] = frozenset()
+    """Pairs that touch later on as told, however gently."""
+    past: list[tuple[float, tuple[str, str]]] = field(default_factory=list)
+    """Touches of these pairs that are over."""
+    touches: dict[tuple[str, str], float] = field(default_factory=dict)
+    """Pairs that touched, with the time of it."""
+    now: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.named: Mapping[str, Mover] = {m.name: m for m in self.movers}
+        self._movable = [m for m in self.movers if not m.fixed]
+
+    def settle(self, until: int | None = None) -> tuple[dict[str, Floats], list[Touch]]:
+        """(count, 3) poses by name, and the touches in the order in which they happen.
+
+        `until`: stop there; the bodies are then as they are at that sample, the poses behind it are the scripts'.
+        """
+        pairs = self._pairs()
+        start = self._start(pairs)
+        poses = {m.name: m.script.copy() for m in self.movers}
+        drives = {m.name: last_move(m.script) for m in self.movers}
+        before, end = None, min(self.count - 1, until or self.count)
+        for k in range(start, end):
+            self._sample(k, pairs)
+            state = [state_of(m.body) for m in self.movers]
+            over = state == before and self._rests() and all(m.free or k > drives[m.name] for m in self.movers)
+            for m in self.movers:
+                if m.free:
+                    poses[m.name][k + 1 : end + 1 if over else k + 2] = (m.body.x, m.body.y, m.body.heading)
+            if over:
+                break
+            before = state
+        seen = sorted([*self.past, *((t, pair) for pair, t in self.touches.items())])
+        return poses, [Touch(t, *pair) for t, pair in seen]
+
+    def _rests(self) -> bool:
+        """Whether nothing moves and no touch is so new that time alone would change what it does."""
+        latest = max(self.touches.values(), default=0.0)
+        return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
+
+    def _pairs(self) -> list[Pair]:
+        """All pairs but those that overlap from the start: parts of one thing, or scenery."""
+        found = []
+        for a, b in combinations(self.movers, 2):
+            first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
+            if first > 0 and not (a.fixed and b.fixed):
+                found.append((a, b))
+        return found
+
+    def _start(self, pairs: Sequence[Pair]) -> int:
+        """The sample before the first overlap of any two scripts; the last one where there is none."""
+        first = self.count
+        for a, b in pairs:
+            hits = np.flatnonzero(gaps_where_near(a.script, a.body.size, b.script, b.body.size) <= 0)
+            first = min(first, int(hits[0])) if len(hits) else first
+        return max(first - 1, 0)
+
+    # -------------------------------------------------------------- one sample of the clock
+    def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
+        for m in self.movers:
+            if not m.free:
+                follow(m, k)
+        near, fastest = self._near(pairs)
+        self.now, end = k * STEP_S, (k + 1) * STEP_S
+        seen = None
+        while self.now < end - 1e-9:
+            step = min(self._step(near, seen or all_apart(near)), end - self.now)
+            self._advance(step)
+            self.now += step
+            seen = self._resolve(near, k)
+            if any(m.body.speed > most for m, most in zip(self._movable, fastest, strict=True)):
+                near, fastest = self._near(pairs)
+                seen = None
+        self._show(near, k)
+
+    def _near(self, pairs: Sequence[Pair]) -> tuple[list[Pair], list[float]]:
+        """Pairs that can meet within a sample, and up to which speeds of the movable ones that is so.
+
+        A light body that a heavy one strikes gets faster than both were: it may reach who was out of its reach.
+        """
+        return [pair for pair in pairs if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
+
+    def _show(self, near: Sequence[Pair], sample: int) -> None:
+        """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
+        for a, b in near:
+            if self.touches.get(key_of(a, b), -1.0) > sample * STEP_S:
+                seen = apart(a.body, b.body)
+                shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
+
+    def _step(self, near: Sequence[Pair], gaps: Sequence[Apart]) -> float:
+        """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
+        longest = _LONGEST_S if self.hitches else STEP_S
+        for (a, b), (gap, normal) in zip(near, gaps, strict=True):
+            one, other = a.body, b.body
+            if gap < _NEAR_M and longest > _LONGEST_S:
+                longest = _LONGEST_S
+            closing = (one.vx - other.vx) * normal[0] + (one.vy - other.vy) * normal[1]
+            closing += abs(one.spin) * one.radius + abs(other.spin) * other.radius
+            if closing > 0:
+                room = gap + 1.2 * SEEN_M if key_of(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
+                longest = min(longest, max(room / closing, _SHORTEST_S))
+        return longest
+
+    def _advance(self, step: float) -> None:
+        left = max((self.count - 4) * STEP_S - self.now, _LEAST_LEFT_S)
+        for m in self._movable:
+            one = m.body
+            one.x += one.vx * step
+            one.y += one.vy * step
+            one.heading += one.spin * step
+            if m.free:
+                slow(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
+
+    # -------------------------------------------------------------- touches
+    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Apart] | None:
+        """What all touches do at a moment. How far each pair is apart; None where that was changed."""
+        gaps = all_apart(near)
+        touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
+        if not touching and not self.hitches:
+            return gaps
+        corners = [touch_points(a.body, b.body) for a, b, _ in touching]
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            at = mean(points)
+            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
+        for _ in range(_ROUNDS if len(touching) < 2 else _ROUNDS_OF_MANY):
+            moved = False
+            for (a, b, seen), points in zip(touching, corners, strict=True):
+                for at in points:
+                    moved |= collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
+            for hitch in self.hitches:
+                moved |= self._joined(hitch, pull)
+            if not moved:
+                break
+        parted = False
+        for (a, b, seen), points in zip(touching, corners, strict=True):
+            self._keep_seen(a, b, seen, points, sample)
+            parted |= self._part(a, b, seen)
+        for hitch in self.hitches:
+            self._joined(hitch, draw_together)
+        return None if parted or self.hitches else gaps
+
+    def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
+        """What a hitch does to its two bodies, once both are free."""
+        a, b = self.named[hitch.first], self.named[hitch.second]
+        return a.free and b.free and act(hitch, a.body, b.body)
+
+    def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
+        """Whether a pair is in touch; both are free from the first time on."""
+        key = key_of(a, b)
+        if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
+            self.past.append((self.touches.pop(key), key))
+        if key in self.touches:
+            return seen.gap_m < APART_M
+        if seen.gap_m > 0:
+            return False
+        coming = approach(a.body, b.body, mean(touch_points(a.body, b.body)), seen.normal) > 0
+        if coming and seen.gap_m > -SEEN_M:
+            return False
+        self.touches[key] = self.now
+        for m in (a, b):
+            self._release(m, sample)
+        return True
+
+    def _release(self, m: Mover, sample: int) -> None:
+        """Free a mover and what hangs on it."""
+        if m.fixed or m.free:
+            return
+        m.free, m.hit = True, sample
+        for hitch in self.hitches:
+            for one, other in ((hitch.first, hitch.second), (hitch.second, hitch.first)):
+                if one == m.name:
+                    self._release(self.named[other], sample)
+
+    def _bounce(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> float:
+        """Restitution of a new touch: no more than leaves the overlap to be seen at the next sample."""
+        if self.now - self.touches[key_of(a, b)] > 1e-9:
+            return 0.0
+        closing = approach(a.body, b.body, at, seen.normal)
+        left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
+        return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
+
+    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
+        """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
+        left = self._held_s(a, b, sample)
+        if left <= 0.0:
+            return
+        at = mean(points)
+        allowed = 0.5 * max(-seen.gap_m, 0.0) / max(left, _SHORTEST_LEFT_S)
+        parting = -approach(a.body, b.body, at, seen.normal)
+        if parting > allowed:
+            hold(a.body, b.body, at, seen.normal, parting - allowed)
+
+    def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
+        """How much longer two hold that touched; 0 or less where they may part."""
+        since = self.touches[key_of(a, b)]
+        if frozenset((a.name, b.name)) in self.told:
+            return since + _TOLD_S - self.now
+        return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
+
+    def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
+        """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
+        for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self.told else _HELD_S
+        held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
+        if seen.gap_m >= APART_M or held:
+            return False
+        by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
+        shift(a, b, seen, by)
+        return True

@@ -1,0 +1,1 @@
+"""How two actors come to touch, or nearly: options, timing, the search for the declared contact."""

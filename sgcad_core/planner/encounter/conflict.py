@@ -1,0 +1,124 @@
+"""How the declared pair comes to touch: its roles, where their ways meet, and the stages of the search.
+
+Ordinary driving first, then with the wanted sides turned to each other, then one of both, then by force. Knows the
+behavior and the courses; no scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.encounter.contact_queries import facing_other
+from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
+from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
+from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
+from sgcad_core.records.course import Courses, CourseTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+
+_TRIES = (16, 26, 24, 400)
+"""Combinations of options tried in each stage of the search."""
+_LAST_TRIES = 90
+"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
+_ONE_TURNS = 24
+"""Combinations tried in which one of both comes as usual and the other one turns its side to it."""
+_TURNING = 40
+"""Combinations tried in which a turn is driven on another line."""
+_LANELESS = ("pedestrian", "object")
+
+
+@dataclass
+class Conflicts:
+    """The actors of a behavior on their courses; `notes`: what their stated behavior lacked."""
+
+    behavior: BehaviorSpec
+    courses: dict[str, Course]
+    may_skid: bool = False
+    by_force: bool = True
+    told: Courses = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    pushed: set[str] = field(default_factory=set)
+    """Who stands and is set rolling."""
+
+    def __post_init__(self) -> None:
+        self.actors = {a.id: a for a in self.behavior.actors}
+
+    def as_they_drive(self, conflict: Contact) -> Encounter | None:
+        """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
+        a, b = self._roles(conflict)
+        ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
+        sides = (conflict.striker_area, conflict.struck_area)
+        return search(ordinary, sides) or search(ordinary, None) or self.of(conflict)
+
+    def of(self, contact: Contact) -> Encounter | None:
+        """How the declared pair comes to touch; None where they cannot be brought together."""
+        a, b = self._roles(contact)
+        wanted = (contact.striker_area, contact.struck_area)
+        found = search(self._stages(a, b), wanted)
+        if found is None and self.by_force:
+            found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
+        if found is None:
+            found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
+            self.notes.append(cannot(contact, found))
+        return found
+
+    def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
+        """Ordinary driving, turns on other lines, then the wanted sides turned to each other, one of both, by force."""
+        yield (self._options(a, b, options), self._options(b, a, options)), _TRIES[0]
+        if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
+            yield (self._options(a, b, turned), self._options(b, a, turned)), _TURNING
+        facing = self._options(a, b, aimed), self._options(b, a, aimed)
+        yield facing, _TRIES[1]
+        plain = self._options(a, b, plainly), self._options(b, a, plainly)
+        yield (plain[0], facing[1]), _ONE_TURNS
+        yield (facing[0], plain[1]), _ONE_TURNS
+        yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
+        if self.by_force:
+            yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
+
+    def _roles(self, contact: Contact) -> tuple[Role, Role]:
+        a, b = self.actors[contact.striker], self.actors[contact.struck]
+        if a.maneuver in ("stopped", "parked") and b.maneuver in ("stopped", "parked"):
+            a = self._set_rolling(a, b)
+        places = self._places(a, b)
+        pair = [
+            Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
+                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()), pushed=actor.id in self.pushed)
+            for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
+        ]  # fmt: skip
+        first, second = pair
+        return facing_other(first, second), facing_other(second, first)
+
+    def _set_rolling(self, a: Actor, b: Actor) -> Actor:
+        mover = b if a.kind == "object" else a
+        self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
+        self.pushed.add(mover.id)
+        self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
+        return self.actors[a.id]
+
+    def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:
+        for one, other in ((a, b), (b, a)):
+            if one.kind in _LANELESS and other.kind not in _LANELESS:
+                here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
+                return here, here
+        pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
+        return meeting_places(pair[0], pair[1])
+
+    def _station_for(self, one: Actor, driver: Actor) -> float:
+        """Where on a driver's course a pedestrian or an object is met."""
+        course, length = self.courses[driver.id], size_m(driver)[0]
+        if one.kind == "pedestrian":
+            return crosswalk_station(driver, course, length, one)
+        return preferred_station(driver, course, length)
+
+    def _options(self, role: Role, other: Role, ways: Callable[[Role], list[Option]]) -> list[Option]:
+        if role.actor.kind != "pedestrian" or other.actor.kind in _LANELESS:
+            return ways(role)
+        found = []
+        for cost, course, place in walking_courses(other.course, other.place.station_m, role.side):
+            walk = replace(role, course=course, place=place)
+            found += [replace(option, extra_cost=cost) for option in ways(walk)]
+        return sorted(found, key=lambda option: option.cost)

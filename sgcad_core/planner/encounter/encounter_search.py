@@ -1,0 +1,291 @@
+"""When and where two motions first touch, over all shifts of their clocks.
+
+Both motions are sampled on one time grid; a shift of the clocks is a diagonal of the matrix of their pairs
+of poses (a column where one of them only enumerates places to stand at). Pure search on arrays; knows
+neither roads nor maneuvers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sgcad_core.geometry.plane import SIDES, Floats, box_gaps, overlap_centers, sides_at
+from sgcad_core.planner.aftermath.impact import FRICTION
+from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
+from sgcad_core.records.specs import Area
+
+Ints = NDArray[np.int_]
+
+DEPTH_M = 0.016
+"""How deep the boxes overlap at the first common sample: enough to be seen, less than `wreck.SEEN_M`, so that what
+follows from the touch begins behind that sample."""
+_SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
+"""A blow with so much lever the told way costs nothing; with as much the other way all of it."""
+_SECANTS = 6
+"""Until the time of that overlap is told to some microseconds."""
+_MOST_SHIFTS = 64
+_LEAST_MARGIN = 0.003
+"""Nearer to a diagonal of the box a side is a matter of tenths of a millimetre."""
+
+
+class Meeting(NamedTuple):
+    """One contact: own times of both motions at the first common sample at which they overlap."""
+
+    cost: float
+    first: Motion
+    second: Motion
+    first_s: float
+    second_s: float
+    sides: tuple[Area, Area]
+    margin: float
+    """How clearly both sides are told, 0 to 1."""
+
+
+class _Touches(NamedTuple):
+    """First overlaps, one a shift: grid indices (fractional) of both motions where they are DEPTH_M deep."""
+
+    key: Ints
+    first: Floats
+    second: Floats
+
+
+class _Judged(NamedTuple):
+    """Touches with the side codes of both motions, the smaller of both margins, and how deep they really are."""
+
+    touches: _Touches
+    sides: tuple[Ints, Ints]
+    margins: Floats
+    depth: Floats
+
+
+_KEPT = 2_000
+_known: dict[tuple[bytes, bytes], tuple[_Judged | None]] = {}
+"""Touches of pairs of motions, some 4 KB each: other readings of a report, and other sides, try many pairs again."""
+
+
+def meet(
+    first: Motion,
+    second: Motion,
+    wanted: tuple[Area, Area] | None,
+    spins: tuple[float, float] = (0.0, 0.0),
+    *,
+    glances: bool = False,
+) -> Meeting | None:
+    """The best contact of two motions on the wanted sides (any sides where None), or None.
+
+    `spins`: how each is to turn behind it: 1 counter-clockwise, -1 clockwise, 0 as it comes. `glances`: off center.
+    """
+    found = _fitting(first, second, wanted)
+    if found is None:
+        return None
+    judged, good = found
+    touches, sides, margins, _ = judged
+    cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
+    if any(spins) or glances:
+        cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
+    return _meeting(first, second, judged, int(np.argmin(np.where(good, cost, np.inf))), cost)
+
+
+def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count: int) -> list[Meeting]:
+    """Contacts all along the wanted sides: `count` at most, over all shifts of the clocks that have one."""
+    found = _fitting(first, second, wanted)
+    if found is None:
+        return []
+    judged, good = found
+    cost = _cost(first, second, judged.touches.first, judged.touches.second, judged.margins)
+    able = np.flatnonzero(good)
+    shares = (np.arange(count) + 0.5) / count
+    chosen = dict.fromkeys(int(able[int(share * len(able))]) for share in shares)
+    return [_meeting(first, second, judged, number, cost) for number in chosen]
+
+
+def _fitting(
+    first: Motion, second: Motion, wanted: tuple[Area, Area] | None
+) -> tuple[_Judged, NDArray[np.bool_]] | None:
+    """All touches, and which of them are clear and on the wanted sides; None where none is."""
+    judged = _judged(first, second)
+    if judged is None:
+        return None
+    _, sides, margins, depth = judged
+    good = (depth > 0.2 * DEPTH_M) & (depth < 1.2 * DEPTH_M) & (margins > _LEAST_MARGIN)
+    if wanted is not None:
+        good &= (sides[0] == SIDES.index(wanted[0])) & (sides[1] == SIDES.index(wanted[1]))
+    return (judged, good) if good.any() else None
+
+
+def _meeting(first: Motion, second: Motion, judged: _Judged, number: int, cost: Floats) -> Meeting:
+    """One of the touches as a record."""
+    touches, sides, margins, _ = judged
+    named = (_side(sides[0][number]), _side(sides[1][number]))
+    first_s, second_s = (float(_own_s(k[number])) for k in (touches.first, touches.second))
+    return Meeting(float(cost[number]), first, second, first_s, second_s, named, float(margins[number]))
+
+
+def _side(code: int) -> Area:
+    names: tuple[Area, ...] = ("front", "left", "back", "right")
+    return names[int(code)]
+
+
+def _judged(first: Motion, second: Motion) -> _Judged | None:
+    """Where two motions touch, told once for all who ask; None where they do not."""
+    key = first.digest, second.digest
+    if known := _known.get(key):
+        return known[0]
+    touches = _touches(first, second)
+    if len(_known) >= _KEPT:
+        _known.clear()
+    found = touches and _Judged(touches, *_judge(first, second, touches.first, touches.second))
+    _known[key] = (found,)
+    return found
+
+
+def _touches(first: Motion, second: Motion) -> _Touches | None:
+    """The first touch for every shift of the clocks that has one."""
+    if first.standing and second.standing:
+        return None
+    p, q = first.window_poses, second.window_poses
+    i, j = _near(p, q, (math.hypot(*first.size) + math.hypot(*second.size)) / 2)
+    if not len(i):
+        return None
+    key = j if second.standing else i if first.standing else j - i
+    low = int(key.min())
+    some = (key - low) % max(1, math.ceil((int(key.max()) - low) / _MOST_SHIFTS)) == 0
+    i, j, key = i[some], j[some], key[some]
+    hit = box_gaps(p[i], first.size, q[j], second.size) <= 0
+    i, j = i[hit], j[hit]
+    kept, at = np.unique(key[hit], return_index=True)
+    inside = (i[at] > 0) & (j[at] > 0)
+    kept, at = kept[inside], at[inside]
+    if not len(at):
+        return None
+    return _refined(first, second, kept, i[at].astype(float), j[at].astype(float))
+
+
+def _near(p: Floats, q: Floats, reach_m: float) -> tuple[Ints, Ints]:
+    """Index pairs of poses whose centers lie within reach, ordered by the first index."""
+    rows, columns = np.arange(len(p)), np.arange(len(q))
+    for _ in range(2):
+        rows = rows[_about(p[rows], q[columns], reach_m)]
+        columns = columns[_about(q[columns], p[rows], reach_m)]
+    apart = p[rows, 0][:, None] - q[columns, 0]
+    apart *= apart  # in place: these matrices have some 100,000 numbers
+    north = p[rows, 1][:, None] - q[columns, 1]
+    north *= north
+    apart += north
+    i, j = np.divmod(np.flatnonzero(apart < reach_m * reach_m), max(len(columns), 1))
+    return rows[i], columns[j]
+
+
+def _about(points: Floats, others: Floats, reach_m: float) -> NDArray[np.bool_]:
+    """Which points lie in the others' bounding box, widened by reach."""
+    if not len(others):
+        return np.zeros(len(points), dtype=bool)
+    low, high = others[:, :2].min(axis=0) - reach_m, others[:, :2].max(axis=0) + reach_m
+    inside: NDArray[np.bool_] = ((points[:, :2] >= low) & (points[:, :2] <= high)).all(axis=1)
+    return inside
+
+
+def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> _Touches:
+    """Where the overlap is DEPTH_M deep, from overlaps told to a grid step."""
+    move_i, move_j = float(not first.standing), float(not second.standing)
+
+    standing = [m.poses(_own_s(k)) if m.standing else None for m, k in ((first, i), (second, j))]
+
+    def over(at: Floats) -> Floats:
+        p, q = standing
+        p = first.poses(_own_s(i + at)) if p is None else p
+        q = second.poses(_own_s(j + at)) if q is None else q
+        return -DEPTH_M - box_gaps(p, first.size, q, second.size)
+
+    at = _root(over, len(i))
+    return _Touches(key, i + move_i * at, j + move_j * at)
+
+
+def _root(over: Callable[[Floats], Floats], count: int) -> Floats:
+    """(count,) zeros of a function that rises from below 0 to above it between -1 and 1, by false position.
+
+    Where one end stays, its value is halved (Illinois algorithm; M. Dowell, P. Jarratt, BIT 11, 1971).
+    """
+    here = over(np.zeros(count))
+    there = over(np.where(here >= 0.0, -1.0, 1.0))
+    low, high = np.where(here >= 0.0, -1.0, 0.0), np.where(here >= 0.0, 0.0, 1.0)
+    below, above = np.minimum(here, there), np.maximum(here, there)
+    at, was = high, np.zeros(count)
+    for _ in range(_SECANTS):
+        at = np.clip((low * above - high * below) / np.maximum(above - below, 1e-12), low, high)
+        value = over(at)
+        side = np.sign(value)
+        deep, half = side >= 0.0, np.where(side == was, 0.5, 1.0)
+        below, above = np.where(deep, below * half, value), np.where(deep, value, above * half)
+        low, high, was = np.where(deep, low, at), np.where(deep, at, high), side
+    return at
+
+
+def _own_s(index: Floats) -> Floats:
+    """Own times at fractional indices of the window's grid."""
+    return index * STEP_S + WINDOW_S[0]
+
+
+def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[Ints, Ints], Floats, Floats]:
+    """Side codes of both, the smaller of both margins, and the depth of the overlap."""
+    p, q = first.poses(_own_s(i)), second.poses(_own_s(j))
+    center = overlap_centers(p, first.size, q, second.size)
+    (side_p, clear_p), (side_q, clear_q) = sides_at(p, first.size, center), sides_at(q, second.size, center)
+    return (side_p, side_q), np.minimum(clear_p, clear_q), -box_gaps(p, first.size, q, second.size)
+
+
+def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
+    """Unclear sides and places that fit ill; small ones decide between shifts only."""
+    ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
+    unclear: Floats = 30.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
+    return ill + unclear
+
+
+def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], glances: bool) -> Floats:
+    """The cost of blows that turn a body otherwise than told, by their lever about its center."""
+    found = np.zeros(len(levers[0]))
+    for lever, spin in zip(levers, spins, strict=True):
+        found += abs(spin) * _SPIN_COST * np.clip((_CLEAR_LEVER_M - spin * lever) / (2 * _CLEAR_LEVER_M), 0.0, 1.0)
+        if glances and not spin:
+            found += _GLANCE_COST * np.clip(1 - np.abs(lever) / _CLEAR_LEVER_M, 0.0, 1.0)
+    return found
+
+
+def _levers(first: Motion, second: Motion, touches: _Touches, sides: tuple[Ints, Ints]) -> tuple[Floats, Floats]:
+    """Levers of the blow about both centers, metres, counter-clockwise positive: friction bounds its direction."""
+    i, j = _own_s(touches.first), _own_s(touches.second)
+    p, q = first.poses(i), second.poses(j)
+    center = overlap_centers(p, first.size, q, second.size)
+    push = _velocity(first, i) - _velocity(second, j)
+    flank_of_second = (sides[1] % 2 == 1) & (sides[0] % 2 == 0)
+    out = np.where(flank_of_second, q[:, 2] + sides[1] * math.pi / 2 + math.pi, p[:, 2] + sides[0] * math.pi / 2)
+    way = np.arctan2(push[:, 1], push[:, 0])
+    most = math.atan(FRICTION)
+    way = out + np.clip(np.mod(way - out + math.pi, 2 * math.pi) - math.pi, -most, most)
+    arms = [center - pose[:, :2] for pose in (p, q)]
+    turning = [arm[:, 0] * np.sin(way) - arm[:, 1] * np.cos(way) for arm in arms]
+    return -turning[0], turning[1]
+
+
+def _velocity(motion: Motion, own_s: Floats) -> Floats:
+    """(n, 2) m/s at own times."""
+    if motion.standing:
+        return np.zeros((len(own_s), 2))
+    velocity: Floats = (motion.poses(own_s)[:, :2] - motion.poses(own_s - STEP_S)[:, :2]) / STEP_S
+    return velocity
+
+
+def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:
+    """Contacts near the end of their good interval: a little change of timing would spoil them."""
+    rank, bad = np.arange(len(key)), ~good
+    before = np.maximum.accumulate(np.where(bad, rank, -1))
+    after = np.minimum.accumulate(np.where(bad, rank, len(key))[::-1])[::-1]
+    room = np.minimum(rank - before, after - rank)
+    run = np.maximum(after - before, 1)
+    off_middle: Floats = 0.15 * (1 - 2 * room / run) + 0.15 * (room < 2)
+    return off_middle

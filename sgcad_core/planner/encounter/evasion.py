@@ -1,0 +1,122 @@
+"""How a driver who sees a conflict coming changes his motion: brakes, accelerates, steers aside.
+
+A reaction begins at an own time of the motion and is told by its share of the most that a driver does; before it the
+motion is as planned. Knows one actor; not what he avoids. SI units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.actor_plan import Drift
+from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.motion import STEP_S, Motion
+
+MOST_STEER_M = 4.2
+"""Sideways at most: a lane and a little."""
+SLIGHT_STEER_M = 1.2
+"""Sideways at most where he brakes as well: within the lane and its edge."""
+_FIRM, _ACCELERATES = 0.6, 0.35
+"""Shares of the friction for braking (dry: 5 m/s2) and for accelerating; steering takes what `Pace` plans with."""
+_MOST_ACCELERATION_MPS2 = 3.0
+"""More than most cars can do at the speeds of traffic."""
+_EASE = 1.15
+"""Length of the way over which one steers aside, over the shortest for a usual swerve's 6 m/s2."""
+_SWERVE_MPS2 = 6.0
+_OVER_CRUISE = 1.35
+"""Who accelerates goes so much faster than he would have at most."""
+_LASTS_S = 14.0
+
+
+class Reaction(NamedTuple):
+    """What a driver does from an own time on; shares 0 (nothing) to 1 of the most that he would do."""
+
+    from_s: float
+    braking: float = 0.0
+    accelerating: float = 0.0
+    left_m: float = 0.0
+    """Sideways, to the left; the whole of it."""
+    down_to_mps: float = 0.0
+    """Braking ends at this speed."""
+    hard: float = 1.0
+    """Factor on the usual share of the friction that braking takes."""
+
+    def scaled(self, share: float) -> Reaction:
+        """A share of it, from the same moment on."""
+        return self._replace(
+            braking=share * self.braking, accelerating=share * self.accelerating, left_m=share * self.left_m
+        )
+
+    def braking_mps2(self, grip_mps2: float) -> float:
+        """Deceleration on a surface of some grip."""
+        return self.braking * self.hard * _FIRM * grip_mps2
+
+    def accelerating_mps2(self, grip_mps2: float) -> float:
+        """Acceleration on a surface of some grip."""
+        return self.accelerating * min(_ACCELERATES * grip_mps2, _MOST_ACCELERATION_MPS2)
+
+
+def reacted(option: Option, motion: Motion, reaction: Reaction) -> Motion:
+    """A way's motion with a reaction. The motion before it, and its own clock, stay as they are."""
+    if reaction.left_m:
+        motion = _steered(option, motion, reaction)
+    grip = option.role.grip_mps2
+    slower, faster = reaction.braking_mps2(grip), reaction.accelerating_mps2(grip)
+    if slower or faster:
+        motion = _paced(motion, reaction, faster - slower)
+    begins = float(motion.stations([reaction.from_s])[0])
+    return replace(motion, begins_m=min(motion.begins_m, begins))
+
+
+def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
+    """The way with a swerve on top, as long as friction asks; its clock agrees with the motion's where it begins."""
+    station, ahead = (float(s) for s in motion.stations([reaction.from_s, reaction.from_s + STEP_S]))
+    speed = (ahead - station) / STEP_S
+    left = abs(reaction.left_m)
+    length = max(_EASE * speed * math.sqrt(5.77 * left / _SWERVE_MPS2), 3.3 * left, 4.0)
+    dodge = Drift(0.0, reaction.left_m, length, station + length, note="steers aside")
+    steered = replace(option, dodge=dodge).motion
+    late = steered.time_at(station) - reaction.from_s
+    return replace(steered, time_s=steered.time_s - late)
+
+
+def _paced(motion: Motion, reaction: Reaction, gain_mps2: float) -> Motion:
+    """The same way at another pace from the reaction on: never faster in a bend than it would have been, or a third."""
+    line = motion.axle or motion.path
+    along = line.lengths()
+    before = motion.time_s < reaction.from_s
+    station = float(motion.stations([reaction.from_s])[0])
+    at = _integrated(motion, reaction, gain_mps2, float(np.interp(station, line.s_m, along)))
+    stations = np.interp(at, along, line.s_m)
+    times = reaction.from_s + STEP_S * np.arange(len(stations))
+    rises = np.append(True, np.diff(stations) > 1e-9)
+    last = stations[-1] + np.array([1e-6])
+    return replace(
+        motion,
+        time_s=np.concatenate((motion.time_s[before], times[rises], times[-1:] + 600.0)),
+        station_m=np.concatenate((motion.station_m[before], stations[rises], last)),
+    )
+
+
+def _integrated(motion: Motion, reaction: Reaction, gain_mps2: float, start_m: float) -> Floats:
+    """Way along the line of the wheels at each step from the reaction on, metres."""
+    own = reaction.from_s + STEP_S * np.arange(round(_LASTS_S / STEP_S) + 1)
+    line = motion.axle or motion.path
+    usual_m = np.interp(motion.stations(own), line.s_m, line.lengths())
+    usual_mps = np.gradient(usual_m, own)
+    most = usual_mps * (_OVER_CRUISE if gain_mps2 > 0 else 1.0)
+    speed, at = float(usual_mps[0]), start_m
+    floor = min(reaction.down_to_mps, speed)
+    found = [at]
+    for _ in own[1:]:
+        wanted = max(speed + gain_mps2 * STEP_S, floor)
+        new = min(wanted, max(float(np.interp(at, usual_m, most)), floor))
+        at += (speed + new) / 2 * STEP_S
+        speed = new
+        found.append(at)
+    return np.array(found)

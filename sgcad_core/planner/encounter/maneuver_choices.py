@@ -1,0 +1,284 @@
+"""The choices that an actor has within its maneuver: line, speed, angle of the box, each with a cost.
+
+Costs only order the search: 0 is ordinary driving as stated, 0.1 to 0.3 nobody would notice, 0.3 to 1 an
+evasive or careless driver, above that a loss of control.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from sgcad_core.planner.actor_plan import (
+    Drift,
+    Pacing,
+    Role,
+    Twist,
+    along_with,
+    is_beside,
+    is_standing,
+    mismatch,
+    usual_speed,
+)
+from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.lines.axle_to_box import tightest
+from sgcad_core.planner.lines.turning import corner_lines
+
+SWERVE_MPS2 = 6.0
+"""Lateral acceleration of which the length of a swerve is told; the speed follows from friction all the same."""
+_LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
+_TOLD_SPEED = 0.25
+"""More for another speed than told where a told spin could be had by it."""
+_NOT_EVADING = 0.3
+"""Cost of the own line for one of whom it is told that he steered aside."""
+_EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
+OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
+OTHER_LANE_COST = 0.45
+ASKEW, _STEERS = "stands askew", "steers aside before contact"
+SLIDES = "slides into the contact at an angle that no steering explains"
+_SLIDING = 2.0
+"""Cost of a slide: more than any steering."""
+_THROUGH_BEND = 0.35
+"""Who joins from another road comes around a bend: of his usual speed little more is left there."""
+_SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
+
+
+def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
+    """Changes of line: what the maneuver asks for, else the lane, a little beside it, and swerves.
+
+    Not `fine`: without those that differ by less than a metre.
+    """
+    if role.actor.maneuver in _LANE_CHANGES:
+        joins = role.actor.maneuver == "merge" and _joins(role)
+        changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
+    wanted = _maneuver_shift(role)
+    if wanted is not None:
+        shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
+        if role.spins or role.glances:
+            shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
+        shares = shares if fine else [shares[0], shares[3], shares[4]]
+        gentle = [_drift(role, wanted * k, cost, 1.7) for k, cost in shares]
+        hard = [_drift(role, wanted * k, cost + 0.12, 1.0) for k, cost in shares[:3]]
+        sharp = [_drift(role, wanted * k, cost + 0.4, 0.6) for k, cost in shares[:3]]
+        return [*gentle, *hard, *sharp, Drift(0.8)]
+    near = _in_lane(role) if fine else []
+    if evading := _evading(role):
+        return [
+            *evading,
+            Drift(_NOT_EVADING),
+            *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
+        ]
+    return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _evading(role: Role) -> list[Drift]:
+    """Swerves to the told hand; none where no steering is told, or where the maneuver is a way of its own."""
+    if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
+        return []
+    hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
+    ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
+    return [
+        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(
+            evades=True
+        )
+        for left, cost, ease in ways
+        for hand in hands
+    ]
+
+
+def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
+    """Into the lane on the stated side; where the other one drives along, from beside it into its lane."""
+    way = _change_way(role)
+    lane = way * role.course.lane_width_m
+    target = role.place.aside_m if along_with(role) and abs(role.place.aside_m) < 16 else lane
+    found = []
+    for ease, cost in ((1.7, 0.0), (1.0, 0.1), (0.6, 0.3), (0.4, 0.45)):
+        for more in further_m:
+            drift = _halfway(_drift(role, lane + way * more, cost + abs(more) / 8, ease))
+            if abs(target - lane) > 0.5:
+                off_road = _beside_the_road(role, target - lane)
+                found.append(drift._replace(before_m=target - lane, cost=drift.cost + off_road))
+                drift = drift._replace(cost=drift.cost + (0.0 if off_road else 0.3))
+            found.append(drift)
+    return found
+
+
+def _joins(role: Role) -> bool:
+    """Whether its way itself leads beside the other one: out of another road, at a junction."""
+    return _from_another_road(role) and any(p.is_junction for p in role.course.passages)
+
+
+def _from_another_road(role: Role) -> bool:
+    """Whether it starts on another road than the one that it meets."""
+    return role.other_road not in (None, role.actor.road)
+
+
+def _beside_the_road(role: Role, left_m: float) -> float:
+    """The cost of driving so far beside the own lane all the way: none on the road, much off it."""
+    half = role.size[1] / 2 - 0.3
+    return 0.6 if left_m + half > role.course.left_edge_m or half - left_m > role.course.right_edge_m else 0.0
+
+
+def _halfway(drift: Drift) -> Drift:
+    """A change of lane is under way, not over, when the other one beside is met."""
+    return drift._replace(end_m=drift.end_m + 0.4 * drift.length_m)
+
+
+def _change_way(role: Role) -> float:
+    """1: to the left, -1: to the right; one who merges moves towards the other one."""
+    if role.actor.maneuver in ("lane_change_left", "lane_change_right"):
+        return 1.0 if role.actor.maneuver == "lane_change_left" else -1.0
+    if is_beside(role.side) or is_beside(role.other_side):
+        return 1.0 if role.side == "left" or role.other_side == "right" else -1.0
+    if abs(role.place.aside_m) > 0.5:
+        return math.copysign(1.0, role.place.aside_m)
+    return -1.0 if role.course.opposite_m > 1.5 * role.course.lane_width_m else 1.0
+
+
+def _maneuver_shift(role: Role) -> float | None:
+    """Where a drifting maneuver leads, metres to the left; None for the others."""
+    course, lane = role.course, role.course.lane_width_m
+    return {
+        "crossing_centerline": course.opposite_m,
+        "overtaking": min(lane, course.opposite_m) if course.left_edge_m > lane else course.opposite_m,
+        "departing_road_left": course.left_edge_m + 4.0,
+        "departing_road_right": -(course.right_edge_m + 4.0),
+    }.get(role.actor.maneuver)
+
+
+def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
+    """A drift as long as its lateral acceleration allows: ease 1 is a hard swerve, more is gentler."""
+    length = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    return Drift(cost, left_m, length, role.place.station_m, note=note)
+
+
+def _in_lane(role: Role) -> list[Drift]:
+    return [_drift(role, left, cost, 1.7) for left, cost in ((0.5, 0.1), (-0.5, 0.1), (1.0, 0.25), (-1.0, 0.25))]
+
+
+def _other_lanes(role: Role) -> list[Drift]:
+    """The lanes beside its own, driven from the start: nearly free where no lane is stated."""
+    course, stated = role.course, role.actor.lane is not None
+    cost, note = (OTHER_LANE_COST, OTHER_LANE) if stated else (0.03, "")
+    rooms = ((1, course.left_edge_m), (-1, course.right_edge_m))
+    return [
+        Drift(cost, sign * course.lane_width_m, 1.0, -1e4, note=note)
+        for sign, room in rooms
+        if room > course.lane_width_m and (sign < 0 or course.opposite_m > 1.5 * course.lane_width_m)
+    ]
+
+
+def _swerves(role: Role) -> list[Drift]:
+    place = role.place
+    found = []
+    if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
+        for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
+            found.append(_drift(role, place.aside_m + extra, cost, 1.3, "leaves its lane"))
+    found += _from_beside(role)
+    for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
+        found.append(_drift(role, left, cost, 1.0, "swerves"))
+    return found
+
+
+def _from_beside(role: Role) -> list[Drift]:
+    """From the lane beside the other one, on the side that is to be touched, over into its lane."""
+    sides = {("left", None): -1, ("right", None): 1, (None, "left"): 1, (None, "right"): -1}
+    ways = [w for (own, other), w in sides.items() if own == role.side or (other and other == role.other_side)]
+    if not along_with(role) or not ways:
+        return []
+    beside = ways[0] * role.course.lane_width_m
+    before = role.place.aside_m + beside
+    cost, note = (0.25, "") if abs(before) < 0.5 else (0.35, FROM_OTHER_LANE)
+    cost += _beside_the_road(role, before)
+    easy = [_drift(role, -beside, cost + more, ease, note) for ease, more in ((1.7, 0.0), (0.8, 0.15), (0.5, 0.3))]
+    return [_halfway(drift)._replace(before_m=before) for drift in easy]
+
+
+def pacings(role: Role) -> list[Pacing]:
+    if role.actor.kind == "pedestrian":
+        return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
+    if role.course.stalls and role.actor.maneuver == "backing":
+        return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
+    if role.pushed:
+        return [Pacing(0.0, 1.0, True)]
+    told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
+    found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
+    found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]
+    if role.actor.maneuver in TURNING or role.course.passages:
+        found.append(Pacing(0.25 + told, 1.0, True, "starts from a stop"))
+    return found
+
+
+def _following(role: Role) -> list[Pacing]:
+    """Speeds at which the one behind catches up with the one ahead, both driving the same way."""
+    if not along_with(role) or "back" not in (role.side, role.other_side):
+        return []
+    own, other = usual_speed(role), role.other_mps
+    if role.side != "back" and own < other + 3.0:
+        return [Pacing(0.25, (other + 5.0) / own, note=_FASTER)]
+    if role.side == "back" and own > other - 3.0:
+        slower = [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
+        if _from_another_road(role):
+            slower.append(Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER))
+        return slower
+    return []
+
+
+def aiming(role: Role) -> list[Twist]:
+    """Angles by which the box turns until its wanted side faces the other's approach; none where it does."""
+    off = mismatch(role)
+    if abs(off) < math.radians(30):
+        return []
+    angles = [off - math.copysign(math.radians(k), off) for k in (45, 25, 0)]
+    return [twist for a in angles for twist in _turned(role, a, 0.5 + abs(a) / 1.6 + _unlike(role, a))]
+
+
+def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
+    """The ways to come to an angle: standing so, steering there, and in a skid where the report tells one."""
+    if is_standing(role):
+        return [Twist(cost, angle_rad, ASKEW)]
+    found = [Twist(cost, angle_rad, _STEERS)]
+    if abs(role.place.aside_m) < 16:
+        found.append(Twist(cost + 0.05, angle_rad, _STEERS, through=True))
+        reach = 1 - math.cos(angle_rad)
+        if abs(role.place.aside_m) > 1.0 and role.place.aside_m * angle_rad > 0 and reach > 0.02:
+            radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
+            found.append(Twist(cost + 0.02, angle_rad, _STEERS, radius_m=radius))
+    if role.may_skid:
+        found.append(Twist(cost + 0.1, angle_rad, "skids before contact", skids=True))
+    return found
+
+
+def _unlike(role: Role, angle_rad: float) -> float:
+    """Who goes straight is not seen turned by more than 30 degrees where somebody else could be."""
+    return 0.4 if role.actor.maneuver == "straight" and abs(angle_rad) > math.radians(28) else 0.0
+
+
+def skids(role: Role) -> list[Twist]:
+    """Straight on, steering aside a little, and what brings the wanted side about."""
+    small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
+    return [Twist(0.0), *small, *aiming(role)]
+
+
+def spins(role: Role) -> list[Twist]:
+    """Any angle, in steps of 45 degrees, and small ones."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
+
+
+def slides(role: Role) -> list[Twist]:
+    """The box at any angle to its way, though the report tells no loss of control: dearer than all driving."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    off = mismatch(role)
+    facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []
+    return [Twist(0.0), *facing_it, *(Twist(_SLIDING + abs(a), a, SLIDES, skids=True) for a in angles)]
+
+
+def homing(role: Role) -> list[Drift]:
+    """Its own line, and one bent to lead through the other's meeting place."""
+    place, lines = role.place, _from_beside(role)[:2] or drifts(role)[:2]
+    if place.apart_m < 0.8:
+        return lines
+    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, "leaves its course")
+    return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]

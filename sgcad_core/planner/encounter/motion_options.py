@@ -1,0 +1,296 @@
+"""The ways in which an actor may carry out its maneuver, the most ordinary first.
+
+An option is a motion with the cost of its oddity: lines within the lane, stated speeds and usual turns cost
+nothing, swerves, other speeds and skids cost more. Knows one actor, its course and its meeting place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.actor_plan import (
+    BRAKED_TO,
+    PUSHED_M,
+    Drift,
+    Pacing,
+    Role,
+    Twist,
+    facing,
+    is_beside,
+    is_standing,
+    starts_at_m,
+    usual_speed,
+)
+from sgcad_core.planner.encounter.maneuver_choices import (
+    FROM_OTHER_LANE,
+    OTHER_LANE,
+    OTHER_LANE_COST,
+    aiming,
+    drifts,
+    homing,
+    pacings,
+    skids,
+    slides,
+    spins,
+)
+from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, misfit, outside, waiting_zone
+from sgcad_core.planner.lines.axle_to_box import easiest, offset, offsets, rolled, swung, tightest
+from sgcad_core.planner.lines.line_shift import line_of, profile
+from sgcad_core.planner.lines.path import Path, ramp, tamed
+from sgcad_core.planner.lines.turning import turning_lines
+from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
+from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
+from sgcad_core.records.specs import Area
+
+_SWING_ASIDE_M = 5.0
+"""Who steers aside does so within this much of its line, if need be slowly."""
+_VERGE_M = 3.0
+"""Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
+_STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
+"""Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
+_PLAIN = 4
+_LEAST_SWING = 1.2
+"""Radius of who steers aside, over the tightest that the vehicle can do."""
+_UNBRAKED = 0.3
+"""Cost of a contact before a told braking shows."""
+_UNDER_WAY_M = 2.5
+"""Who starts from a stop is moving only this far on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Option:
+    """One way to drive; its motion is made when it is asked for."""
+
+    role: Role
+    drift: Drift
+    pacing: Pacing
+    twist: Twist
+    extra_cost: float = 0.0
+    dodge: Drift | None = None
+    """A swerve on top of its line, away from a conflict."""
+
+    @property
+    def cost(self) -> float:
+        """The oddity of this way."""
+        return self.drift.cost + self.pacing.cost + self.twist.cost + self.extra_cost
+
+    @property
+    def oddity(self) -> float:
+        """The cost without that of another lane: lanes are often told otherwise than they were driven."""
+        elsewhere = self.drift.note in (OTHER_LANE, FROM_OTHER_LANE)
+        return self.cost - (min(self.drift.cost, OTHER_LANE_COST) if elsewhere else 0.0)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was changed about the stated maneuver, in words."""
+        said = (self.drift.note, self.pacing.note, self.twist.note)
+        return tuple(f"{self.role.actor.id} {words}" for words in said if words)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The motion itself."""
+        return standing(self) if is_standing(self.role) else driving(self)
+
+    def motion_with(self, other: Option) -> Motion:
+        """The motion in an encounter with another option: an object stands in the other's way."""
+        return in_the_way(self, other) if self.role.actor.kind == "object" else self.motion
+
+
+def options(role: Role) -> list[Option]:
+    """All ways of an actor, cheapest first; the same ones whenever a role is asked: their motions are made once."""
+    known: list[Option] | None = role.kept.get("options")
+    if known is None:
+        known = role.kept["options"] = _sorted(role, _parts(role))
+    return list(known)
+
+
+def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
+    if role.actor.kind == "object":
+        return product(beside_the_way(role), (Pacing(0.0),), any_angle(role))
+    if is_standing(role):
+        return product(stand_offs(role), (Pacing(0.0),), askew(role))
+    if role.actor.kind == "pedestrian":
+        return product(steps_aside(), pacings(role), (Twist(0.0),))
+    return product(drifts(role), pacings(role), skids(role))
+
+
+def aimed(role: Role) -> list[Option]:
+    """The ways that turn the wanted side to where the other one comes from; all ways where it faces there."""
+    angles = [] if in_stall(role) else aiming(role)
+    if not angles:
+        return options(role)
+    if is_standing(role):
+        return _sorted(role, product(stand_offs(role), (Pacing(0.0),), angles))
+    return _sorted(role, product(drifts(role, fine=False), pacings(role), angles))
+
+
+def plainly(role: Role) -> list[Option]:
+    """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
+    return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
+
+
+def turned(role: Role) -> list[Option]:
+    """Who turns on any line of the turn and at any usual speed; others plainly."""
+    turns = role.course.turn is not None and role.actor.maneuver in TURNING
+    return _sorted(role, product(turning_lines(role), pacings(role), (Twist(0.0),))) if turns else plainly(role)
+
+
+def forced(role: Role) -> list[Option]:
+    """A few ways that lead through the very meeting place with the wanted side ahead, however odd."""
+    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+        return aimed(role)
+    return _sorted(role, product(homing(role), pacings(role)[:2], aiming(role)[-1:] or [Twist(0.0)]))
+
+
+def spun(role: Role) -> list[Option]:
+    """Its line with the box at any angle: what remains where no driving explains the sides."""
+    if role.actor.kind in ("object", "pedestrian"):
+        return options(role)
+    lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
+    return _sorted(role, product(lines, pacings(role)[:1], spins(role)))
+
+
+def slid(role: Role) -> list[Option]:
+    """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
+    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+        return spun(role)
+    return _sorted(role, product(homing(role)[::2], pacings(role)[:1], slides(role)))
+
+
+def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Option]:
+    return sorted((Option(role, *part) for part in parts), key=lambda option: option.cost)
+
+
+# ------------------------------------------------------------------ making a motion
+def driving(option: Option) -> Motion:
+    """A motion along the road with the option's changes."""
+    role, place = option.role, option.role.place.station_m
+    drift, pace = option.drift, _pace(role, option)
+    line, path, drivable = _lines(option, pace)
+    time, station = drive(line, pace, place, (path, role.course.path))
+    drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
+    path = _skidding(path, option.twist, place, pace.cruise_mps)
+    begins = _begins(role, drift)
+    penalty = misfit(role, path, drift, begins)
+    if pace.starts_at_m is not None:
+        penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + (PUSHED_M / 2 if role.pushed else _UNDER_WAY_M))
+    if pace.brakes and pace.slow_at_m is not None:
+        penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
+    return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
+
+
+def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
+    """As `_boxed`. Where no speed bends the line, all ways to drive it share one: it is what a motion costs most."""
+    role, base, place = option.role, option.role.course.path, option.role.place.station_m
+    of = option.drift, option.dodge, place, role.size, role.actor.kind, role.actor.maneuver
+    if (bends := bool(option.twist.angle_rad) and not option.twist.skids) or of not in base.derived:
+        line = _steered(line_of(base, option.drift, place), option, pace)
+        made = _boxed(role, line if option.dodge is None else line.moved(profile(line.s_m, option.dodge)))
+        if bends:
+            return made
+        base.derived[of] = made
+    return base.derived[of]
+
+
+def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
+    """The line of the axle and the path of the center, with the center's stations, and whether it can be driven."""
+    if role.actor.kind == "pedestrian":
+        return line, line, True
+    length, backing = role.size[0], role.actor.maneuver == "backing"
+    line = tamed(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
+    path = rolled(line, length, backing=backing)
+    drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
+    return replace(line, s_m=path.s_m), path, drivable
+
+
+def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
+    """Whether a line is far off the road at places from which the shortest approach may begin."""
+    left = offsets(role.course.path, line, stations_m)[1]
+    return bool(left.max() > role.course.left_edge_m + _VERGE_M or -left.min() > role.course.right_edge_m + _VERGE_M)
+
+
+def _steered(line: Path, option: Option, pace: Pace) -> Path:
+    """The line turned before the meeting place, as far as the box is not meant to skid."""
+    twist, role, place = option.twist, option.role, option.role.place
+    if not twist.angle_rad or twist.skids:
+        return line
+    least = _LEAST_SWING / tightest(role.size[0])
+    near = _SWING_ASIDE_M / max(1 - math.cos(twist.angle_rad), 1e-6)
+    radius = twist.radius_m or max(min(pace.cruise_mps**2 / pace.lateral_mps2, near), least)
+    turned = swung(line, twist.angle_rad, place.station_m, radius)
+    if not twist.through:
+        return turned
+    ahead, left = offset(line, turned, place.station_m)
+    off = place.aside_m - left
+    length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
+    end = place.station_m - ahead + place.ahead_m
+    begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
+    return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
+
+
+def standing(option: Option) -> Motion:
+    """A "motion" that enumerates places to stand at."""
+    role, base = option.role, option.role.course.path
+    path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
+    time, station = stand(path, role.place.station_m)
+    penalty = outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
+    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
+
+
+def in_the_way(option: Option, other: Option) -> Motion:
+    """Places for an object along the line that another actor takes, `left_m` beside it."""
+    base = other.motion.path
+    return _object_on(option, base, *stand(base, other.role.place.station_m))
+
+
+def in_path_of(option: Option, other: Motion, side: Area) -> Motion:
+    """Places for an object at one side of another motion's box, enumerated by that motion's own time."""
+    out = other.path.heading_rad + facing(side)
+    reach = (other.size[1] if is_beside(side) else other.size[0]) / 2 + 0.3 * option.role.size[0]
+    beside = other.path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
+    beside = replace(beside, heading_rad=out)
+    return _object_on(option, beside, other.time_s, other.station_m)
+
+
+def _object_on(option: Option, base: Path, time_s: Floats, station_m: Floats) -> Motion:
+    path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
+    free = np.zeros(len(path.s_m))
+    return Motion(path, time_s, station_m, option.role.size, free, -math.inf, standing=True, fixed=True)
+
+
+def _skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:
+    """The box turns as slowly as its yaw rate allows and keeps its angle from just before the meeting place."""
+    if not twist.angle_rad or not twist.skids:
+        return path
+    length = max(12.0 + 8.0 * abs(twist.angle_rad), 1.875 * abs(twist.angle_rad) * speed_mps / YAW_RADPS)
+    return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))
+
+
+def _begins(role: Role, drift: Drift) -> float:
+    """Station at which the maneuver begins to show."""
+    turn = role.course.turn
+    shown = [turn.entry_m - 2.0] if turn is not None else []
+    shown += [drift.end_m - drift.length_m] if drift.left_m and drift.end_m > 0 else []
+    return min(shown, default=role.place.station_m - (3.0 if role.actor.kind == "pedestrian" else 10.0))
+
+
+def _pace(role: Role, option: Option) -> Pace:
+    pacing, told = option.pacing, role.actor.speed_mph is not None
+    speed = usual_speed(role) * pacing.factor
+    usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
+    curve = max(usual * pacing.factor, speed if told else 3.0)
+    hard = told or bool(option.drift.note or option.twist.note or option.dodge)
+    pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
+    slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
+    if role.actor.maneuver == "slowing" or role.told.brakes:
+        at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0)
+        return replace(pace, slow_at_m=at, slow_mps=max(slowed, 1.5), brakes=role.told.brakes)
+    return pace

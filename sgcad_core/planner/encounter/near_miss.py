@@ -1,0 +1,255 @@
+"""How two on a conflict course are parted: the told evasion, as late and as strong as leaves the declared clearance.
+
+The encounter that would be a contact is given; its motions are changed from some time before it on, all evasions by one
+share of the most that a driver does, and the share is solved (bisection) so that the least distance of the boxes is the
+declared one. Where nobody evades, one of both comes earlier or later instead. Knows the pair, nobody else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from sgcad_core.geometry.distances import box_distances
+from sgcad_core.planner.encounter.evasion import MOST_STEER_M, SLIGHT_STEER_M, Reaction, reacted
+from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.pairing import Encounter
+from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, clock
+from sgcad_core.records.specs import Evasion, EvasiveManeuver, NearCrash
+
+ONSETS_S = (0.8, 1.1, 1.4, 1.7, 2.0, 2.4, 2.8, 3.3, 3.9, 4.6, 5.4)
+"""Times before the contact at which an evasion may begin; the latest that is enough is taken."""
+_HARD = 1.4
+"""Factor on usual braking where that is not enough: emergency braking, 7 m/s2 on dry roads."""
+_GENTLE = 0.5
+"""Share of usual braking with which one slows for traffic: 2.5 m/s2 on dry roads."""
+_HALVINGS = 22
+_EXACT_M = 0.02
+_SHIFT_S, _MOST_SHIFT_S = 0.1, 4.0
+_ALONG_RAD = 0.6
+_KEEPS = 0.85
+"""Who brakes behind a moving one goes on a little slower than that one."""
+_AFTER_S = 5.0
+_BRAKING_TOO: dict[EvasiveManeuver, EvasiveManeuver] = {
+    "steering": "braking_and_steering", "steering_left": "braking_and_steering_left",
+    "steering_right": "braking_and_steering_right",
+}  # fmt: skip
+_WORDS: dict[EvasiveManeuver, str] = {
+    "none": "does not evade", "braking": "brakes", "steering": "steers aside", "steering_left": "steers left",
+    "steering_right": "steers right", "braking_and_steering": "brakes and steers aside",
+    "braking_and_steering_left": "brakes and steers left", "braking_and_steering_right": "brakes and steers right",
+    "accelerating": "accelerates",
+}  # fmt: skip
+
+
+class Parted(NamedTuple):
+    """The encounter with the motions that part the two (None where nothing does), and what was done, in words."""
+
+    encounter: Encounter | None
+    notes: tuple[str, ...]
+
+
+class _Side(NamedTuple):
+    """One of both: its way, the motion of the conflict, and its own time at the contact that is avoided."""
+
+    option: Option
+    motion: Motion
+    own_s: float
+
+    @property
+    def id(self) -> str:
+        return self.option.role.actor.id
+
+    @property
+    def may_evade(self) -> bool:
+        return not self.motion.standing and self.option.role.actor.kind != "object"
+
+    def velocity(self, after_s: float = 0.0) -> tuple[float, float]:
+        """So long after the contact, m/s."""
+        if self.motion.standing:
+            return 0.0, 0.0
+        at_s = self.own_s + after_s
+        before, at = self.motion.poses([at_s - STEP_S, at_s])
+        return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
+
+
+def parted(found: Encounter | None, near: NearCrash) -> Parted:
+    """An encounter as a near crash with the declared clearance, if there are an encounter and a way to evade it."""
+    if found is None:
+        return Parted(None, ())
+    meeting = found.meeting
+    found = found._replace(meeting=meeting._replace(
+        first=_stopping(found.first, meeting.first, meeting.first_s),
+        second=_stopping(found.second, meeting.second, meeting.second_s)))  # fmt: skip
+    meeting = found.meeting
+    sides = (
+        _Side(found.first, meeting.first, meeting.first_s),
+        _Side(found.second, meeting.second, meeting.second_s),
+    )
+    none = Parted(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
+    return _Parting(found, sides, near.closest_m).best(near) or none
+
+
+def _stopping(option: Option, motion: Motion, own_s: float) -> Motion:
+    """Who slows goes on to slow behind the conflict until it stands, as gently as it is usual."""
+    if option.role.actor.maneuver != "slowing" or motion.standing:
+        return motion
+    return reacted(option, motion, Reaction(own_s - STEP_S, braking=_GENTLE))
+
+
+@dataclass(frozen=True)
+class _Parting:
+    """The search for one pair."""
+
+    found: Encounter
+    sides: tuple[_Side, _Side]
+    closest_m: float
+
+    def best(self, near: NearCrash) -> Parted | None:
+        """As told; else with the other means that there are, and a note that says so."""
+        told = [e for e in near.evasions if e.maneuver != "none"]
+        follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
+        as_told = self._evaded(told) if told else None if follows else self._shifted()
+        if as_told is not None:
+            return as_told
+        for evasion in self._instead(near):
+            if parted := self._evaded([evasion]):
+                words = "evades otherwise than told" if told else "evades, though nobody says so"
+                return parted._replace(notes=(f"{evasion.actor} {words}", *parted.notes))
+        return self._shifted() if told or follows else None
+
+    def _instead(self, near: NearCrash) -> Iterator[Evasion]:
+        """Other evasions: of who was told to evade, then of who would have struck, then of the other one."""
+        maneuvers: tuple[EvasiveManeuver, ...] = ("braking", "braking_and_steering", "steering")
+        for told in near.evasions:
+            if told.maneuver.startswith("steering"):
+                yield Evasion(actor=told.actor, maneuver=_BRAKING_TOO[told.maneuver])
+        names = [e.actor for e in near.evasions] + [near.conflict.striker, near.conflict.struck]
+        for name, maneuver in product(dict.fromkeys(names), maneuvers):
+            yield Evasion(actor=name, maneuver=maneuver)
+
+    # -------------------------------------------------------------- evasions
+    def _evaded(self, evasions: list[Evasion]) -> Parted | None:
+        """The latest start and the least share that leave the clearance; usual braking before emergency braking."""
+        acting = [(side, e.maneuver) for e in evasions for side in self.sides if side.id == e.actor and side.may_evade]
+        if not acting:
+            return None
+        sides = (1.0, -1.0) if any(m.endswith("steering") for _, m in acting) else (1.0,)
+        for hard, onset, left in product((1.0, _HARD), ONSETS_S, sides):
+            most = {s.id: self._most(s, m, onset, left)._replace(hard=hard) for s, m in acting}
+            if (share := self._share(most)) is not None:
+                return self._told(acting, most, share, onset)
+        return None
+
+    def _most(self, side: _Side, maneuver: EvasiveManeuver, onset_s: float, left: float) -> Reaction:
+        """The most that one does in a maneuver from so long before the contact on; `left`: to where it is open."""
+        if maneuver.endswith(("left", "right")):
+            left = 1.0 if maneuver.endswith("left") else -1.0
+        brakes, steers = maneuver.startswith("braking"), "steering" in maneuver
+        aside = (SLIGHT_STEER_M if brakes else MOST_STEER_M) * left if steers else 0.0
+        down_to = self._down_to(side) if brakes else 0.0
+        speeds_up = float(maneuver == "accelerating")
+        return Reaction(side.own_s - onset_s, float(brakes), speeds_up, aside, down_to)
+
+    def _down_to(self, side: _Side) -> float:
+        """The speed at which one who follows need brake no more; 0 where the other one crosses or stands."""
+        other = self.sides[1] if side is self.sides[0] else self.sides[0]
+        (ax, ay), (bx, by) = side.velocity(), other.velocity()
+        if abs(math.remainder(math.atan2(ay, ax) - math.atan2(by, bx), 2 * math.pi)) > _ALONG_RAD:
+            return 0.0
+        slowest = min(math.hypot(bx, by), math.hypot(*other.velocity(_AFTER_S)))
+        return _KEEPS * slowest if slowest < math.hypot(ax, ay) else 0.0
+
+    def _share(self, most: dict[str, Reaction]) -> float | None:
+        """The share of the reactions at which the boxes come as near as declared; None where there is none."""
+
+        def clear(share: float) -> bool:
+            motions = self._motions(most, share)
+            return all(m.drivable for m in motions) and self._least(motions) >= self.closest_m
+
+        share = _least_enough(clear, 1.0, _HALVINGS) if clear(1.0) else None
+        if share is None or self._too_far(self._motions(most, share)):
+            return None  # too little, or a swerve that only as a whole passes on the other side
+        return share
+
+    def _too_far(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> bool:
+        """Whether the two never come as near as declared in the shortest scenario there may be."""
+        return self._least(motions, shift_s, LEAD_S[0]) > self.closest_m + _EXACT_M
+
+    def _motions(self, most: dict[str, Reaction], share: float) -> tuple[Motion, Motion]:
+        first, second = (self._motion(side, most.get(side.id), share) for side in self.sides)
+        return first, second
+
+    def _motion(self, side: _Side, most: Reaction | None, share: float) -> Motion:
+        if most is None:
+            return side.motion
+        return reacted(side.option, side.motion, most.scaled(share))
+
+    def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0, lead_s: float = LEAD_S[1]) -> float:
+        """The least distance of the boxes in a scenario with that lead, metres; the first comes `shift_s` later."""
+        times = clock(-round(lead_s / STEP_S), round(_AFTER_S / STEP_S) + 1)
+        first, second = (
+            np.repeat(m.poses([s.own_s]), len(times), axis=0) if m.standing else m.poses(s.own_s + times - by)
+            for m, s, by in zip(motions, self.sides, (shift_s, 0.0), strict=True)
+        )
+        return float(box_distances(first, motions[0].size, second, motions[1].size).min())
+
+    def _told(
+        self, acting: list[tuple[_Side, EvasiveManeuver]], most: dict[str, Reaction], share: float, onset_s: float
+    ) -> Parted:
+        motions = self._motions(most, share)
+        notes = tuple(_note(side, maneuver, most[side.id], share, onset_s) for side, maneuver in acting)
+        return Parted(self._replaced(motions), notes)
+
+    def _replaced(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> Encounter:
+        meeting = self.found.meeting
+        return self.found._replace(meeting=meeting._replace(
+            first=motions[0], second=motions[1], first_s=meeting.first_s - shift_s))  # fmt: skip
+
+    # -------------------------------------------------------------- nobody evades
+    def _shifted(self) -> Parted | None:
+        """One of both a little earlier or later, where that alone leaves the clearance."""
+        motions = self.sides[0].motion, self.sides[1].motion
+        if motions[0].standing or motions[1].standing:
+            return None
+        found = [by for sign in (1.0, -1.0) if (by := self._shift(motions, sign)) is not None]
+        if not found:
+            return None
+        by = min(found, key=abs)
+        late = self.sides[0].id if by > 0 else self.sides[1].id
+        words = f"nobody evades: {late} comes {abs(by):.1f} s too late to touch"
+        return Parted(self._replaced(motions, by), (words,))
+
+    def _shift(self, motions: tuple[Motion, Motion], sign: float) -> float | None:
+        steps = np.arange(1, round(_MOST_SHIFT_S / _SHIFT_S) + 1) * _SHIFT_S
+        enough = next((float(s) for s in steps if self._least(motions, sign * s) >= self.closest_m), None)
+        if enough is None:
+            return None
+        by = sign * _least_enough(lambda by: self._least(motions, sign * by) >= self.closest_m, enough, _HALVINGS)
+        return None if self._too_far(motions, by) else by
+
+
+def _least_enough(enough: Callable[[float], bool], most: float, halvings: int) -> float:
+    """The least number up to `most` (which is enough) that is enough, by halving from 0."""
+    low, high = 0.0, most
+    for _ in range(halvings):
+        middle = (low + high) / 2
+        low, high = (low, middle) if enough(middle) else (middle, high)
+    return high
+
+
+def _note(side: _Side, maneuver: EvasiveManeuver, most: Reaction, share: float, onset_s: float) -> str:
+    """What one does, how strongly and when."""
+    grip = side.option.role.grip_mps2
+    done = most.scaled(share)
+    how = [f"{a:.1f} m/s2" for a in (done.braking_mps2(grip), done.accelerating_mps2(grip)) if a > 0.05]
+    how += [f"{abs(done.left_m):.1f} m aside"] if done.left_m else []
+    words = _WORDS[maneuver]
+    if maneuver.endswith("steering"):
+        words = words.replace("steers aside", "steers left" if done.left_m > 0 else "steers right")
+    return f"{side.id} {words} from {onset_s:.1f} s before the conflict on: {', '.join(how)}"

@@ -1,0 +1,92 @@
+"""The search for the encounter that realises a declared contact, over two actors' options.
+
+Cheapest combinations first, until no untried one can beat the best found. Knows options and encounters, no
+other actors and no world clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from heapq import nsmallest
+from typing import NamedTuple
+
+from sgcad_core.planner.encounter.encounter_search import Meeting, meet
+from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.records.specs import Area, Contact
+
+_GOOD = 1.95
+"""What an encounter may cost in all before other kinds of driving are tried: less than a maneuver not shown."""
+_CONTENT = 0.35
+"""A contact whose own cost (place, clarity) is below this is taken for what it is worth."""
+
+
+class Encounter(NamedTuple):
+    """The chosen options and their meeting."""
+
+    first: Option
+    second: Option
+    meeting: Meeting
+
+    @property
+    def cost(self) -> float:
+        """Oddity of the options and of the contact."""
+        return self.first.cost + self.second.cost + self.meeting.cost
+
+
+Ways = tuple[Sequence[Option], Sequence[Option]]
+Known = dict[tuple[Option, Option], Meeting | None]
+"""How combinations meet that were tried: later stages have many of the earlier ones again."""
+
+
+def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None) -> Encounter | None:
+    """The least odd encounter on the wanted sides; later stages are tried while there is no good one.
+
+    A stage is both actors' options and how many of their combinations are tried.
+    """
+    best: Encounter | None = None
+    known: Known = {}
+    for (first, second), most in stages:
+        best = _best(_pairs(first, second, most), wanted, best, known)
+        if best is not None and best.cost < _GOOD:
+            break
+    return best
+
+
+def _best(
+    pairs: Iterable[tuple[Option, Option]], wanted: tuple[Area, Area] | None, best: Encounter | None, known: Known
+) -> Encounter | None:
+    """The better of the encounter known so far and those among some combinations."""
+    for a, b in pairs:
+        if best is not None and a.cost + b.cost >= best.cost:
+            continue
+        if (a, b) not in known:
+            known[a, b] = _meeting(a, b, wanted)
+        found = known[a, b]
+        if found is not None and (best is None or a.cost + b.cost + found.cost < best.cost):
+            best = Encounter(a, b, found)
+            if found.cost < _CONTENT:
+                break
+    return best
+
+
+def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting | None:
+    one, two = a.motion_with(b), b.motion_with(a)
+    if not one.drivable or not two.drivable:
+        return None
+    return meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
+
+
+def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:
+    """Combinations in the order of the product of their ranks: far down either list with the other's first."""
+    ranks = ((i, j) for i in range(min(len(first), most)) for j in range(min(len(second), most)))
+    for i, j in nsmallest(most, ranks, key=lambda pair: ((pair[0] + 1) * (pair[1] + 1), pair)):
+        yield first[i], second[j]
+
+
+def cannot(contact: Contact, found: Encounter | None) -> str:
+    """That a pair cannot touch as declared, and what would come of it as both drive."""
+    said = f"{contact.striker} and {contact.struck} cannot touch as declared in any driving"
+    if found is None:
+        return f"{said}: their ways never meet"
+    sides = found.meeting.sides
+    return f"{said}; as they drive, the {sides[0]} of {contact.striker} meets the {sides[1]} of {contact.struck}"

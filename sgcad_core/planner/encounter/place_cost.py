@@ -1,0 +1,74 @@
+"""How ill a place on a path fits an actor's maneuver: what the search for an encounter pays for it.
+
+Knows one actor, its path and its drift; no time and no other actor.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.actor_plan import Drift, Role, line_m
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.lines.line_shift import profile
+from sgcad_core.planner.lines.path import Path
+
+_ZONE_M = 12.0
+_DRIFTING = ACROSS_LANES | {"crossing_centerline", "departing_road_left", "departing_road_right"}
+_NOT_SHOWN = 2.0
+"""What a turn costs that has hardly begun, and a straight way that has turned."""
+_UNMOVED, _MOVED_SHARE = 1.2, 0.7
+"""Cost of a change of lane that has not begun; none from so much of a body's width to the side on, where the bodies
+still overlap by a third."""
+OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
+"""Cost of each metre between the encounter and the gore that one of both is in, and how far it is then across it."""
+_BEFORE_TURN_M = 12.0
+"""So long before a turn begins the box still points along the road: it starts to turn before the junction."""
+_UNSTEERED, _STEERED_M = 0.3, 0.4
+"""Cost of a told evasion of which less is seen before they touch."""
+
+
+def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
+    """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
+    place = role.place.station_m
+    penalty = outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
+    if role.actor.gore and role.course.passages:
+        crossed = role.course.passages[0]
+        penalty = penalty + outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
+    turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
+    maneuver = role.actor.maneuver
+    if maneuver in TURNING:
+        way = -1.0 if maneuver == "turn_right" else 1.0
+        penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
+    elif maneuver == "straight":
+        penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
+    if maneuver in _DRIFTING and drift.left_m:
+        penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
+    if maneuver in ACROSS_LANES and drift.left_m:
+        penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
+    if drift.evades:
+        penalty = penalty + _UNSTEERED * (np.abs(profile(path.s_m, drift) - drift.before_m) < _STEERED_M)
+    return penalty
+
+
+def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
+    """(n,) how much of a change of lane that is seen as one is still to come: 1 all of it, 0 none."""
+    wanted = min(_MOVED_SHARE * (role.size[1] + role.other_width_m) / 2, abs(drift.left_m))
+    moved = np.abs(profile(path.s_m, drift) - drift.before_m)
+    left: Floats = np.clip(1.0 - moved / wanted, 0.0, 1.0)
+    return left
+
+
+def outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
+    """(n,) a cost per metre outside a span of stations."""
+    return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
+
+
+def waiting_zone(role: Role) -> tuple[float, float]:
+    """Stations between which a standing actor plausibly waits; in a gore, those of the gore."""
+    if role.actor.gore:
+        return role.course.start_m, role.course.end_m
+    line, place = line_m(role), role.place.station_m
+    return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

@@ -1,0 +1,90 @@
+"""A lane for every way of a route, and the connections between them; who is in a lane that is closed ahead leaves it.
+
+Knows the lane graph and the route; no time, no other actor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sgcad_core.planner.lines.route import Route, Way
+from sgcad_core.records.specs import Actor
+from sgcad_core.roads.closures import merging_line, taper_of
+from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph
+
+_CHANGES = ("lane_change_left", "lane_change_right", "merge", "overtaking")
+
+
+def lane_chain(
+    graph: LaneGraph, route: Route, actor: Actor, notes: list[str]
+) -> tuple[list[Lane], list[Connection | None]]:
+    """A lane for every way and the connection (or None) between each two."""
+    lanes: list[Lane] = [route.ways[0].lanes[0]] * len(route.ways)
+    links: list[Connection | None] = [None] * (len(route.ways) - 1)
+    lanes[route.start] = _first_lane(graph, route, actor, notes)
+    for i in range(route.start, len(links)):
+        links[i], lanes[i + 1] = _next_lane(graph, route.ways[i], lanes[i], route.ways[i + 1])
+    for i in range(route.start - 1, -1, -1):
+        links[i], lanes[i] = _previous_lane(graph, route.ways[i], route.ways[i + 1], lanes[i + 1])
+    return lanes, links
+
+
+def _first_lane(graph: LaneGraph, route: Route, actor: Actor, notes: list[str]) -> Lane:
+    way = route.ways[route.start]
+    if actor.lane is not None:
+        if actor.lane > len(way.lanes):
+            notes.append(f"{actor.id}: lane {actor.lane} of {way.road} taken as {len(way.lanes)}, its leftmost")
+        return way.lanes[min(actor.lane, len(way.lanes)) - 1]
+    linked = list(way.lanes)
+    if route.start + 1 < len(route.ways):
+        onward = {c.from_lane for c in graph.leaving(way.id) if c.to_edge == route.ways[route.start + 1].id}
+        linked = [lane for lane in way.lanes if lane.index in onward] or linked
+    leftmost = actor.maneuver in ("turn_left", "u_turn", "crossing_centerline", "departing_road_left", "overtaking")
+    return linked[-1 if leftmost or actor.maneuver == "lane_change_right" else 0]
+
+
+def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
+    between = [c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id]
+    by_index = {other.index: other for other in onward.lanes}
+    between = [c for c in between if c.to_lane in by_index]
+    if between and not way.wrong_way:
+        side = from_right(way, lane)
+        best = min(between, key=lambda c: abs(from_right(onward, by_index[c.to_lane]) - side))
+        return best, by_index[best.to_lane]
+    return None, onward.lanes[min(from_right(way, lane), len(onward.lanes) - 1)]
+
+
+def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple[Connection | None, Lane]:
+    by_index = {other.index: other for other in way.lanes}
+    into = [c for c in graph.leaving(way.id) if (c.to_edge, c.to_lane) == (onward.id, lane.index)]
+    into = [c for c in into if c.from_lane in by_index]
+    if into and not onward.wrong_way:
+        return into[0], by_index[into[0].from_lane]
+    return None, way.lanes[min(from_right(onward, lane), len(way.lanes) - 1)]
+
+
+def from_right(way: Way, lane: Lane) -> int:
+    return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), 0)
+
+
+def merged(
+    graph: LaneGraph, route: Route, lanes: list[Lane], links: list[Connection | None], actor: Actor
+) -> tuple[list[Lane], list[Connection | None]]:
+    """The chain of one who leaves a lane that is closed ahead along the taper; who changes lanes does so himself."""
+    if actor.maneuver in _CHANGES:
+        return lanes, links
+    for i, way in enumerate(route.ways[:-1]):
+        taper = taper_of(graph, way.id)
+        if (
+            taper is None
+            or taper.onward != route.ways[i + 1].id
+            or lanes[i].index not in {x.index for x in taper.lanes}
+        ):
+            continue
+        kept = [lane for lane in way.lanes if lane.index not in {x.index for x in taper.lanes}]
+        beside = min(kept, key=lambda lane: abs(lane.index - lanes[i].index))
+        link, onward = _next_lane(graph, way, beside, route.ways[i + 1])
+        shape = merging_line(lanes[i].shape, beside.shape, taper.length_m)
+        lanes = [*lanes[:i], replace(lanes[i], shape=shape), onward, *lanes[i + 2 :]]
+        links = [*links[:i], link, *links[i + 1 :]]
+    return lanes, links

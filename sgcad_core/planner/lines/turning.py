@@ -1,0 +1,54 @@
+"""The lines on which a corner is turned: as the road has it, cut, swung wide, or from beside the lane.
+
+Costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sgcad_core.planner.actor_plan import Drift, Role, along_with
+from sgcad_core.planner.lines.actor_course import Passage
+
+_CORNER_RUN_M = 10.0
+"""Before and behind a junction in which one who cuts its corner is beside the lane."""
+
+
+def corner_lines(role: Role) -> list[Drift]:
+    """Cutting a corner or swinging wide."""
+    turn = role.course.turn
+    if turn is None:
+        return []
+    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + _CORNER_RUN_M
+    cut = [Drift(0.15, left, half, middle, True) for left in (1.2, -1.2, -2.2)]
+    if role.actor.maneuver == "turn_right":
+        return [*cut, *_from_the_left(role, turn)]
+    return [*cut, *_from_the_right(role, turn)] if role.actor.maneuver in ("turn_left", "u_turn") else cut
+
+
+def turning_lines(role: Role) -> list[Drift]:
+    """The usual line of a turn, and those that cut its corner, swing wide or come from beside."""
+    return [Drift(0.0), *corner_lines(role)]
+
+
+def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
+    """A left turn from the next lane to the right (or the shoulder), and from the right edge of the road."""
+    lane, edge = role.course.lane_width_m, role.course.right_edge_m - role.size[1] / 2
+    return _from_beside_it(role, turn, [-lane, -edge] if edge > 1.4 * lane else [-lane])
+
+
+def _from_the_left(role: Role, turn: Passage) -> list[Drift]:
+    """A right turn from further left in its lane, and from the next lane to the left where there is one."""
+    lane = role.course.lane_width_m
+    in_lane = max((lane - role.size[1]) / 2, 0.3)
+    return _from_beside_it(role, turn, [in_lane, lane] if role.course.opposite_m > 1.5 * lane else [in_lane])
+
+
+def _from_beside_it(role: Role, turn: Passage, asides_m: Sequence[float]) -> list[Drift]:
+    """A turn that comes from so far to the left of its lane, and is back on its line where it ends."""
+    length, cost = turn.exit_m - turn.entry_m + 6.0, 0.15 if along_with(role) else 0.3
+    return [
+        Drift(cost, -aside, length, turn.exit_m, before_m=aside,
+              note=f"turns from further to the {'left' if aside > 0 else 'right'}")
+        for aside in asides_m
+    ]  # fmt: skip

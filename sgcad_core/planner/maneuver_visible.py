@@ -1,0 +1,55 @@
+"""Whether a told turn, change of lane or evasion is seen before the first contact, as anybody who looks on would say.
+
+Knows one actor's course and its poses up to the contact; no other actor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.metrics.labels.course_label_match import brakes, steers
+from sgcad_core.metrics.labels.observed_crash import BEFORE_S
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.motion import STEP_S
+from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor
+
+TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
+"""A smaller change of heading is no turn to be seen, a smaller shift no change of lane."""
+
+
+def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
+    """What of its maneuver is not seen on (n, 3) poses from the start to the contact, in words; None: all is."""
+    turned = float(np.unwrap(poses[:, 2])[-1] - poses[0, 2])
+    if actor.maneuver in TURNING:
+        way = -1.0 if actor.maneuver == "turn_right" else 1.0
+        return None if way * turned >= TURNED_RAD else f"{actor.id} has hardly begun to turn when they touch"
+    if actor.maneuver not in ACROSS_LANES or abs(turned) >= TURNED_RAD:
+        return None
+    moved = abs(_aside(course, poses[-1]) - _aside(course, poses[0]))
+    return None if moved >= MOVED_M else f"{actor.id} has hardly begun to change lanes when they touch"
+
+
+def not_evading(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
+    """What of its told evasion is not seen on such poses, in words; as `sgcad score` sees it."""
+    recent = poses[-round(BEFORE_S / STEP_S) - 1 :]
+    steps_m = np.hypot(*np.diff(recent[:, :2], axis=0).T)
+    aside = np.array([_aside(course, pose) for pose in recent[[0, -2, -1]]]) if told.steers else np.zeros(0)
+    if told.steers and not steers(told.steers, aside, float(steps_m[-1])):
+        yield f"{actor} has hardly begun to steer aside when they touch"
+    if told.brakes and not brakes(steps_m / STEP_S):
+        yield f"{actor} has hardly begun to brake when they touch"
+
+
+def _aside(course: Course, pose: Floats) -> float:
+    """How far to the left of its lane's line a pose is, metres."""
+    path = course.path
+    offset = pose[:2] - path.points
+    nearest = int(np.hypot(*offset.T).argmin())
+    angle = path.tangents()[nearest]
+    return float(offset[nearest, 1] * math.cos(angle) - offset[nearest, 0] * math.sin(angle))

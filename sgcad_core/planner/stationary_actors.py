@@ -1,0 +1,54 @@
+"""How things and standing actors stand in the way of others: beside their lane, askew, turned to who comes.
+
+The choices of those who do not drive; costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
+from sgcad_core.planner.encounter.maneuver_choices import ASKEW, aiming
+
+
+def stand_offs(role: Role) -> list[Drift]:
+    """How far beside its lane a standing actor stands."""
+    width, right = role.size[1], role.course.right_edge_m
+    if role.actor.maneuver == "parked":
+        curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
+        lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
+        beside = role.course.beside_m
+        if aside_m := beside.get("parking", beside.get("shoulder")):
+            lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]
+        return [Drift(cost, left) for left, cost in lines]
+    return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
+
+
+def in_stall(role: Role) -> bool:
+    """Whether it is parked square to its way."""
+    return role.course.stalls and role.actor.maneuver == "parked"
+
+
+def askew(role: Role) -> list[Twist]:
+    """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
+    if in_stall(role):
+        return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
+    small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
+    return [Twist(0.0), *small, *aiming(role)]
+
+
+def beside_the_way(role: Role) -> list[Drift]:
+    reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
+    offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
+    return [Drift(0.05 * i, left) for i, left in enumerate(offsets)]
+
+
+def any_angle(role: Role) -> list[Twist]:
+    """An object has no heading of its own: its wanted side is turned to the one that comes."""
+    side = facing(role.side) if role.side else 0.0
+    bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
+    return [Twist(cost, math.radians(degrees) - side) for degrees, cost in bearings]
+
+
+def steps_aside() -> list[Drift]:
+    return [Drift(abs(left) / 5, left, 1.0, -1e4) for left in (0.0, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0)]

@@ -1,0 +1,71 @@
+"""Makes, body words and well-known models of the U.S. fleet, and the kind of vehicle they mean.
+
+General knowledge, no report. Knows no sentence.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.reading.language import rule, values, words
+from sgcad_core.records.specs import ActorKind
+
+COLORS = words("color")
+MAKES: dict[str, str] = {
+    word: make["make"] if isinstance(make, dict) else make for word, make in values("make").items()
+}
+"""Lower-case spelling -> make."""
+BODY_WORDS: dict[str, ActorKind] = values("body")
+"""Lower-case body word -> kind."""
+ROAD_USERS: dict[str, str] = values("road_user")
+"""Lower-case word for people and animals on the road -> what they are."""
+_USER_KIND: dict[str, ActorKind] = {
+    "pedestrian": "pedestrian", "bicycle": "bicycle", "motorcycle": "motorcycle", "animal": "pedestrian",
+}  # fmt: skip
+"""Kind of actor that stands for each; an animal walks."""
+_MAKE_KIND: dict[str, ActorKind] = {
+    word: make["kind"] for word, make in values("make").items() if isinstance(make, dict)
+}
+_MODEL_KIND: dict[ActorKind, tuple[str, ...]] = {
+    kind: words(f"model_{kind}") for kind in ("suv", "pickup", "van", "truck", "motorcycle")
+}
+
+
+def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
+    """Kind of road user or thing from its description, and whether a word states it; a car where none does."""
+    text = words.lower()
+    for user in sorted(ROAD_USERS, key=len, reverse=True):
+        if rule("makes.whole_word").given(word=user).search(text):
+            return _USER_KIND[ROAD_USERS[user]], True
+    for body in sorted(BODY_WORDS, key=len, reverse=True):
+        if rule("makes.whole_word").given(word=body).search(text):
+            if BODY_WORDS[body] == "truck" and body == "truck" and _by_model(text, model) == "pickup":
+                return "pickup", True
+            return BODY_WORDS[body], True
+    known = _by_model(text, model) or _by_make(text)
+    if known is None and (other := rule("makes.other").fullmatch(text.strip(" ,."))):
+        return ("pedestrian" if other["person"] else "object"), True
+    return known or "car", False
+
+
+def is_model(name: str) -> bool:
+    """Whether a name, lower case, is that of a known model by itself."""
+    return any(name in models for models in _MODEL_KIND.values())
+
+
+def is_animal(words: str) -> bool:
+    """Whether a description is of an animal."""
+    animals = (word for word, kind in ROAD_USERS.items() if kind == "animal")
+    return any(rule("makes.whole_word").given(word=word).search(words.lower()) for word in animals)
+
+
+def _by_model(text: str, model: str | None) -> ActorKind | None:
+    name = (model or "").lower()
+    for kind, models in _MODEL_KIND.items():
+        if any(
+            name == m or name.startswith(m + " ") or rule("makes.whole_word").given(word=m).search(text) for m in models
+        ):
+            return kind
+    return None
+
+
+def _by_make(text: str) -> ActorKind | None:
+    return next((k for make, k in _MAKE_KIND.items() if rule("makes.make").given(word=make).search(text)), None)

@@ -1,0 +1,168 @@
+"""Who is who in a report that numbers nobody: every phrase of somebody becomes the number of one actor.
+
+"The test vehicle was stopped when a white van hit it. The van left." becomes "V1 was stopped when a white van (V2) hit
+it. V2 left.", so that everything behind works on numbers. The subject of the report is V1, the others follow in the
+order in which they are named; a text that has any number stays as it is. People and animals count here too:
+`Roster.called` tells their own letters. Knows what phrases mean, not what anybody does.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from sgcad_core.reading.actors.makes import BODY_WORDS
+from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, Cast, Phrase
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.text.traced_text import Traced, joined
+
+_PHRASE = rule("references.phrase")
+_OWNERS = ("his", "her", "their")
+"""Of somebody's own vehicle; it is named so where no vehicle was named before: "a woman was hurt when her car ..."."""
+_NEAR = 40
+"""Characters before a phrase in which a word may say that it is of a stranger."""
+
+
+def numbers_somebody(text: str) -> bool:
+    """Whether a normalized report numbers anybody."""
+    return bool(rule("common.vehicle").search(text))
+
+
+def number_actors(text: Traced) -> Traced:
+    """The normalized text with everybody named by number; unchanged if there is any number."""
+    if numbers_somebody(text.text):
+        return text
+    automated = _automated(text.text)
+    for name in _companies(text.text):
+        text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
+    cast = Cast([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
+    return numbered(text, Numbering(cast))
+
+
+def numbered(text: Traced, numbering: Numbering) -> Traced:
+    """The text with a number for everybody whom the numbering takes, block by block."""
+    blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
+    return joined(blocks, "\n\n")
+
+
+def _numbered(block: Traced, numbering: Numbering) -> Traced:
+    pieces: list[Traced] = []
+    at = 0
+    for end in [m.end() for m in rule("text.end").finditer(block.text)] + [len(block.text)]:
+        piece, at = block.cut(at, end), end
+        formal = rule("roles.formal").search(piece.text)
+        numbering.announcing = numbering.alone and bool(rule("references.announced").search(piece.text))
+        pieces.append(piece if formal else piece.sub(_PHRASE, numbering.fill))
+    return joined(pieces)
+
+
+def _automated(text: str) -> bool:
+    """Whether a report says of a vehicle that it is the automated one, or its own."""
+    return any(m["automated"] for m in _PHRASE.finditer(text))
+
+
+def _companies(text: str) -> list[str]:
+    """Companies by whose names a report calls the automated vehicle: "the Acme AV"."""
+    called = (rule("references.branded").match(m["automated"]) for m in _PHRASE.finditer(text) if m["automated"])
+    return list(dict.fromkeys(name.group().strip() for name in called if name))
+
+
+@dataclass
+class Numbering:
+    """Fills in numbers, phrase by phrase in the order of the text."""
+
+    cast: Cast
+    announcing: bool = False
+    at: int = 0
+    last: tuple[re.Match[str], Actor] | None = None
+    """The phrase before, and whom it means."""
+
+    @property
+    def alone(self) -> bool:
+        """Whether nobody but the subject was named so far."""
+        return all(actor.subject for actor in self.cast.actors)
+
+    def fill(self, match: re.Match[str]) -> str:
+        """What stands for a phrase: the number alone, or behind the words that first describe somebody."""
+        phrase = Phrase(match)
+        self.at += 1
+        if self.is_nobody(phrase):
+            return match.group()
+        if match["attendant"]:
+            return f"{'The' if match.group()[0].isupper() else 'the'} driver of V1"
+        if same := self._described(match):
+            same.heads.add(phrase.head)
+            same.names |= phrase.names
+            return match.group()
+        known = self._known(phrase)
+        actor = known or self.cast.add(phrase, self._is_subject(phrase), self.announcing)
+        if actor is None:
+            return match.group()
+        self.last = match, actor
+        actor.at = self.at
+        actor.stands = actor.stands or phrase.stands
+        actor.announced = actor.announced and self.announcing
+        words = phrase.head.split() if match["automated"] else phrase.modifiers
+        actor.heads |= {phrase.head, *(w for w in words if w in BODY_WORDS)}
+        actor.names |= phrase.names
+        actor.part = actor.part or phrase.part
+        return self._written(phrase, actor, known is None)
+
+    def is_nobody(self, phrase: Phrase) -> bool:
+        match = phrase.match
+        before = match.string[max(0, match.start() - _NEAR) : match.start()]
+        behind = rule("references.part").match(match.string, match.end())
+        owner = match["automated"] or (behind and phrase.definite)
+        if match["many"] and (not owner or rule("references.several").search(before)):
+            return True
+        if match["user"] and match["user"][0].isupper() and not match["det"]:
+            return True
+        if phrase.head in TRUCK_PARTS and match.string.startswith(" of ", match.end()):
+            return True
+        if not match["det"] and not match["automated"]:
+            return bool(match.start()) or not phrase.order
+        if match["det"] and match["det"].lower() in _OWNERS and self.cast.actors:
+            return True
+        ridden = phrase.kind in ("bicycle", "motorcycle") and rule("references.ridden").search(before)
+        return bool(rule("references.stranger").search(before)) or bool(ridden and self._has(phrase.kind))
+
+    def _described(self, match: re.Match[str]) -> Actor | None:
+        """Who is only said to be what a phrase says: "the other vehicle was a 2031 van", "the car, a van, ..."."""
+        if self.last is None or self.last[0].string != match.string or (match["det"] or "").lower() not in ("a", "an"):
+            return None
+        between = match.string[self.last[0].end() : match.start()]
+        apposed = (
+            between == ", " and match.string[match.end() : match.end() + 1] == "," and Phrase(self.last[0]).definite
+        )
+        return self.last[1] if apposed or rule("references.was").fullmatch(between) else None
+
+    def _has(self, kind: str) -> bool:
+        return any(a.kind == kind for a in self.cast.actors)
+
+    def _is_subject(self, phrase: Phrase) -> bool:
+        if self.cast.subject():
+            return False
+        return bool(phrase.match["automated"]) if self.cast.automated else phrase.kind not in ("pedestrian", "animal")
+
+    def _known(self, phrase: Phrase) -> Actor | None:
+        match = phrase.match
+        subject = self.cast.subject()
+        if phrase.match["automated"] and subject and rule("references.aboard").match(match.string, match.end()):
+            return subject
+        if phrase.match["automated"] and subject and phrase.order in (None, 1) and (phrase.definite or not subject.at):
+            return subject
+        if phrase.definite:
+            return self.cast.meant(phrase) or self.cast.open(phrase)
+        return self.cast.open(phrase) if not self.announcing else None
+
+    def _written(self, phrase: Phrase, actor: Actor, first: bool) -> str:
+        match = phrase.match
+        owner = "'s" if match["many"] else ""
+        if (actor.subject and match["automated"]) or not first:
+            return f"V{actor.number}{owner}{phrase.clauses}"
+        det, words = match["det"] or "the", match.group()[len(match["det"] or "") :].strip()
+        det = {"another": "a", "one": "a", **dict.fromkeys(("its", *_OWNERS), "the")}.get(det.lower(), det)
+        return self.introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
+
+    def introduced(self, words: str, number: str) -> str:
+        return f"{words} {number}"

@@ -1,0 +1,64 @@
+"""People who have no number: whom "him" means, and from which side they come. Knows sentences, no motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.clauses import Statement
+from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, compass_of, turned
+from sgcad_core.records.specs import Area, Compass
+
+
+class Walk(NamedTuple):
+    """How one goes: from the driver's left or right, or in a direction of the compass; None: not told."""
+
+    hand: str | None = None
+    way: Compass | None = None
+
+
+def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
+    """Sentences with "V1 struck him" as "V1 struck the pedestrian" where a person without a number was named before."""
+    last: str | None = None
+    for t in told:
+        him = rule("contact_words.him").search(t.text)
+        before = t.text[: him.start()] if him else t.text
+        named = [m["object"] for m in rule("contact_words.road_user").finditer(before)]
+        last = named[-1].lower() if named else last
+        if him and last:
+            t = t._replace(text=f"{t.text[: him.start()]}{him['verb']} the {last}{t.text[him.end() :]}")
+        yield t
+
+
+def walk_of(word: str, told: Iterable[Statement]) -> Walk:
+    """The first that the sentences which name somebody tell of his way."""
+    for t in told:
+        if t.role not in ("codes", "factors") and word in t.text:
+            walk = _told(t.text[t.text.index(word) :])
+            if walk != Walk():
+                return walk
+    return Walk()
+
+
+def _told(text: str) -> Walk:
+    if across := rule("walkers.across").search(text):
+        return Walk(way=compass_of(across["way"]))
+    if hand := rule("walkers.from_hand").search(text):
+        return Walk(hand=hand["hand"].lower())
+    if goes := rule("walkers.walks").search(text) or rule("walkers.goes").search(text):
+        return Walk(way=compass_of(goes["way"]))
+    side = rule("walkers.from_side").search(text)
+    came = compass_of(side["way"]) if side else None
+    return Walk(way=turned(came, 180) if came else None)
+
+
+def side_facing(walk: Walk, driver: Compass | None) -> Area | None:
+    """The side of one who walks that faces a driver on a heading; None where neither hand nor heading tells it."""
+    if walk.hand:
+        return OPPOSITE_HAND[walk.hand]
+    if walk.way is None or driver is None:
+        return None
+    turn = between(driver, walk.way)
+    along: dict[int, Area] = {0: "back", 180: "front"}
+    return along.get(turn, "right" if turn < 180 else "left")

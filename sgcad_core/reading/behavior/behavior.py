@@ -1,0 +1,130 @@
+"""Facts on a road network: every vehicle gets a road, a direction, a lane and an exit.
+
+Places are chosen so that travel headings fit the text, the pair in contact can meet, and turns exist; what
+does not fit costs, and the cheapest choice stands. Works on any road spec. Knows no narrative.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.errors import Refused
+from sgcad_core.kinds import RAMP
+from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_rad
+from sgcad_core.reading.behavior.gore_actors import in_gore
+from sgcad_core.reading.behavior.lane_choice import lane_of
+from sgcad_core.reading.behavior.roadside_objects import with_roadside
+from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.crash_facts import FROM_STOP_MPH, ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.layout.road_ways import Way
+from sgcad_core.records.specs import (  # fmt: skip
+    SIZE_M,
+    Actor,
+    ActorKind,
+    BehaviorSpec,
+    Contact,
+    Evasion,
+    Maneuver,
+    NearCrash,
+    RoadSpec,
+    is_aisle,
+)
+
+_TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
+"""Length of what such a vehicle tows, hitch included, metres."""
+_LONGEST_M = 30.0
+_SHIFTS: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
+"""From a ramp these are merges: the lane that one changes to is that of the road."""
+_MOST_ACTORS, _MOST_CONTACTS = 12, 8
+
+
+def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
+    """The crash on that network. Raises Refused where the text tells no crash or names no vehicle."""
+    if facts.gap:
+        raise Refused(facts.gap.reason, list(facts.gap.missing))
+    if not facts.vehicles:
+        raise Refused("the narrative names no vehicle", ["which vehicles were involved", "how they traveled"])
+    vehicles = facts.vehicles[:_MOST_ACTORS]
+    placed = assign(facts, spec)
+    actors = [_actor(v, placed, facts) for v in vehicles]
+    contacts = [c for c in facts.contacts if all(x in {a.id for a in actors} for x in (c.striker, c.struck))]
+    if not contacts:
+        actors, contacts = _with_others(actors, facts)
+    near = _near_crash(facts, contacts)
+    actors = in_gore(actors, [_contact(c) for c in contacts], facts.gore, spec)
+    met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
+    cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
+    return BehaviorSpec(
+        actors=cast, contacts=blows,
+        light=facts.light, weather=facts.weather, surface=facts.surface, near_crash=near,
+    )  # fmt: skip
+
+
+def _near_crash(facts: CrashFacts, contacts: list[ContactFacts]) -> NearCrash | None:
+    """Of a report in which nobody touches: the contact that was avoided, and how."""
+    near = facts.near_crash
+    return None if near is None or not contacts else near_crash_of(near, _contact(contacts[0]))
+
+
+def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
+    """An answered behavior whose first contact did not come about, where the text tells a near crash; else as it is."""
+    near = facts.near_crash
+    if near is None or not near.stated or not behavior.contacts:
+        return behavior
+    return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
+
+
+def near_crash_of(near: NearFacts, conflict: Contact) -> NearCrash:
+    """A told near crash on a conflict."""
+    pair = (conflict.striker, conflict.struck)
+    evasions = tuple(Evasion(actor=who, maneuver=how) for who, how in near.evasions if who in pair)
+    return NearCrash(conflict=conflict, evasions=evasions, clearance_m=near.clearance_m)
+
+
+def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Actor:
+    place = placed[v.id]
+    return Actor(
+        id=v.id, kind=v.kind, road=place.way.road.id, direction=place.way.direction,
+        lane=lane_of(v, placed, facts), exit_road=place.exit.road.id if place.exit else None,
+        maneuver=_maneuver(v, place.way),
+        speed_mph=_speed_mph(v), length_m=_length(v),
+    )  # fmt: skip
+
+
+def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
+    """As told; from a ramp one merges; who is parked along an aisle with stalls stands in it."""
+    if way.road.kind == RAMP and v.maneuver in _SHIFTS:
+        return "merge"
+    along = is_aisle(way.road) and v.heading_stated and not square_rad(v, way)
+    return "stopped" if along and v.maneuver == "parked" else v.maneuver
+
+
+def _speed_mph(v: VehicleFacts) -> int | None:
+    """As told; who starts from a stop is slow at the contact; else the planner's choice."""
+    if v.standing:
+        return None
+    return v.speed_mph or (FROM_STOP_MPH if v.from_stop else None)
+
+
+def _length(v: VehicleFacts) -> float | None:
+    """A vehicle with a trailer is one long box: the trailer is part of the numbered vehicle."""
+    if not v.trailer or v.kind not in _TRAILER_M:
+        return None
+    return min(SIZE_M[v.kind][0] + _TRAILER_M[v.kind], _LONGEST_M)
+
+
+def _contact(c: ContactFacts) -> Contact:
+    return Contact(striker=c.striker, struck=c.struck, striker_area=c.striker_area, struck_area=c.struck_area)
+
+
+def _with_others(actors: list[Actor], facts: CrashFacts) -> tuple[list[Actor], list[ContactFacts]]:
+    """A crash without a second vehicle: the first thing or person that was hit joins in."""
+    ids = {a.id for a in actors}
+    hits = [c for c in facts.contacts if c.striker in ids and any(o.id == c.struck for o in facts.others)]
+    if not hits:
+        return actors, []
+    other = next(o for o in facts.others if o.id == hits[0].struck)
+    driver = next(a for a in actors if a.id == hits[0].striker)
+    joined = Actor(
+        id=other.id, kind=other.kind, road=driver.road, direction=driver.direction,
+        maneuver="straight" if other.kind in ("pedestrian", "bicycle") else "stopped",
+    )  # fmt: skip
+    return [*actors, joined], hits[:1]

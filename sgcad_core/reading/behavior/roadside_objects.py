@@ -1,0 +1,87 @@
+"""What vehicles strike after they met: things beside the road and people who stand there join a behavior as actors.
+
+Ids are those of the crash's others where the same thing is among them. Knows facts and actors, no network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
+from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.records.course import ImpactTold
+from sgcad_core.records.specs import Actor, ActorKind, Contact
+
+_SIZE_M: dict[str, tuple[float, float]] = {
+    "pole": (0.4, 0.4), "tree": (0.5, 0.5), "post": (0.3, 0.3), "sign": (0.3, 0.8), "signal": (0.4, 0.4),
+    "mailbox": (0.4, 0.4), "hydrant": (0.4, 0.4), "fence": (0.3, 4.0), "guardrail": (0.4, 5.0), "rail": (0.4, 5.0),
+    "wall": (0.5, 5.0), "barrier": (0.6, 5.0), "embankment": (1.5, 5.0), "building": (5.0, 5.0), "house": (5.0, 5.0),
+    "box": (1.0, 1.0), "bush": (1.0, 1.0), "rock": (1.0, 1.0), "boulder": (1.5, 1.5), "railing": (0.3, 5.0),
+    "snowbank": (1.5, 4.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 5.0), "abutment": (1.0, 3.0),
+}  # fmt: skip
+"""Depth and width of things as a car meets them, metres; others are posts."""
+_USUAL_M = (0.4, 0.4)
+
+
+def with_roadside(
+    actors: Sequence[Actor], contacts: Sequence[Contact], facts: CrashFacts, most: tuple[int, int]
+) -> tuple[tuple[Actor, ...], tuple[Contact, ...]]:
+    """The actors and contacts with what is struck behind the first contact; `most`: actors and contacts in all."""
+    joined, struck = list(actors), list(contacts)
+    struck += list(_again(facts, contacts))[: most[1] - len(struck)]
+    for vehicle, other, impact in _struck(facts, {a.id for a in actors}):
+        driver = next((a for a in actors if a.id == vehicle), None)
+        if driver is None or len(joined) >= most[0] or len(struck) >= most[1]:
+            continue
+        joined.append(_standing(other, driver))
+        struck.append(Contact(
+            striker=vehicle, struck=other.id, striker_area=impact.actor_area or "front",
+            struck_area="front" if other.kind == "object" else "left",
+        ))  # fmt: skip
+    return tuple(joined), tuple(struck)
+
+
+def _again(facts: CrashFacts, contacts: Sequence[Contact]) -> Iterator[Contact]:
+    """The pair that touched first touches a second time, as told."""
+    for impact in facts.impacts:
+        first = contacts[0] if contacts else None
+        if first is None or {impact.actor, impact.other} != {first.striker, first.struck}:
+            continue
+        sides = (impact.actor_area, impact.other_area) if impact.actor == first.striker else (
+            impact.other_area, impact.actor_area)  # fmt: skip
+        yield Contact(
+            striker=first.striker, struck=first.struck,
+            striker_area=sides[0] or first.striker_area, struck_area=sides[1] or first.struck_area,
+        )  # fmt: skip
+        return
+
+
+def _struck(facts: CrashFacts, taken: set[str]) -> Iterator[tuple[str, OtherFacts, ImpactTold]]:
+    """(vehicle, what it strikes, as told), in order; the first contact of a lone vehicle is none of these."""
+    taken = set(taken)
+    alone = len(facts.vehicles) == 1
+    for number, impact in enumerate(facts.impacts):
+        if impact.before or impact.other in {v.id for v in facts.vehicles} or (alone and number == 0):
+            continue
+        other = _known(facts, impact.other, taken)
+        taken.add(other.id)
+        yield impact.actor, other, impact
+
+
+def _known(facts: CrashFacts, word: str, taken: set[str]) -> OtherFacts:
+    """The crash's own record of a thing, or a new one with the next free number."""
+    for other in facts.others:
+        if other.id not in taken and other.word.split()[-1] == word:
+            return other
+    used = taken | {o.id for o in facts.others}
+    free = next(f"O{n}" for n in range(1, 99) if f"O{n}" not in used)
+    return OtherFacts(free, "object", word)
+
+
+def _standing(other: OtherFacts, driver: Actor) -> Actor:
+    size = _SIZE_M.get(other.word.split()[-1], _USUAL_M) if other.kind == "object" else (None, None)
+    kind: ActorKind = other.kind
+    return Actor(
+        id=other.id, kind=kind, road=driver.road, direction=driver.direction, maneuver="stopped",
+        length_m=size[0], width_m=size[1],
+    )  # fmt: skip

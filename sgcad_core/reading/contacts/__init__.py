@@ -1,0 +1,1 @@
+"""Who struck whom, where and in which order; near crashes; what happened after the first contact."""

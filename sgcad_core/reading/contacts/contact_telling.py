@@ -1,0 +1,46 @@
+"""A contact as a sentence tells it, and what other tellings of the same pair add."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.text.area_phrases import Zone
+from sgcad_core.reading.text.sentence_roles import HIT, Role
+
+
+@dataclass(frozen=True)
+class Blow:
+    """A contact as told: `other` is a vehicle id or the object's word; an area not told is None."""
+
+    actor: str
+    other: str
+    actor_area: Zone | None
+    other_area: Zone | None
+    number: int
+    role: Role
+    passive: bool = False
+    words: str = ""
+    mutual: bool = False
+    """They collided: the text names no striker."""
+    noun: bool = False
+    """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
+    summary: bool = False
+    """No more than who collided with whom, wherever in the text: it says nothing of when."""
+
+    @property
+    def cue(self) -> Cue:
+        """Where it was read."""
+        return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
+
+
+def with_areas(blow: Blow, retold: Iterable[Blow]) -> Blow:
+    """The blow with areas that it lacks taken from other tellings of the same pair."""
+    for other in retold:
+        if {other.actor, other.other} != {blow.actor, blow.other}:
+            continue
+        same = other.actor == blow.actor
+        mine, theirs = (other.actor_area, other.other_area) if same else (other.other_area, other.actor_area)
+        blow = replace(blow, actor_area=blow.actor_area or mine, other_area=blow.other_area or theirs)
+    return blow

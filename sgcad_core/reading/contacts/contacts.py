@@ -1,0 +1,298 @@
+"""Who struck whom and where: contacts in the order of the text.
+
+A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is
+read with its subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+
+from sgcad_core.reading.actors.vehicles import MENTION, Roster
+from sgcad_core.reading.actors.walkers import with_people
+from sgcad_core.reading.contacts import contact_words as says
+from sgcad_core.reading.contacts.contact_nouns import (
+    Touch,
+    door_of,
+    involved,
+    is_noun,
+    paired_areas,
+    struck_pair,
+    subject_area,
+    together,
+    touches,
+)
+from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.clauses import Statement, subject_starts
+from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
+from sgcad_core.reading.text.sentence_roles import HIT
+
+
+def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+    """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
+    crash: list[Blow] = []
+    retold: list[Blow] = []
+    told = tuple(told if who.counted else with_people(told))
+    for t in told:
+        if t.role in ("codes", "factors", "police", "health", "formal"):
+            continue
+        into = (
+            crash
+            if t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
+            else retold
+        )
+        into += _sentence(t, who)
+    first = min((b.number for b in crash if b.other in who.ids), default=0)
+    early = [b for b in retold if b.number < first and b.other in who.ids]
+    late = [b for b in retold if b not in early]
+    return (*early, *crash, *late) or _only_named(told, who)
+
+
+def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+    """Contacts of which a report says no more than who collided with whom."""
+    named = ((t, touch) for t in told for touch in involved(plain(t, who)))
+    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True, summary=True)
+             for t, m in named)  # fmt: skip
+    return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
+
+
+def _sentence(told: Statement, who: Roster) -> list[Blow]:
+    text = plain(told, who)
+    found: list[Blow] = []
+    starts = subject_starts(told._replace(text=text), who)
+    for m in HIT.finditer(text):
+        if any(p.start() < m.start() <= p.end() for p in says.BOTH_PARTS.finditer(text)):
+            continue
+        blow = _blow(told, text, m, starts, who)
+        if blow:
+            found.append(blow)
+    found += [_touch(t, told) for t in touches(text)]
+    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, who)
+    told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
+    found += [_touch(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
+    return [b for b in found if b.actor in who.ids and b.actor != b.other]
+
+
+def _with_striker(blow: Blow, text: str) -> Blow:
+    """A collision of both with the striker first, where the sentence tells who struck."""
+    said = rule("contact_nouns.striker").search(text) if blow.mutual or blow.noun else None
+    if not said or said["v"] != blow.other:
+        return blow
+    return replace(blow, actor=blow.other, other=blow.actor, actor_area=blow.other_area, other_area=blow.actor_area)
+
+
+def _unnamed_pair(told: Statement, text: str, who: Roster) -> list[Blow]:
+    """ "Front met front.", where there are but two."""
+    pair = rule("contact_nouns.bare_pair").search(text) if len(who.ids) == 2 and not MENTION.search(text) else None
+    if not pair or who.counted:
+        return []
+    (one, other), mine, theirs = who.ids, area_of(pair["a1"]), area_of(pair["a2"])
+    return [Blow(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
+
+
+def _touch(t: Touch, told: Statement) -> Blow:
+    if t.by:
+        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
+    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
+
+
+def _blow(
+    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
+) -> Blow | None:
+    before, behind = text[: m.start()], text[m.end() :]
+    passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
+    passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
+    befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
+    if not befell and (says.NEAR_MISS.search(before) or is_noun(before, m.group(), behind)):
+        return None
+    nxt = HIT.search(behind)
+    scope = behind[: nxt.start()] if nxt else behind
+    thing = (says.THING_WAS.search(before) or says.PERSON_WAS.search(before)) if passive else None
+    if thing:
+        return _thing_hit(told, thing, scope, m.group())
+    if not passive and who.counted and (moves := says.THING_MOVES.search(before)):
+        return _hit_by_thing(told, moves, scope, m.group(), who)
+    subjects = _subjects(told, before, m, starts)
+    if not subjects:
+        return None
+    if len(subjects) > 1:
+        return _mutual(told, subjects, m.group(), before, scope)
+    actor, actor_area = subjects[0], subject_area(before, subjects[0])
+    if actor not in MENTION.findall(before):
+        actor = _meant_by_pronoun(told, actor, scope, who)
+    other = None if passive or not who.counted else who.other(actor)
+    if other and (part := door_of(actor, before, scope)):
+        actor, actor_area = other, area_of(part)
+    return (
+        _passive(told, actor, actor_area, scope, m.group(), who)
+        if passive
+        else _active(told, actor, actor_area, scope, m.group(), who)
+    )
+
+
+def _meant_by_pronoun(told: Statement, actor: str, scope: str, who: Roster) -> str:
+    """Whom "it" means that struck or was struck: not whom the sentence itself names behind the verb."""
+    whom = MENTION.search(scope)
+    return (_the_other(told, actor, who) or actor) if whom and whom.group() == actor else actor
+
+
+def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
+    """ "A tree was struck by the front of V1"."""
+    by = says.BY.search(scope)
+    if not by:
+        return None
+    area = area_if_told(by["area"])
+    return Blow(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+
+
+def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, who: Roster) -> Blow | None:
+    """ "The gate closed and made contact with the front of V1"."""
+    whom, area = _object(told, "", scope, who)
+    if whom not in who.ids or whom is None:
+        return None
+    return Blow(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+
+
+def _subjects(
+    told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
+) -> tuple[str, ...]:
+    """The vehicles whose verb this is."""
+    caused = says.CAUSED.search(before)
+    if caused:
+        return (caused["v"],)
+    fitting = [s for at, _, s in starts if at < m.start()]
+    if fitting:
+        return fitting[-1]
+    mentions = MENTION.findall(before)
+    if mentions:
+        return (mentions[-1],)
+    return (told.subject,) if told.subject else ()
+
+
+def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+    pair = paired_areas(scope)
+    scope = _clause(says.ASIDE.sub(" ", scope))
+    own = says.WITH_ITS.search(scope)
+    if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
+        own = None  # "made contact with the left door": whose door it is stands elsewhere
+    area = area_of(own["area"]) if own else area
+    rest = scope[: own.start()] + scope[own.end() :] if own else scope
+    other, other_area = _object(told, actor, rest, who)
+    if other is None:
+        return None
+    if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
+        actor, area = named["v"], area_of(named["area"])
+    if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
+        area, other_area = area or "front", "back"
+    if rule("contact.backs_into").match(verb):
+        area = area or "back"
+    if pair and area is None:
+        area, other_area = pair
+    blow = Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+    return _area_against_area(blow, scope)
+
+
+def _area_against_area(blow: Blow, scope: str) -> Blow:
+    """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    met = says.AGAINST.search(scope)
+    if not met or {met["v1"], met["v2"]} != {blow.actor, blow.other}:
+        return blow
+    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
+    return replace(blow, actor_area=zones[blow.actor], other_area=zones[blow.other])
+
+
+def _clause(scope: str) -> str:
+    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
+    first = MENTION.search(scope)
+    end = says.CLAUSE_END.search(scope, first.end() if first and first.start() < 70 else 0)
+    return scope[: end.start()] if end else scope
+
+
+def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
+    """What was hit, and where."""
+    m = says.ACTIVE_OBJECT.match(scope)
+    thing = says.OBJECT.match(scope)
+    if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
+        area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
+        return _not_itself(m["v"], actor, who, told), area
+    if thing and thing["object"].lower() not in ("trailer", "parked"):
+        return thing["object"].lower(), None
+    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
+        only = says.THE_AREA.match(scope)
+        return _the_other(told, actor, who), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
+            told, who
+        )
+    late = MENTION.search(scope)
+    if late and late.group() != actor and late.start() < 60:
+        named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
+        return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
+    anything = says.ANY_OBJECT.match(scope) if who.counted else None
+    return (anything["object"].lower(), None) if anything else (None, None)
+
+
+def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
+    """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
+    subject = next((v for v in who.ids[:1] if who.counted and v != actor), None)
+    named = (v for v in MENTION.findall(told.text) if v != actor and v in who.ids)
+    earlier = told.earlier if told.earlier != actor else None
+    return who.other(actor) or next(named, subject or earlier)
+
+
+def _damaged(told: Statement, who: Roster) -> Zone | None:
+    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
+    found = says.DAMAGED.match(plain(told, who))
+    return area_of(found["area"]) if found else None
+
+
+def _not_itself(named: str, actor: str, who: Roster, told: Statement) -> str | None:
+    """A vehicle cannot strike itself: the writer meant the other one, or whom the sentence before is about."""
+    if named != actor:
+        return named
+    return who.other(actor) if who.counted else _the_other(told, actor, who)
+
+
+def _area_behind(text: str) -> Zone | None:
+    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
+    near = rule("contact.area_ends").split(_clause(text)[:80])[0]
+    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
+    return next(filter(None, areas), None) if says.ON_THE.search(near) else None
+
+
+def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+    by = says.BY.search(scope)
+    where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
+    area = area or (area_of(where["area"]) if where else None)
+    other = by["v"] if by else who.other(actor)
+    if by and rule("contact.by_stranger").search(scope[: by.start()]):
+        return None
+    other_area = area_if_told(by["area"]) if by else area_by(scope)
+    own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
+    other_area = other_area or (area_of(own["area"]) if own else None)
+    if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
+        area, other_area = area or "back", other_area or "front"
+    if other is None:
+        return None
+    area, other_area = struck_pair(scope, area, other_area)
+    area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
+    other = _not_itself(other, actor, who, told) or other
+    return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+
+
+def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
+    """ "V1 and V2 collided front to front"."""
+    against = says.AGAINST.search(scope)
+    if against:
+        zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
+        first, second = zones.get(subjects[0]), zones.get(subjects[1])
+        return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+    pair = says.PAIRED.search(scope)
+    first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
+    if not pair:
+        both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
+        first = second = area_of(both["area"]) if both else None
+    if rule("contact.head_on").search(scope):
+        first = second = "front"
+    return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)

@@ -1,0 +1,142 @@
+"""Who began the crash: the role of every road user, initiator, responder or bystander, with the sentence that says so.
+
+The initiator's deed made the conflict (in NMVCCS's words: the critical reason is coded to it), the responder was left
+to deal with it, everybody who takes no part in the first contact is a bystander. Evidence adds up: the report's codes
+outweigh citations and broken rules, these the maneuvers, and where nothing tells them apart the striker began. Not a
+finding of guilt. Replaced one role at a time, as in J. M. Scanlon et al., Waymo Simulated Driving Behavior in
+Reconstructed Fatal Crashes, 2021. Knows no road.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from sgcad_core.kinds import CrashRole
+from sgcad_core.reading.actors.vehicles import MENTION
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.clauses import Statement
+from sgcad_core.reading.motion.motion_record import DRIVES, Cue
+from sgcad_core.reading.provenance.crash_provenance import Telling, default
+from sgcad_core.records.facts import Fact
+from sgcad_core.records.specs import Maneuver
+
+_REASON, _EVENT, _BROKE, _CITED, _MANEUVER = 8.0, 4.0, 2.0, 2.0, 1.0
+"""What a telling weighs. The codes are given after an inquiry, by people who know all that a report tells."""
+_BEGINS: dict[Maneuver, float] = {
+    "crossing_centerline": 1.0, "u_turn": 0.9, "backing": 0.9, "departing_road_left": 0.8, "departing_road_right": 0.8,
+    "turn_left": 0.8, "lane_change_left": 0.8, "lane_change_right": 0.8, "merge": 0.7, "overtaking": 0.6,
+    "turn_right": 0.5, "negotiating_curve": 0.2, "straight": 0.0, "other": 0.0, "slowing": -0.1, "stopped": -0.2,
+    "parked": -0.3,
+}  # fmt: skip
+"""How far a maneuver, by itself, makes a conflict: who leaves a lane or crosses others' paths has to wait for them."""
+_FROM_DRIVEWAY, _FROM_STOP, _RAN_INTO = 0.6, 0.3, 1.5
+
+
+class Sign(NamedTuple):
+    """One thing that speaks for (or, negative, against) a vehicle's having begun the crash."""
+
+    vehicle: str
+    weight: float
+    rule: str
+    cue: Cue | None = None
+
+
+def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
+    """`vehicles.<id>.role` (and `others.<id>.role`) of everybody in the crash."""
+    ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
+    signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
+    pair = _pair(crash)
+    first = _initiator(pair, signs) if pair else None
+    for name in ids:
+        field = f"{'vehicles' if name.startswith('V') else 'others'}.{name}.role"
+        if not pair or name not in pair:
+            yield default(field, "bystander", "who takes no part in the first contact is a bystander")
+        else:
+            yield _fact(telling, field, name, first, signs, pair)
+
+
+def _pair(crash: CrashFacts) -> tuple[str, str] | None:
+    """Striker and struck of the first contact; of an encounter without contact the first two vehicles."""
+    if crash.contacts:
+        return crash.contacts[0].striker, crash.contacts[0].struck
+    return (crash.vehicles[0].id, crash.vehicles[1].id) if len(crash.vehicles) > 1 else None
+
+
+def _initiator(pair: tuple[str, str], signs: Iterable[Sign]) -> str:
+    """The one of both with more signs; the striker where nothing tells them apart."""
+    score = {name: sum(s.weight for s in signs if s.vehicle == name) for name in pair}
+    return pair[0] if score[pair[0]] >= score[pair[1]] else pair[1]
+
+
+def _fact(
+    telling: Telling, field: str, name: str, first: str | None, signs: Sequence[Sign], pair: tuple[str, str]
+) -> Fact:
+    """The role with the sign that weighs most for it: one's own, else the other one's."""
+    role: CrashRole = "initiator" if name == first else "responder"
+    way = 1.0 if role == "initiator" else -1.0
+    other = pair[1] if name == pair[0] else pair[0]
+    for whose, sign_of in ((name, way), (other, -way)):
+        best = max((s for s in signs if s.vehicle == whose), key=lambda s: s.weight * sign_of, default=None)
+        if best is not None and best.weight * sign_of > 0:
+            told = best.cue and whose == name and best.weight * sign_of >= _EVENT
+            return telling.stated(field, role, best.cue) if told else telling.inferred(field, role, best.rule, best.cue)
+    return default(field, role, "the striker began unless more is told")
+
+
+# ------------------------------------------------------------------ what sentences tell
+def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Sign]:
+    for sentence in statements:
+        named = [v for v in MENTION.findall(sentence.text) if v in known]
+        owner = named[0] if named else sentence.subject
+        if owner in known and owner is not None:
+            yield from _of_sentence(sentence, owner)
+
+
+def _of_sentence(sentence: Statement, owner: str) -> Iterator[Sign]:
+    text = sentence.text.lower()
+    coded = sentence.role == "codes" or (sentence.role != "factors" and bool(rule("crash_roles.coded").search(text)))
+    if (read := _read(text, sentence.subject == owner, coded)) is not None:
+        weight, name = read
+        yield Sign(owner, weight, name, Cue(sentence.number, text[:60], name))
+
+
+def _read(text: str, is_subject: bool, coded: bool) -> tuple[float, str] | None:
+    """What a sentence says of its owner: a weight and the rule; `coded`: whether it quotes codes."""
+    if rule("crash_roles.reason").search(text):
+        none = rule("crash_roles.reason_none").search(text)
+        return (-_REASON, "crash_roles.reason_none") if none else (_REASON, "crash_roles.reason")
+    if is_subject and rule("crash_roles.came_over").search(text):
+        return _BROKE, "crash_roles.came_over"
+    if coded and rule("critical_events.event").search(text):
+        return None if rule("crash_roles.no_event").search(text) else _read_event(text)
+    if rule("crash_roles.cited").search(text) and not rule("crash_roles.not_cited").search(text):
+        return _CITED, "crash_roles.cited"
+    if is_subject and rule("crash_roles.broke_a_rule").search(text):
+        return _BROKE, "crash_roles.broke_a_rule"
+    return None
+
+
+def _read_event(text: str) -> tuple[float, str]:
+    """What a critical event says of its owner."""
+    if rule("crash_roles.ran_into").search(text):
+        return _EVENT, "crash_roles.ran_into"
+    if rule("crash_roles.encroached").search(text):
+        return -_EVENT, "crash_roles.encroached"
+    return _EVENT, "critical_events.event"
+
+
+# ------------------------------------------------------------------ what maneuvers suggest
+def _maneuver_signs(crash: CrashFacts) -> Iterator[Sign]:
+    for v in crash.vehicles:
+        yield Sign(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
+    for contact in crash.contacts[:1]:
+        backed = any(v.id == contact.struck and v.maneuver == "backing" for v in crash.vehicles)
+        if contact.striker_area == "front" and contact.struck_area == "back" and not backed:
+            yield Sign(contact.striker, _RAN_INTO, "crash_roles.rear end")
+
+
+def _begins(v: VehicleFacts) -> float:
+    more = _FROM_DRIVEWAY if v.origin in DRIVES else _FROM_STOP if v.from_stop else 0.0
+    return _BEGINS.get(v.maneuver, 0.0) + more

@@ -1,0 +1,130 @@
+"""Contacts behind the first one: with things beside the road, and of the same two vehicles once more.
+
+Contacts of other vehicles are read with the first one (`sgcad_core.reading.contacts.contacts`); here they are put in
+order with what else was hit. Reads resolved sentences; knows no road.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
+from sgcad_core.reading.inference.inference_state import end_of
+from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.motion.clauses import Segment, Statement
+from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.text.area_phrases import area_of
+from sgcad_core.records.course import ImpactTold
+from sgcad_core.records.specs import Area
+
+GROUND = ("curb", "island", "median", "ditch", "ground")
+"""What a vehicle drives over: no body that stops it."""
+
+
+def later_impacts(
+    told: Sequence[Statement], cut: Sequence[Segment], who: Roster, blows: Sequence[Blow]
+) -> tuple[ImpactRead, ...]:
+    """Contacts with things and second contacts of the same pair, in the order of the text. `cut`: `cut_by_deeds`."""
+    first = next((b for b in blows if b.other in who.ids), None)
+    start = first.number if first else -1
+    things = [read for segment in cut for read in _things(segment, start)]
+    again = list(_again(told, who, blows, first)) if first else []
+    people = list(_people(who, blows, first)) if first else []
+    found = sorted([*_once(things), *again, *people], key=lambda read: read.cue.number)
+    return tuple(found)
+
+
+def with_props(impacts: Sequence[ImpactRead], read: CoursesRead) -> tuple[ImpactRead, ...]:
+    """The contacts with those that a rest tells: who came to rest against a tree has struck it last."""
+    struck = {(one.impact.actor, _word(one.impact.other)) for one in impacts}
+    found = list(impacts)
+    for vehicle, course in read.courses.items():
+        prop = course.rest.against
+        if prop and prop not in GROUND and (vehicle, _word(prop)) not in struck:
+            found.append(ImpactRead(ImpactTold(vehicle, _word(prop)), read.sources[f"{vehicle} rest.against"]))
+    return tuple(found)
+
+
+def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
+    """Things without retellings: the same thing again in a later paragraph is the same blow."""
+    last: dict[tuple[str, str], int] = {}
+    for read in things:
+        key = read.impact.actor, read.impact.other
+        number = read.cue.number
+        if key not in last or number - last[key] == 1:
+            yield read
+        last[key] = number
+
+
+def _things(segment: Segment, start: int) -> Iterator[ImpactRead]:
+    """Things that a vehicle hits; `start`: the sentence of the first contact of two vehicles."""
+    if segment.role in UNREAD or segment.role == "interview" or not segment.subjects:
+        return
+    for m in rule("course_impacts.object").finditer(segment.text):
+        for thing in (m["thing"], m["next"]):
+            if thing and thing not in GROUND and not _undone(segment.text, m):
+                yield _hit(segment, m, thing, segment.number < start)
+
+
+def _undone(text: str, m: re.Match[str]) -> bool:
+    before = text[max(0, m.start() - 25) : m.start()]
+    return bool(rule("course_evasion.to_avoid").search(before) or rule("course_impacts.nearly").search(before))
+
+
+def _hit(segment: Segment, m: re.Match[str], thing: str, before: bool) -> ImpactRead:
+    own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
+    area = end_of(area_of(own["area"])) if own else None
+    impact = ImpactTold(segment.subjects[0], _word(thing), area, None, before)
+    return ImpactRead(impact, Cue(segment.number, m[0], "course_impacts.object"))
+
+
+def _word(thing: str) -> str:
+    """ "light-pole", "utility box" -> "pole", "box"."""
+    return thing.replace("-", " ").split()[-1]
+
+
+def _people(who: Roster, blows: Sequence[Blow], first: Blow) -> Iterator[ImpactRead]:
+    """People who are struck once the vehicles have met."""
+    seen: set[str] = set()
+    for b in blows:
+        told = b.other not in who.ids and b.number > first.number and b.role not in ("interview", "injury")
+        if told and b.other not in seen and any(user.search(b.other) for user in of_role("road_user")):
+            seen.add(b.other)
+            yield ImpactRead(ImpactTold(b.actor, b.other, end_of(b.actor_area)), b.cue)
+
+
+# ------------------------------------------------------------------ the same two again
+def _again(told: Sequence[Statement], who: Roster, blows: Sequence[Blow], first: Blow) -> Iterator[ImpactRead]:
+    """Second contacts of the pair that touched first."""
+    pair = {first.actor, first.other}
+    by_number = {t.number: t for t in told}
+    slapped: set[int] = set()
+    for t in told:
+        slap = rule("course_impacts.slap").search(t.text)
+        if slap and t.number >= first.number and t.role not in UNREAD and not slapped:
+            slapped.add(t.number)
+            yield _slap(t, first)
+    for b in blows:
+        sides = (b.actor_area, b.other_area) if b.actor == first.actor else (b.other_area, b.actor_area)
+        other_sides = sides != (first.actor_area, first.other_area) and None not in sides
+        further = b is not first and {b.actor, b.other} == pair and b.role != "interview"
+        near = 0 <= b.number - first.number <= 2 and b.number not in slapped
+        if further and other_sides and near and rule("course_impacts.again").search(by_number[b.number].text):
+            impact = ImpactTold(b.actor, b.other, end_of(b.actor_area), end_of(b.other_area))
+            yield ImpactRead(impact, b.cue)
+            return
+
+
+def _slap(told: Statement, first: Blow) -> ImpactRead:
+    """Both sides, in the order in which they are told, or given to the vehicles by name."""
+    sides: list[Area | None] = [None, None]
+    named = rule("course_impacts.side_of").finditer(told.text)
+    for m in named:
+        who = 0 if m["who"] == first.actor else 1
+        sides[who] = "left" if m["hand"].lower() == "left" else "right"
+    return ImpactRead(
+        ImpactTold(first.actor, first.other, sides[0], sides[1]), Cue(told.number, "", "course_impacts.slap")
+    )

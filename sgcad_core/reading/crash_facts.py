@@ -1,0 +1,209 @@
+"""The facts of a crash as its narrative tells them: who moved how, who struck whom, in what conditions.
+
+Records, and how they are put together from what was read and settled. What the text leaves open is inferred from
+what it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from sgcad_core.reading.actors.pedestrians_objects import OtherFacts, others
+from sgcad_core.reading.actors.vehicles import Identity
+from sgcad_core.reading.actors.walkers import Walk, side_facing
+from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.inference.gaps import Gap
+from sgcad_core.reading.inference.inference_state import AREAS, Draft, Settled, end_of
+from sgcad_core.reading.motion.maneuvers import meant_turn, started_from_stop
+from sgcad_core.reading.motion.motion_record import Access, Motion
+from sgcad_core.reading.text.conditions import Conditions
+from sgcad_core.records.course import Courses, ImpactTold
+from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
+
+FROM_STOP_MPH = 12
+"""The speed of a vehicle that has just started from a stop, where none is told: after 7 m at 2 m/s^2."""
+
+
+@dataclass(frozen=True)
+class VehicleFacts:
+    """One numbered vehicle. None: neither told nor to be inferred."""
+
+    id: str
+    kind: ActorKind
+    year: int | None = None
+    make: str | None = None
+    model: str | None = None
+    heading: Compass | None = None
+    """Initial heading of travel, before any turn."""
+    heading_stated: bool = False
+    """False: inferred from the other vehicle, or just assumed where `CrashFacts.oriented` is False."""
+    exit_heading: Compass | None = None
+    """Heading it turned to or meant to turn to, where told."""
+    maneuver: Maneuver = "straight"
+    maneuver_stated: bool = False
+    lane: int | None = None
+    """1 = at the right curb; where counted from the left -1 = the leftmost."""
+    lane_word: str | None = None
+    """left, right, middle, left_turn, right_turn."""
+    speed_mph: int | None = None
+    trailer: bool = False
+    origin: Access | None = None
+    """driveway, parking_lot, ramp, shoulder: where it came from, if not from a road."""
+    target: Access | None = None
+    """driveway or parking_lot that it turned or meant to turn into."""
+    meant: Maneuver | None = None
+    """The turn that it meant to make, where told; `maneuver` is what it did."""
+    from_stop: bool = False
+    """Whether it had just started from a stop."""
+    faces: bool = False
+    """Whether the heading that is told is where it faces: who backs goes the other way."""
+
+    @property
+    def standing(self) -> bool:
+        """Whether it does not move before the contact."""
+        return self.maneuver in ("stopped", "parked")
+
+
+@dataclass(frozen=True)
+class ContactFacts:
+    """One contact; `struck` may be an object or other road user of `CrashFacts.others`."""
+
+    striker: str
+    struck: str
+    striker_area: Area
+    struck_area: Area
+    areas_stated: bool
+    """Whether the text names both sides, and no corner."""
+    stated: bool = True
+    """False: the pair is inferred, the text tells no contact."""
+    striker_may: tuple[Area, ...] = AREAS
+    """Sides that the text allows: both of a corner, all four where it names none."""
+    struck_may: tuple[Area, ...] = AREAS
+
+
+@dataclass(frozen=True)
+class CrashFacts:
+    """A crash as told."""
+
+    vehicles: tuple[VehicleFacts, ...]
+    others: tuple[OtherFacts, ...] = ()
+    contacts: tuple[ContactFacts, ...] = ()
+    light: Light | None = None
+    weather: Weather | None = None
+    surface: Surface | None = None
+    courses: Courses = field(default_factory=dict)
+    """Evasion, spin and rest by vehicle, of those of which anything is told."""
+    impacts: tuple[ImpactTold, ...] = ()
+    """Contacts behind the first one with things, and of the same pair once more, in order."""
+    near_crash: NearFacts | None = None
+    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
+    oriented: bool = False
+    """Whether any heading is told: if not, all headings are right only relative to one another."""
+    unnumbered: bool = False
+    """Whether the report numbers nobody: V1 is its subject."""
+    gore: Mapping[str, str] = field(default_factory=dict)
+    """Vehicles in a gore, and what they do there (`places.InGore`)."""
+    gap: Gap | None = None
+    """Why no crash can be drawn from the text, if so."""
+
+    def vehicle(self, id: str) -> VehicleFacts | None:
+        """The vehicle of that number."""
+        return next((v for v in self.vehicles if v.id == id), None)
+
+
+_SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet": "ice"}
+"""Surface where only the weather is told."""
+
+
+def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
+    """One vehicle's facts put together."""
+    meant = meant_turn(motion)
+    from_stop = started_from_stop(motion, settled.maneuvers[v.id])
+    over = from_stop and settled.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, settled, v.id)
+    return VehicleFacts(
+        id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
+        heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
+        maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
+        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
+        trailer=v.trailer, origin=motion.origin, target=motion.target,
+        meant=meant.maneuver if meant else None, from_stop=from_stop,
+        faces=_faces(motion, settled.headings.get(v.id)),
+    )  # fmt: skip
+
+
+def _faces(motion: Motion, heading: Compass | None) -> bool:
+    """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
+    return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
+
+
+def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
+    """Whether the told speed is that of the approach to a stop from which the vehicle then started."""
+    cue = settled.sources.get(f"{vehicle} speed")
+    stops = [d.number for d in motion.deeds if d.kind == "stopped"]
+    return cue is not None and bool(stops) and cue.number <= max(stops)
+
+
+def _without_vehicle(draft: Draft, settled: Settled, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
+    """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
+    met as they go, their left one where that is not told."""
+    ids = {o.word: o for o in beside}
+    found: dict[str, ContactFacts] = {}
+    for blow in draft.blows:
+        other = ids.get(blow.other)
+        if other and other.id not in found:
+            area = end_of(blow.actor_area) or "front"
+            faces = side_facing(draft.walks.get(blow.other, Walk()), settled.headings.get(blow.actor)) or "left"
+            side: Area = "front" if other.kind == "object" else faces
+            found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
+    return tuple(found.values())
+
+
+def _subject_first(
+    vehicles: tuple[VehicleFacts, ...], contacts: tuple[ContactFacts, ...]
+) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
+    """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
+
+    Who stood and was pushed into the subject by another stands until then. Who strikes the side of another and is told
+    to have stood before is under way, which the report does not say.
+    """
+    mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
+    if mine is None or not mine.stated:
+        return vehicles, contacts
+    pair = {v.id: v for v in vehicles if v.id in (mine.striker, mine.struck)}
+    aside = {mine.striker_area, mine.struck_area} & {"left", "right"}
+    if aside and mine is contacts[0] and len(pair) == 2 and all(v.standing for v in pair.values()):
+        came = pair[mine.striker]
+        moving = replace(came, maneuver="straight", maneuver_stated=False)
+        vehicles = tuple(moving if v is came else v for v in vehicles)
+    return vehicles, (mine, *(c for c in contacts if c is not mine))
+
+
+def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
+    """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
+    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
+    beside = others(draft.blows, draft.who.ids, sum(v.beside for v in draft.who.vehicles))
+    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, settled, beside)
+    if draft.who.counted:
+        vehicles, contacts = _subject_first(vehicles, contacts)
+    return CrashFacts(
+        vehicles,
+        beside,
+        contacts,
+        sky.light,
+        sky.weather,
+        sky.surface or _SURFACE.get(sky.weather),
+        near_crash=_near(draft) if contacts else None,
+        courses=draft.course.courses,
+        impacts=tuple(read.impact for read in draft.impacts),
+        oriented=bool(settled.stated),
+        unnumbered=draft.who.counted,
+    )
+
+
+def _near(draft: Draft) -> NearFacts | None:
+    near = draft.near
+    if near is None:
+        return None
+    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    return NearFacts(evasions, near.clearance_m, bool(near.blows))

@@ -1,0 +1,1 @@
+"""What follows from what is told, what is missing, and other readings of the same text."""

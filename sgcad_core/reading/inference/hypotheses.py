@@ -1,0 +1,106 @@
+"""Other readings of a crash, each one weak fact away from the one that stands, the most likely first.
+
+For a writer whose checks doubt what was read. Whatever the text states outright is varied last and at a price, so that
+a stated fact gives way only where the checks gain much by it. Knows no network and no motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.inference.inference_state import AREAS
+from sgcad_core.reading.text.compass import turned
+from sgcad_core.records.specs import Maneuver
+
+_TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
+_CORNER, _OPEN_SIDE, _GUESSED, _LANE, _HEADING, _TURN, _SWAP = 0.1, 0.25, 0.2, 0.2, 0.3, 0.5, 0.7
+"""Prices: what a reading must gain by its checks to be preferred."""
+
+
+ONWARD = "drives straight on"
+
+
+class Hypothesis(NamedTuple):
+    """A crash read otherwise, in what, and at what price."""
+
+    facts: CrashFacts
+    words: str
+    price: float
+    open: bool = False
+    """Whether the text is silent on what differs, so that nothing told gives way."""
+    corner: bool = False
+    """Whether it is the other side of a corner in a report that numbers nobody: the words fit both."""
+
+
+def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
+    """All readings that differ in one fact, cheapest first; none where no contact of two vehicles is read."""
+    first = facts.contacts[0] if facts.contacts else None
+    pair = [v for v in facts.vehicles if first and v.id in (first.striker, first.struck)]
+    if first is None or len(pair) != 2:
+        return []
+    found = [*_sides(facts, first), *_guesses(facts, pair), *_headings(facts, pair), *_turns(facts, pair)]
+    found += _swapped(facts, first)
+    return sorted(found, key=lambda one: one.price)
+
+
+def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
+    """The other side of a corner; any side where none is told."""
+    for role in ("striker", "struck"):
+        may, now = getattr(first, f"{role}_may"), getattr(first, f"{role}_area")
+        price = _CORNER if len(may) <= 3 else _OPEN_SIDE
+        for side in may if len(may) > 1 else ():
+            if side != now:
+                other = replace(first, **{f"{role}_area": side})
+                words = f"the {side} of {getattr(first, role)} instead of the {now}"
+                corner = facts.unnumbered and len(may) == 2
+                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner)
+
+
+def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
+    """A maneuver that is inferred, and slowing, give way to driving straight on, a lane to any lane."""
+    for v in pair:
+        if v.maneuver == "slowing" or (not v.maneuver_stated and v.maneuver != "straight"):
+            yield _changed(facts, replace(v, maneuver="straight"), f"{v.id} {ONWARD}", _GUESSED)._replace(
+                open=not v.maneuver_stated
+            )
+        if v.lane is not None or v.lane_word is not None:
+            yield _changed(facts, replace(v, lane=None, lane_word=None), f"{v.id} in any lane", _LANE)
+
+
+def _headings(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
+    """A heading that is inferred is another one."""
+    for v in pair:
+        if v.heading is not None and not v.heading_stated and facts.oriented:
+            for by in (90, -90, 180):
+                heading = turned(v.heading, by)
+                yield _changed(facts, replace(v, heading=heading), f"{v.id} heads {heading}", _HEADING)
+
+
+def _turns(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
+    """The turn belongs to the other vehicle."""
+    for v, other in (pair, pair[::-1]):
+        if v.maneuver in _TURNS and other.maneuver not in _TURNS and not other.standing:
+            straight = _changed(facts, replace(v, maneuver=other.maneuver, exit_heading=None), "", 0.0).facts
+            turning = replace(other, maneuver=v.maneuver, exit_heading=v.exit_heading)
+            yield _changed(straight, turning, f"{other.id} makes the turn, not {v.id}", _TURN)
+
+
+def _swapped(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
+    """The vehicles' numbers were exchanged where the contact is told; where a side is stated for sure they were not."""
+    if first.stated and (len(first.striker_may) == 1 or len(first.struck_may) == 1):
+        return
+    other = replace(first, striker=first.struck, struck=first.striker)
+    words = f"{other.striker} strikes {other.struck}, not the other way round"
+    yield Hypothesis(_with_first(facts, other), words, _SWAP, not first.stated)
+
+
+def _with_first(facts: CrashFacts, first: ContactFacts) -> CrashFacts:
+    return replace(facts, contacts=(first, *facts.contacts[1:]))
+
+
+def _changed(facts: CrashFacts, vehicle: VehicleFacts, words: str, price: float) -> Hypothesis:
+    vehicles = tuple(vehicle if v.id == vehicle.id else v for v in facts.vehicles)
+    return Hypothesis(replace(facts, vehicles=vehicles), words, price)

@@ -1,0 +1,1 @@
+"""Junctions: kind, legs, control, and the lanes of every approach."""

@@ -1,0 +1,298 @@
+"""Road facts completed to a layout: every lane, leg and control that the text leaves open gets a default.
+
+Legs lie at bearings from the hub; traffic that heads north comes in on leg S and leaves on leg N. Knows no
+geometry and no file format.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from sgcad_core.kinds import ALLEY, DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
+from sgcad_core.reading.crash_facts import VehicleFacts
+from sgcad_core.reading.junctions.junction import JunctionFacts
+from sgcad_core.reading.layout.answered_layout import answered_layout
+from sgcad_core.reading.layout.layout_places import (
+    circle_lanes,
+    offset,
+    parking_lot,
+    skewed,
+    with_approaches,
+    with_closed,
+    with_edges,
+    with_opening,
+)
+from sgcad_core.reading.motion.motion_record import DRIVES
+from sgcad_core.reading.roads.carriageway import Carriageway, Way, carriageway
+from sgcad_core.reading.roads.lanes import LaneFacts
+from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
+from sgcad_core.reading.roads.road_mentions import axis_of
+from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, turned
+from sgcad_core.records.specs import Compass, Leg, Median, RoadKind, RoadLayout, Turn
+
+_RIGHT: tuple[Turn, ...] = ("right",)
+_THROUGH: tuple[Turn, ...] = ("through",)
+_LEFT: tuple[Turn, ...] = ("left",)
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What a layout takes where the text says nothing."""
+
+    lanes_each_way: int = 1
+    speed_limit_mph: int | None = None
+
+
+def layout_of_facts(facts: RoadFacts, defaults: Defaults | None = None) -> RoadLayout:
+    """The layout that carries the facts and every vehicle's path. Never fails.
+
+    A driveway that a vehicle uses is a leg of the hub; beside a named junction driveways are left out.
+    """
+    return _Builder(facts, defaults or Defaults()).layout()
+
+
+@dataclass(frozen=True)
+class _Builder:
+    facts: RoadFacts
+    defaults: Defaults
+
+    def layout(self) -> RoadLayout:
+        roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
+        return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
+
+    def _roads_alone(self) -> RoadLayout:
+        main, cross = self._two_roads()
+        junction = self.facts.junction
+        if junction.kind == "none":
+            return RoadLayout(legs=self._plain(main))
+        if junction.kind == PARKING_LOT:
+            return parking_lot(self.facts, main.axis or "N")
+        if junction.kind == RAMP:
+            return RoadLayout(legs=self._merge(main))
+        if junction.kind in (DRIVEWAY, ALLEY):
+            return RoadLayout(legs=self._with_driveway(main))
+        stem = self._stem(main) if junction.kind == T else None
+        if stem and axis_of(stem) == main.axis and cross.axis != main.axis:
+            main, cross = cross, main
+        crossing = tuple(skewed(self.facts, leg) for leg in self._crossing(cross, main, stem))
+        if junction.offset and len(crossing) == 2:
+            return offset(self._through(main, crossing[0].bearing), *crossing)
+        legs = self._through(main, stem) + crossing
+        return RoadLayout(legs=legs, circle_lanes=circle_lanes(self.facts, legs))
+
+    # -------------------------------------------------------------- roads
+    def _two_roads(self) -> tuple[RoadFact, RoadFact]:
+        """The main road and the one that crosses it, told or made up at a right angle."""
+        streets = [r for r in self.facts.streets if r.axis]
+        main = self._main(streets) if streets else RoadFact(self._lead_axis(), "road", LaneFacts(), ())
+        axis = main.axis or "N"
+        others = [r for r in streets if r.axis != axis]
+        cross = next((r for r in others if r.vehicles), others[0] if others else None)
+        made_up = RoadFact(axis_of(turned(axis, 90)), "road", LaneFacts(), (), cross=True)
+        return main, cross or made_up
+
+    def _main(self, streets: list[RoadFact]) -> RoadFact:
+        """The first road told; beside a ramp the road that the ramp joins."""
+        if self.facts.junction.kind != RAMP:
+            return streets[0]
+        ramp = {v for r in self.facts.roads if r.kind == RAMP for v in r.vehicles}
+        joined = [r for r in streets if r.cross] + [r for r in streets if set(r.vehicles) - ramp]
+        return joined[0] if joined else streets[0]
+
+    def _lead_axis(self) -> Compass:
+        vehicles = self.facts.crash.vehicles
+        driving = [v.heading for v in vehicles if v.heading and v.origin not in DRIVES]
+        return axis_of(driving[0] if driving else "N")
+
+    def _carriageway(self, road: RoadFact) -> Carriageway:
+        axis = road.axis or "N"
+        along = [v for v in self.facts.crash.vehicles if v.heading and axis_of(v.heading) == axis]
+        lead = along[0].heading if along and along[0].heading else axis
+        used: dict[Compass, int] = {}
+        for v in along:
+            if v.heading and v.origin not in DRIVES:
+                used[v.heading] = max(used.get(v.heading, 1), _lane_used(v))
+        default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
+        lanes = _of_freeway(road.lanes) if road.kind == "freeway" else road.lanes
+        return carriageway(lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))
+
+    # -------------------------------------------------------------- legs
+    def _plain(self, road: RoadFact) -> tuple[Leg, ...]:
+        axis = road.axis or "N"
+        lanes = self._carriageway(road)
+        ends = (turned(axis, 180), axis)
+        return tuple(_plain_leg(self._leg(road, lanes, end, at_junction=False), lanes, end, ends) for end in ends)
+
+    def _through(self, road: RoadFact, stem: Compass | None) -> tuple[Leg, ...]:
+        axis = road.axis or "N"
+        lanes = self._carriageway(road)
+        ends = (turned(axis, 180), axis)
+        return tuple(self._leg(road, lanes, end, far=stem is not None) for end in ends)
+
+    def _crossing(self, road: RoadFact, main: RoadFact, stem: Compass | None) -> tuple[Leg, ...]:
+        lanes = self._carriageway(road)
+        axis = road.axis or "N"
+        if stem is None:
+            return tuple(self._leg(road, lanes, end) for end in (turned(axis, 180), axis))
+        at = stem if axis_of(stem) != main.axis else turned(main.axis or "N", 90)
+        if axis_of(at) != axis:
+            lanes = self._carriageway(RoadFact(axis_of(at), road.kind, road.lanes, road.vehicles))
+        return (self._leg(road, lanes, at),)
+
+    def _with_driveway(self, main: RoadFact) -> tuple[Leg, ...]:
+        stem = self._stem(main)
+        control, alley = self._leg_control(stem), self.facts.junction.kind == ALLEY
+        drive = Leg(bearing=stem, lanes_in=1, lanes_out=1, kind=DRIVEWAY, control=control, alley=alley)
+        return (*self._through(main, stem), drive)
+
+    def _merge(self, main: RoadFact) -> tuple[Leg, ...]:
+        """A one-lane ramp that joins from behind on the right, or where its vehicle comes from, or leaves ahead."""
+        flow = self._main_flow(main)
+        ramp = next((r for r in self.facts.roads if r.kind == RAMP), None)
+        count = (ramp.lanes.total or 1) if ramp else 1
+        if self.facts.leaves:
+            off = Leg(bearing=turned(flow, 45), lanes_in=0, lanes_out=count, kind=RAMP)
+            return (*self._through(main, off.bearing), off)
+        at = self.facts.junction.stem
+        if at is None or axis_of(at) == main.axis or between(flow, at) not in (135, 225):
+            at = turned(flow, 135)
+        legs = tuple(self._widened(leg, main, flow) for leg in self._through(main, at))
+        return (*legs, Leg(bearing=at, lanes_in=count, lanes_out=0, kind=RAMP, control=self._leg_control(at)))
+
+    def _widened(self, leg: Leg, main: RoadFact, flow: Compass) -> Leg:
+        """Behind the merge the road has the merging lane, told or left over by its total."""
+        lanes = self._carriageway(main)
+        spare = (lanes.total or 0) - sum(way.approach for way in lanes.ways.values())
+        widens = leg.bearing == flow and (spare == 1 or self.facts.merge_lane)
+        return leg.model_copy(update={"lanes_out": min(leg.lanes_out + 1, 8)}) if widens else leg
+
+    def _main_flow(self, main: RoadFact) -> Compass:
+        """The direction of the traffic that the ramp joins."""
+        axis = main.axis or "N"
+        here = [v for v in self.facts.crash.vehicles if v.heading and axis_of(v.heading) == axis]
+        straight = [v for v in here if v.origin != RAMP] or here
+        return straight[0].heading if straight and straight[0].heading else axis
+
+    def _stem(self, main: RoadFact) -> Compass:
+        """The side leg's bearing, never on the main road unless the story's cross road lies there."""
+        stem = self.facts.junction.stem or turned(self._main_flow(main), 90)
+        if axis_of(stem) == main.axis and self.facts.junction.kind != T:
+            return turned(self._main_flow(main), 90)
+        return stem
+
+    def _leg(
+        self, road: RoadFact, lanes: Carriageway, bearing: Compass, far: bool = False, at_junction: bool = True
+    ) -> Leg:
+        """One leg. Towards the hub its turn lanes count; `far`: a T, where no turn lanes face the other way."""
+        inward = turned(bearing, 180)
+        coming, going = lanes.way(inward), lanes.way(bearing)
+        lanes_in, lanes_out = coming.approach, going.through
+        if lanes.stated and lanes.total and lanes_in and lanes_out and not far:
+            lanes_in = max(lanes_in, _facing(lanes, coming, going))
+        return Leg(
+            bearing=bearing, lanes_in=lanes_in, lanes_out=lanes_out,
+            turns_in=_turns(coming, lanes_in) if at_junction else (),
+            center_turn_lane=_center(lanes, lanes_in, lanes_out),
+            median=_median(road, lanes_in, lanes_out), kind=_kind(road), alley=road.kind == ALLEY,
+            curve=_curve(road, inward),
+            control=self._leg_control(bearing) if at_junction and lanes_in else "none",
+            speed_limit_mph=road.speed_limit_mph or _usual_limit(road) or self.defaults.speed_limit_mph,
+        )  # fmt: skip
+
+    def _leg_control(self, bearing: Compass) -> Literal["none", "signal", "flashing", "stop", "yield"]:
+        junction = self.facts.junction
+        if junction.control == "all_way_stop":
+            return "stop"
+        if junction.control in ("signal", "flashing"):
+            return junction.control
+        if junction.control in ("stop", "yield") and bearing in self._stopped(junction):
+            return junction.control
+        return "none"
+
+    def _stopped(self, junction: JunctionFacts) -> tuple[Compass, ...]:
+        """Legs under a sign: as told, else the stem, else the crossing road."""
+        if junction.stopped:
+            return junction.stopped
+        if junction.stem:
+            return (junction.stem,)
+        _, cross = self._two_roads()
+        axis = cross.axis or "E"
+        return axis, turned(axis, 180)
+
+
+def _plain_leg(leg: Leg, lanes: Carriageway, bearing: Compass, ends: tuple[Compass, Compass]) -> Leg:
+    """On a plain road what comes in goes out: an odd total has its wider side in the lead's direction."""
+    here, ahead = lanes.way(turned(bearing, 180)), lanes.way(bearing)
+    inward, outward = here.approach, ahead.approach
+    if lanes.total and lanes.total % 2 and inward + outward == lanes.total + 1 and not lanes.center_turn_lane:
+        inward, outward = (inward, outward - 1) if bearing == ends[0] else (inward - 1, outward)
+    return leg.model_copy(update={"lanes_in": inward, "lanes_out": outward})
+
+
+def _facing(lanes: Carriageway, coming: Way, going: Way) -> int:
+    """Lanes towards the hub on the leg that faces a leg with a left-turn lane: the road keeps its total.
+
+    Where both directions have left-turn lanes, each leg has its own and the total counts both.
+    """
+    facing = going.left_turn and not coming.left_turn
+    return (lanes.total or 0) - going.through if facing else 0
+
+
+def _turns(way: Way, lanes_in: int) -> tuple[Turn, ...]:
+    """Lane uses from the right curb where turn lanes are known; the links fill what no exit serves."""
+    left, right = way.left_turn, way.right_turn
+    middle = way.approach - left - right
+    if not (left or right) or middle < 1 or lanes_in != way.approach:
+        return ()
+    uses: list[Turn] = [*_RIGHT * right, *_THROUGH * middle, *_LEFT * left]
+    if not right:
+        uses[0] = "through_right"
+    if not left:
+        uses[-1] = "left_through"
+    return tuple(uses)
+
+
+def _of_freeway(told: LaneFacts) -> LaneFacts:
+    """Its carriageways stand apart, told or not, and none has one lane: "two lanes" are those of one of them."""
+    whole = told.total == 2 and not told.one_way and not told.each_way and not told.toward
+    return replace(told, divided=True, each_way=2 if whole else told.each_way)
+
+
+def _center(lanes: Carriageway, lanes_in: int, lanes_out: int) -> bool:
+    return lanes.center_turn_lane and lanes_in > 0 and lanes_out > 0
+
+
+def _median(road: RoadFact, lanes_in: int, lanes_out: int) -> Median:
+    if not lanes_in or not lanes_out:
+        return "none"
+    if road.lanes.median:
+        return road.lanes.median
+    if road.lanes.divided:
+        return "grass" if road.kind == "freeway" else "raised"
+    return "none"
+
+
+def _usual_limit(road: RoadFact) -> int | None:
+    """The statutory limit that most states post on freeways, on rural roads and in alleys, mph; None elsewhere."""
+    return {"freeway": 60, RAMP: None, DRIVEWAY: None, ALLEY: 15}.get(road.kind, 50 if road.rural else None)
+
+
+def _kind(road: RoadFact) -> RoadKind:
+    return DRIVEWAY if road.kind == ALLEY else road.kind if road.kind in JOINING else "road"
+
+
+def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:
+    """The bend on a leg as one drives towards the hub: told for that direction, or seen from the other end."""
+    told = dict(road.curve)
+    if inward in told:
+        return told[inward]
+    back = told.get(turned(inward, 180))
+    return OPPOSITE_HAND[back] if back else "none"
+
+
+def _lane_used(v: VehicleFacts) -> int:
+    """The least number of lanes in a direction where a vehicle is in that lane."""
+    if v.lane:
+        return min(abs(v.lane), 6)
+    return {"left": 2, "middle": 3}.get(v.lane_word or "", 1)

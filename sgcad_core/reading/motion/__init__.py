@@ -1,0 +1,1 @@
+"""How each vehicle moved before the crash: clauses, maneuvers, headings, signals."""

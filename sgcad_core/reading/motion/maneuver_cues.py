@@ -1,0 +1,116 @@
+"""What a vehicle did: turned, meant to turn, stopped, moved on, drifted, changed lanes, backed.
+
+Each deed is a word found in one segment, with its weight; `sgcad_core.reading.motion.maneuvers` decides.
+"""
+
+from __future__ import annotations
+
+import re
+
+from sgcad_core.reading.language import Rule, of_role, rule
+from sgcad_core.reading.motion.motion_record import Deed, Motion
+from sgcad_core.reading.text.compass import between, compass_of, turned
+
+_TURNING = rule("deeds.turning")
+_LATER = rule("deeds.later")
+_TRY = rule("deeds.try")
+_EVASIVE = rule("deeds.evasive")
+_NOT = rule("deeds.not")
+_HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
+"""What a vehicle may wait or prepare to do and never does."""
+_SIDES = ("side", "side2", "side3", "side4", "side5", "side6")
+_TURNS = ("turn_left", "turn_right")
+_BY_ANGLE = {90: "right", 135: "right", 225: "left", 270: "left"}
+"""The hand of a turn by its change of heading, clockwise degrees."""
+_ONWARD = ("straight", "moved_on", "came_on", "backing", "leaving_parking")
+"""Ways of moving that are no maneuver of their own, and may be waited for."""
+_BEFORE = ("came_on", "moved_on")
+"""What may be told behind what it came before: "stopped after passing the crosswalk"."""
+
+
+def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
+    """Add what one segment tells; `at`: where in its sentence it begins."""
+    for m in _TURNING.finditer(text):
+        told = next((k for k in _SIDES if m.groupdict().get(k)), None)
+        side = m[told].lower() if told else "left"
+        before = text[max(0, m.start() - 60) : m.start()]
+        if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
+            continue
+        led = before + text[m.start() : m.start(told) if told else m.start()]
+        begun = _TRY.search(before[-14:]) or rule("deeds.begins").search(led)
+        later = _LATER.search(before) and not begun
+        motion.deeds.append(
+            Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
+        )
+    _read_turn_to(motion, text, weight, number, at)
+    told_now = of_role("deed_now") if motion.ordered else ()
+    for deed in (*of_role("deed"), *told_now):
+        for m in deed.finditer(text):
+            before = text[max(0, m.start() - 60) : m.start()]
+            undone = motion.ordered and _undone(deed.yields["deed"], before, m.group())
+            if not _NOT.search(before[-30:]) and not undone:
+                _note_deed(motion, deed, m, (weight, number, at + m.end()))
+    if motion.ordered:
+        _read_turn_on(motion, text, weight, number, at)
+        _read_from_onto(motion, text, weight, number, at)
+
+
+def _undone(kind: str, before: str, words: str) -> bool:
+    """Whether the words before a deed say that it was waited for or meant, done before what they tell, or of people."""
+    if kind in _HOPED and (_LATER.search(before) or rule("deeds.meant").search(before)):
+        return not (rule("deeds.done").match(words) or rule("deeds.begins").search(before))
+    if kind in _BEFORE and rule("deeds.earlier").search(before):
+        return True
+    unmoved = rule("deeds.unmoved").search(before) or rule("deeds.by_people").search(before)
+    return kind in _ONWARD and bool(unmoved or rule("deeds.not_yet").search(before + words))
+
+
+def _read_turn_on(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """A turn that goes on, to the hand to which the vehicle was told to turn or to mean to turn."""
+    for m in rule("deeds.turn_on").finditer(text):
+        sides = [d.kind.removeprefix("want_") for d in motion.deeds if d.kind.removeprefix("want_") in _TURNS]
+        before = text[max(0, m.start() - 60) : m.start()]
+        if sides and not _NOT.search(before) and not _LATER.search(before):
+            motion.deeds.append(Deed(sides[-1], weight, number, m.group(), "deeds.turn_on", at + m.end()))
+
+
+def _read_from_onto(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """ "From westbound Elm Street onto southbound Oak Avenue": a turn by its two directions, where no word tells it."""
+    for m in rule("deeds.from_onto").finditer(text):
+        start, end = compass_of(m["from"]), compass_of(m["onto"])
+        side = _BY_ANGLE.get(between(start, end)) if start and end else None
+        told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.deeds)
+        if side and not told:
+            motion.deeds.append(Deed(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
+
+
+def _read_turn_to(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+    """ "Turned toward the north" of who heads east, and "wanted to go left": turns that no other word tells."""
+    if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.deeds):
+        return
+    for m in rule("deeds.turn_to").finditer(text):
+        start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
+        side = _BY_ANGLE.get(between(start, end)) if start and end else None
+        if side and not _NOT.search(text[: m.start()]):
+            want = "want_" if _LATER.search(text[: m.start()]) else ""
+            motion.deeds.append(Deed(f"{want}turn_{side}", weight, number, m.group(), "deeds.turn_to", at + m.end()))
+    for m in rule("deeds.go_turn").finditer(text):
+        want = "want_" if m["go"].lower() == "go" else ""
+        if not _NOT.search(text[: m.start()]):
+            kind = f"{want}turn_{m['hand'].lower()}"
+            motion.deeds.append(Deed(kind, weight, number, m.group(), "deeds.go_turn", at + m.end()))
+
+
+def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:
+    """`told`: weight, sentence, place."""
+    kind, rule_id = deed.yields["deed"], deed.id
+    weight, number, at = told
+    if kind == "from_side":
+        motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
+    elif kind == "into_lane":
+        entered = compass_of(m.group("bound"))
+        own = motion.headings[0][1] if motion.headings else None
+        if entered and own and turned(entered, 180) == own:
+            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id, at))
+    else:
+        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id, at))

@@ -1,0 +1,124 @@
+"""How each vehicle moved before the crash: heading, lane, speed, deeds, where it came from and meant to go.
+
+Reads segments (one subject each) and the critical-event sentences that many reports carry. What an
+interview says counts only where nothing else does. Knows no contact and infers nothing across vehicles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from sgcad_core.reading.actors.unnumbered_actors import PARTS
+from sgcad_core.reading.actors.vehicles import Identity, Roster
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.clauses import Segment, Statement
+from sgcad_core.reading.motion.critical_events import read_code
+from sgcad_core.reading.motion.headings import note_bound, read_heading
+from sgcad_core.reading.motion.maneuver_cues import read_deeds
+from sgcad_core.reading.motion.motion_record import Motion
+from sgcad_core.reading.motion.surroundings import read_access, read_kin, read_lane
+from sgcad_core.reading.text.sentence_roles import HIT, Role
+from sgcad_core.reading.text.speeds import read_speed, read_speeds_beside
+
+_WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
+                          "rest": 2}  # fmt: skip
+
+
+_STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
+_STOPPED_THERE = rule("motion_reader.stopped_there")
+_THROWN = rule("motion_reader.thrown")
+_UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
+
+
+def motions(
+    told: Sequence[Statement], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
+) -> dict[str, Motion]:
+    """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
+    found = {v: Motion(watched=v == who.ids[0], ordered=who.counted) for v in who.ids}
+    for identity in who.vehicles if who.counted else ():
+        _read_part(found[identity.id], identity, who)
+    impact = min((t.number for t in told if t.role == "impact"), default=len(told))
+    impact = struck_at if who.counted and struck_at is not None else impact
+    blow = next((t for t in told if t.number == impact), None) if who.counted else None
+    for segment in cut:
+        if segment.role in _UNREAD or (blow and _behind(blow, segment)):
+            continue
+        for vehicle in segment.subjects:
+            motion = found[vehicle]
+            motion.at = segment.number
+            after = segment.number > impact
+            late = after and bool(motion.headings or motion.deeds)
+            if late and who.counted:
+                continue
+            _read(motion, segment, vehicle, who, 2 if late else 4, after)
+    for t in told:
+        for motion in found.values():
+            motion.at = t.number
+        if t.role not in _UNREAD:
+            note_bound(found, t.text, _WEIGHT.get(t.role, 1))
+        if t.role in ("codes", "factors"):
+            read_code(found, t, who)
+    if not who.counted:
+        read_speeds_beside(found, [t for t in told if t.role not in _UNREAD])
+    for motion in found.values():
+        _hear_interview(motion)
+    return found
+
+
+def _hear_interview(motion: Motion) -> None:
+    """Of whom nothing else tells what he did: what an interview tells, as if the report told it."""
+    if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.deeds):
+        return
+    motion.deeds = [d._replace(weight=3) for d in motion.deeds]
+
+
+def _behind(blow: Statement, segment: Segment) -> bool:
+    """Whether a segment of the sentence of the contact tells what came behind it."""
+    if segment.number != blow.number or not rule("motion_reader.next_event").search(blow.text[: segment.at]):
+        return False
+    return any(not rule("motion_reader.no_hit").search(blow.text[: m.start()].lower())
+               for m in HIT.finditer(blow.text, 0, segment.at))  # fmt: skip
+
+
+def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
+    """Where a vehicle drives beside the subject, as its first description says: "the lead vehicle"."""
+    words = " ".join(cue.words for cue in identity.described).lower().split()
+    part = next((PARTS[word] for word in words if word in PARTS), None)
+    if part and identity.id != who.ids[0]:
+        motion.kin.append((4, "opposite" if part == "opposite" else "same", who.ids[0], part))
+
+
+def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:
+    """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
+    text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
+    if motion.ordered:
+        text = rule("motion_reader.strangers").sub(lambda m: " " * len(m[0]), text)
+    weight = min(_WEIGHT.get(segment.role, 1), most)
+    before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
+    read_heading(motion, before_hit, weight)
+    read_deeds(motion, before_hit, weight, segment.number, segment.at)
+    read_kin(motion, before_hit, weight, vehicle, who)
+    if segment.role != "rest":
+        read_lane(motion, before_hit)
+        read_access(motion, before_hit)
+    read_speed(motion, segment.text, weight)
+
+
+def _until_stopped(text: str, after: bool) -> str:
+    """Without the end of a way that a blow began: "spun and stopped in the road", "stopped facing west"."""
+    found = _STOPPED_AT_LAST.search(text) or (_STOPPED_THERE.search(text) if after else None)
+    return text[: found.start()] if found and (after or _THROWN.search(text[: found.start()])) else text
+
+
+def _until_hit(text: str) -> str:
+    """The part before the blow: what follows it is the effect, not the approach."""
+    for m in HIT.finditer(text):
+        if not rule("motion_reader.no_hit").search(text[: m.start()]):
+            moving = rule("motion_reader.moving_hit").match(m.group())
+            return text[: m.end() if moving else m.start()]
+    return text
+
+
+def _until_rest(text: str) -> str:
+    cut = rule("motion_reader.rest").search(text)
+    return text[: cut.start()] if cut else text

@@ -1,0 +1,98 @@
+"""What the text says of one vehicle's motion: the record that the readers fill. Knows no text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
+
+from sgcad_core.kinds import ALLEY, DRIVEWAY
+from sgcad_core.records.specs import Compass
+
+Access = Literal["driveway", "alley", "parking_lot", "ramp", "shoulder", "side_road"]
+DRIVES: tuple[Access, ...] = (DRIVEWAY, ALLEY, "parking_lot")
+"""Where vehicles come from or turn into that drive on no street there."""
+Kin = Literal["same", "opposite", "crossing"]
+
+
+class Cue(NamedTuple):
+    """Where something was read: a sentence's number (from 0), the words, as in the resolved sentence, and the rule."""
+
+    number: int
+    words: str = ""
+    rule: str = ""
+
+
+class Deed(NamedTuple):
+    """One thing a vehicle did or was doing; `weight` 4 where the approach says so, 1 in an interview."""
+
+    kind: str
+    weight: int
+    number: int
+    words: str = ""
+    rule: str = ""
+    at: int = 0
+    """Where in its sentence it ends."""
+
+    @property
+    def cue(self) -> Cue:
+        """Where it was read."""
+        return Cue(self.number, self.words, self.rule)
+
+    @property
+    def when(self) -> tuple[int, int]:
+        """Its place in the order of the text."""
+        return self.number, self.at
+
+
+class Heard(NamedTuple):
+    """A heading or a speed (mph) that is told, and with what weight."""
+
+    weight: int
+    value: Any
+    cue: Cue
+
+
+@dataclass
+class Motion:
+    """What the text says of one vehicle's motion; empty where it says nothing."""
+
+    at: int = 0
+    """The sentence that is being read."""
+    watched: bool = False
+    """Whether it is the report's own vehicle."""
+    ordered: bool = False
+    """Whether the deeds are one account in order, up to the contact."""
+    headings: list[Heard] = field(default_factory=list)
+    """In the order of the text."""
+    exits: list[Compass] = field(default_factory=list)
+    """Headings that it turned to or meant to turn to."""
+    deeds: list[Deed] = field(default_factory=list)
+    kin: list[tuple[int, Kin, str | None, str]] = field(default_factory=list)
+    """(weight, relation, other vehicle if named, word: ahead, behind, ...)."""
+    lane: int | None = None
+    """1 = at the right curb; -1 = the leftmost."""
+    lane_word: str | None = None
+    speeds_mph: list[Heard] = field(default_factory=list)
+    origin: Access | None = None
+    target: Access | None = None
+    axes: list[str] = field(default_factory=list)
+    from_side: Literal["left", "right"] | None = None
+    sources: dict[str, Cue] = field(default_factory=dict)
+    """Where lane, origin, target, each exit ("exit W") and where it faces or backs to ("faces W", "backs W") were first
+    read."""
+
+    def did(self, kind: str, least: int = 1) -> bool:
+        """Whether a deed is told with at least that weight."""
+        return self.deed(kind, least) is not None
+
+    def deed(self, kind: str, least: int = 1) -> Deed | None:
+        """The first deed of that kind that is told with at least that weight."""
+        return next((d for d in self.deeds if d.kind == kind and d.weight >= least), None)
+
+    def read(self, what: str, words: str, rule: str) -> None:
+        """Note where something was read and by which rule, if it is the first time."""
+        self.sources.setdefault(what, Cue(self.at, words, rule))
+
+    def heard(self, into: list[Heard], weight: int, value: Any, words: str, rule: str) -> None:
+        """Note a heading or a speed."""
+        into.append(Heard(weight, value, Cue(self.at, words, rule)))

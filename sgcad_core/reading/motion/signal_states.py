@@ -1,0 +1,49 @@
+"""What a traffic signal showed to each vehicle when it came to the crash, where the report tells it.
+
+The crash's own sentences come first, of them the last; then what drivers and witnesses said, if they agree. What
+somebody only thought, and signals that flash, tell nothing. Knows no map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Literal, NamedTuple
+
+from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.motion.clauses import Segment
+from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.text.sentence_roles import CRASH_ROLES
+
+SignalState = Literal["green", "yellow", "red"]
+_HEDGED = rule("signal_states.hedged")
+
+
+class SignalTold(NamedTuple):
+    """A state and where it is told."""
+
+    state: SignalState
+    cue: Cue
+
+
+def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
+    """By vehicle; whoever's signal is not told, or told in two ways by those who are quoted, is not in it."""
+    story: dict[str, list[SignalTold]] = {}
+    quoted: dict[str, list[SignalTold]] = {}
+    for segment in segments:
+        for told in _told(segment):
+            for vehicle in segment.subjects:
+                (story if segment.role in CRASH_ROLES else quoted).setdefault(vehicle, []).append(told)
+    agreed = {v: found[-1] for v, found in quoted.items() if len({told.state for told in found}) == 1}
+    return {**agreed, **{vehicle: found[-1] for vehicle, found in story.items()}}
+
+
+def _told(segment: Segment) -> Iterator[SignalTold]:
+    """States in the order of the text."""
+    if _HEDGED.search(segment.text):
+        return
+    found = [
+        (match.start(), SignalTold(told.yields["signal"], Cue(segment.number, match[0], told.id)))
+        for told in of_role("signal_state")
+        for match in told.finditer(segment.text)
+    ]
+    yield from (told for _, told in sorted(found, key=lambda at: at[0]))

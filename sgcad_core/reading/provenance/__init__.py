@@ -1,0 +1,1 @@
+"""Facts with the sentences that they were read from."""

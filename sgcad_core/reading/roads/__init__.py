@@ -1,0 +1,1 @@
+"""The roads of a report: names, lanes, medians, speed limits, work zones."""

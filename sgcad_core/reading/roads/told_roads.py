@@ -1,0 +1,40 @@
+"""What a report tells of drawn roads beyond their lanes: whether a limit is posted or assumed, and the area.
+
+Knows the road facts and the ids of a layout's roads; no file format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import get_args
+
+from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
+from sgcad_core.reading.roads.road_mentions import axis_of
+from sgcad_core.records.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
+
+_IN_TOWN = ("bike_lane", "parking", "sidewalk")
+
+
+def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
+    """Road id -> what is told of it. A limit counts as posted where the report tells it of a road of that axis."""
+    in_town = facts.urban or facts.crosswalk or any(what in _IN_TOWN for what in facts.beside)
+    return {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
+
+
+def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
+    """Facts of the road along whose axis a leg lies (its id begins with its bearing), and those without an axis."""
+    bearing = road.id.partition("_")[0]
+    if road.kind == DRIVEWAY or bearing not in get_args(Compass):
+        return []
+    kinds = (RAMP,) if road.kind == RAMP else ("road", "freeway", "crossroads")
+    return [r for r in facts.roads if r.kind in kinds and (r.axis is None or r.axis == axis_of(bearing))]  # type: ignore[arg-type]
+
+
+def _as_told(road: Road, facts: list[RoadFact], in_town: bool) -> ToldRoad:
+    limits = {fact.speed_limit_mph for fact in facts} - {None}
+    town: RoadArea = "town" if in_town and road.kind == "road" else ""
+    area: RoadArea = (
+        "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else town
+    )
+    return ToldRoad(posted=road.speed_limit_mph in limits, area=area)

@@ -1,0 +1,98 @@
+"""What a story tells of a road besides its junction: lanes that a work zone closes, openings in its median, gores.
+
+Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn and no file format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sgcad_core.reading.crash_facts import VehicleFacts
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.clauses import Statement
+from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.text.normalise import NUMBERS
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES
+from sgcad_core.records.specs import Compass
+
+Side = Literal["left", "right"]
+InGore = Literal["stands", "strikes", "crosses", "leaves"]
+"""What one does in a gore; who leaves crosses it into the ramp."""
+
+
+@dataclass(frozen=True)
+class ClosedLanes:
+    """Lanes that are closed ahead, `count` from the curb or from the middle, for traffic that heads `toward`."""
+
+    side: Side
+    count: int
+    toward: Compass
+    side_stated: bool
+    where: Cue = field(compare=False, repr=False)
+
+
+CLOSED_LANES = rule("places.closed_side")
+_CLOSURE = rule("places.closure")
+MEDIAN_OPENING = rule("places.median_opening")
+_GORE, _IN_GORE, _TO_RAMP = rule("places.gore"), rule("places.in_gore"), rule("places.to_ramp")
+_LEFT = ("left", "leftmost", "left-most", "inside", "inner")
+_AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "left"}
+"""The side of the lane that one leaves by a change of lane."""
+
+
+def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
+    """The closed lanes of a story, None where it tells of none. Which they are follows from who leaves them, where the
+    story does not say it: else the right one."""
+    leaves = next((v for v in vehicles if v.maneuver in (*_AWAY, "merge") and v.heading), None)
+    lead = leaves or next((v for v in vehicles if v.heading), None)
+    if lead is None or lead.heading is None:
+        return None
+    for t in _story(told):
+        if match := CLOSED_LANES.search(t.text):
+            parts = match.groupdict()
+            word = next(parts[k] for k in ("side", "ahead", "noun", "blocked", "by") if parts[k]).lower()
+            count = NUMBERS.get(number := (parts["count"] or parts["more"] or "1").lower()) or int(number)
+            side: Side = "left" if word in _LEFT else "right"
+            return ClosedLanes(side, count, lead.heading, True, Cue(t.number, match[0], CLOSED_LANES.id))
+        if match := _CLOSURE.search(t.text):
+            return ClosedLanes(_left_by(lead), 1, lead.heading, False, Cue(t.number, match[0], _CLOSURE.id))
+    return None
+
+
+def median_opening(told: Sequence[Statement]) -> Cue | None:
+    """Where a story tells of an opening in the median."""
+    found = ((t, match) for t in _story(told) if (match := MEDIAN_OPENING.search(t.text)))
+    return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
+
+
+def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
+    """Vehicles that a story puts into a gore: who stands there, strikes something there, or crosses it, and whither."""
+    found: dict[str, InGore] = {}
+    for t in _story(told):
+        for match in _IN_GORE.finditer(t.text):
+            how, who = next((how, who) for how, who in match.groupdict().items() if who)
+            away = how == "crosses" and _TO_RAMP.search(t.text[match.end() : match.end() + 60])
+            found.setdefault(who, "leaves" if away else how)  # type: ignore[arg-type]
+    return found
+
+
+def names_closure(told: Sequence[Statement]) -> bool:
+    """Whether a story tells of a closed lane at all, though perhaps not for whom."""
+    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(told))
+
+
+def names_gore(told: Sequence[Statement]) -> bool:
+    """Whether a story names a gore at all."""
+    return any(_GORE.search(t.text) for t in _story(told))
+
+
+def _story(told: Sequence[Statement]) -> list[Statement]:
+    return [t for t in told if t.role in STORY_ROLES]
+
+
+def _left_by(v: VehicleFacts) -> Side:
+    """The side on which the lane lies that a vehicle leaves, as far as that is told."""
+    word: Side = "left" if v.lane_word == "left" else "right"
+    return _AWAY.get(v.maneuver, word)

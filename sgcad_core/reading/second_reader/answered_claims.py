@@ -1,0 +1,117 @@
+"""What a model's answers to a whole report claim, field by field, in the terms of
+`sgcad_core.reading.second_reader.field_claims`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from math import prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sgcad_core.reading.second_reader.field_claims import (
+    UNKNOWN_P,
+    Claim,
+    Claims,
+    by_axis,
+    by_id,
+    control_of,
+    curves_of,
+    lanes_of,
+    turns_of,
+)
+from sgcad_core.reading.text.compass import COMPASS, turned
+from sgcad_core.records.specs import Compass, Leg
+
+if TYPE_CHECKING:
+    from sgcad_core.records.second_reader import Answered
+    from sgcad_core.records.specs import Actor, BehaviorSpec
+
+
+def model_claims(said: Answered) -> Claims:
+    """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
+    sure = _Sure(said.p, said.nats, said.told)
+    found: Claims = {}
+    for i, actor in enumerate(said.behavior.actors):
+        at = f"crash.actors[{i}]"
+        found |= {key: sure.claim(value, f"{at}.{name}") for key, name, value in _actor(actor)}
+        if (lane := f"lane.{actor.id}") in found:
+            found[lane] = found[lane]._replace(also=_edges_of(actor, said.layout.legs))
+    found |= dict(_met(said.behavior, sure))
+    for key in ("light", "weather", "surface"):
+        if (value := getattr(said.behavior, key)) is not None:
+            found[key] = sure.claim(value, f"crash.{key}")
+    return found | dict(_answered_roads(said.layout.legs, sure))
+
+
+class _Sure(NamedTuple):
+    """Probability and grounding of every value by its path."""
+
+    p: Mapping[str, float]
+    nats: Mapping[str, float]
+    told: Mapping[str, float]
+
+    def claim(self, value: Any, *paths: str, joint: bool = False) -> Claim:
+        """A claim that stands at some paths: as sure as the least sure of them, or (`joint`) as all together.
+
+        A value without a probability is sure, since the grammar left no choice; even where nothing is known, as of a
+        server that gives no probabilities.
+        """
+        some = [self.p.get(path, 1.0) if self.p else UNKNOWN_P for path in paths] or [1.0]
+        told = min((self.told[path] for path in paths if path in self.told), default=UNKNOWN_P)
+        return Claim(value, told, prod(some) if joint else min(some), sum(self.nats.get(path, 0.0) for path in paths))
+
+
+def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
+    yield f"kind.{actor.id}", "kind", actor.kind
+    if not actor.id.startswith("V"):
+        return
+    if heading := _heading(actor.road):
+        yield f"heading.{actor.id}", "road", heading
+    yield f"maneuver.{actor.id}", "maneuver", actor.maneuver
+    if actor.exit_road in COMPASS:
+        yield f"exit.{actor.id}", "exit_road", actor.exit_road
+    if actor.lane is not None:
+        yield f"lane.{actor.id}", "lane", actor.lane
+    if actor.speed_mph:
+        yield f"speed.{actor.id}", "speed_mph", actor.speed_mph
+
+
+def _edges_of(actor: Actor, legs: tuple[Leg, ...]) -> tuple[str, ...]:
+    """On which edge of its approach a vehicle drives."""
+    bearing = actor.road.removesuffix("_outer")
+    lanes = next((leg.lanes_in for leg in legs if leg.bearing == bearing), 0)
+    return ("right",) * (actor.lane == 1) + ("left",) * (actor.lane == lanes)
+
+
+def _heading(road: str) -> Compass | None:
+    """Where one drives who comes in on a leg ("N") or on its outer piece ("N_outer")."""
+    bearing = road.removesuffix("_outer")
+    return turned(bearing, 180) if bearing in COMPASS else None
+
+
+def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
+    if not behavior.contacts:
+        return
+    first, at = behavior.contacts[0], "crash.contacts[0]"
+    yield "contact", sure.claim((first.striker, first.struck), f"{at}.striker", f"{at}.struck", joint=True)
+    sides = by_id({first.striker: first.striker_area, first.struck: first.struck_area})
+    yield "areas", sure.claim(sides, f"{at}.striker_area", f"{at}.struck_area", joint=True)
+
+
+def _answered_roads(legs: tuple[Leg, ...], sure: _Sure) -> Iterator[tuple[str, Claim]]:
+    at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
+
+    def claim(value: Any, some: Iterable[Leg], *names: str) -> Claim:
+        return sure.claim(value, *(f"{at[leg.bearing]}.{name}" for leg in some for name in names))
+
+    bearings = [f"{place}.bearing" for place in at.values()]
+    yield "legs", sure.claim(tuple(sorted(at)), "road.legs[]", *bearings)
+    for axis, some in by_axis(legs):
+        yield f"lanes.{axis}", claim(lanes_of(some), some, "lanes_in", "lanes_out")
+        if turns := turns_of(some):
+            places = [f"{at[leg.bearing]}.turns_in[{k}]" for leg in some for k in range(len(leg.turns_in))]
+            yield f"turns.{axis}", sure.claim(turns, *places)
+        yield f"median.{axis}", claim(some[0].median, some, "median")
+        yield f"curve.{axis}", claim(curves_of(some), some, "curve")
+        if (limit := some[0].speed_limit_mph) is not None:
+            yield f"limit.{axis}", claim(limit, some[:1], "speed_limit_mph")
+    yield "control", claim(control_of(legs), legs, "control")

@@ -1,0 +1,206 @@
+"""A second reader's opinion beside the rules', and which of both is taken, field by field.
+
+Where both readers agree that is the answer. Where they differ, the model's value is right with the probability
+
+    sigmoid(differ + slope * logit(p) + told * [the text tells the rules' value outright])
+
+with p the model's probability of its value, and it is taken from one half on. Where the rules have nothing it is taken
+from `FILLS` on, below that nothing is said. Three figures a field, fitted on reports whose codes are known and which
+are never scored (`python -m research.benchmarks.texts.fuse_weights`); the logistic form is Platt's (1999),
+"Probabilistic outputs for support vector machines". Knows facts; no model.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from sgcad_core.kinds import FOUR_LEG, Maneuver
+from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.second_reader.seven_question_gist import (
+    FIELDS,
+    SUBJECT,
+    alike,
+    areas,
+    meeting,
+    partner,
+    rules_say,
+)
+from sgcad_core.records.facts import Fact
+from sgcad_core.records.facts import Value as FactValue
+from sgcad_core.records.second_reader import MOST_NATS, Opinion, Value, Weights
+from sgcad_core.records.specs import ActorKind, Area
+
+if TYPE_CHECKING:
+    from sgcad_core.reading.reading import Reading
+    from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
+
+FILLS = 0.6
+"""From which probability on a value stands where the rules have none; of answers to the whole report also where they
+have one, since the rules name the sentence of each value."""
+_EDGE = 1e-6
+_VEHICLES = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle")
+_PARTNER = "V2"
+TURNS = ("turn_left", "turn_right", "u_turn")
+
+
+class Decided(NamedTuple):
+    """What is taken for a field: the value, how sure that is, and whether it is the model's against the rules'."""
+
+    value: Value
+    p: float
+    changed: bool
+
+
+def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
+    """The value of every field that somebody has one for."""
+    found = {}
+    for key in FIELDS:
+        heard, weights = opinion.heard.get(key), opinion.weights.get(key)
+        rule = say.values.get(key)
+        if heard is None or weights is None:
+            continue
+        if rule is None:
+            found[key] = Decided(heard.value, model_right(weights, heard.p, told=False), True)
+        elif alike(rule, heard.value):
+            found[key] = Decided(rule, heard.p if weights.agree is None else weights.agree, False)
+        else:
+            p = model_right(weights, heard.p, told=key in say.told)
+            found[key] = Decided(heard.value, p, True) if p >= opinion.takes else Decided(rule, 1 - p, False)
+    return found
+
+
+def terms(p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> tuple[float, ...]:
+    """What weights multiply, in the order differ, slope, told, nats, tells: 1, logit of p, told, bounded grounding,
+    bounded logit of tells."""
+    most = MOST_NATS
+    return 1.0, _logit(p), float(told), min(max(nats, 0.0), most), min(max(_logit(tells), -most), most)
+
+
+def _logit(p: float) -> float:
+    p = min(max(p, _EDGE), 1 - _EDGE)
+    return math.log(p / (1 - p))
+
+
+def model_right(weights: Weights, p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> float:
+    """Probability that a model's value is right that the rules do not share; `told`: whether the text tells the rules'
+    value outright; `nats`: the value's grounding; `tells`: how likely the evidence tells it, by the model's head."""
+    factors = (weights.differ, weights.slope, weights.told, weights.nats, weights.tells)
+    return 1 / (1 + math.exp(-sum(a * b for a, b in zip(factors, terms(p, told, nats, tells), strict=True))))
+
+
+# ------------------------------------------------------------------ taken over
+def fused(reading: Reading, opinion: Opinion) -> Reading:
+    """The reading with what the second reader knows better; each change is a fact of the basis "model".
+
+    Of numbered reports nothing is changed: the second reader is asked for the subject's first contact alone.
+    """
+    if not reading.crash.unnumbered:
+        return reading
+    decided = decide(opinion, rules_say(reading))
+    crash, taken = with_contact(reading.crash, decided), []
+    if crash is not reading.crash:
+        taken = [_fact(key, decided[key]) for key in _NEEDED]
+    for key, change in _CHANGES.items() if not taken else ():
+        before, one = crash, decided.get(key)
+        crash = change(crash, one) if one and one.changed else crash
+        taken += [_fact(key, one)] if one and crash is not before else []
+    junction, one = reading.roads.junction, decided.get("junction")
+    if one and one.changed and one.value and junction.kind == "none":
+        junction, taken = replace(junction, kind=FOUR_LEG), [*taken, _fact("junction", one)]
+    roads = replace(reading.roads, crash=crash, junction=junction)
+    return replace(reading, crash=crash, roads=roads, facts=(*reading.facts, *taken)) if taken else reading
+
+
+def _fact(key: str, one: Decided) -> Fact:
+    return model_fact(f"gist.{key}", one.value, one.p)
+
+
+def model_fact(field: str, value: FactValue, p: float, told: bool = False, nats: float | None = None) -> Fact:
+    """A value of the second reader's that is taken; `told`: it holds that the evidence tells it; `nats`: grounding."""
+    return Fact(
+        field=field, value=value, basis="model", status="stated" if told else "inferred", rule="second opinion",
+        confidence=round(p, 3), nats=None if nats is None else round(nats, 3),
+    )  # fmt: skip
+
+
+def _touched(crash: CrashFacts, one: Decided) -> CrashFacts:
+    if not meeting(crash):
+        return crash
+    return replace(crash, near_crash=None if one.value else NearFacts())
+
+
+def _subject(crash: CrashFacts, one: Decided) -> CrashFacts:
+    return _moved(crash, SUBJECT, cast("Maneuver", one.value))
+
+
+def _other(crash: CrashFacts, one: Decided) -> CrashFacts:
+    contact = meeting(crash)
+    return _moved(crash, partner(contact), cast("Maneuver", one.value)) if contact else crash
+
+
+def _moved(crash: CrashFacts, id: str, maneuver: Maneuver) -> CrashFacts:
+    """With another maneuver of a vehicle; where it was to turn to belongs to the maneuver before."""
+    vehicle = crash.vehicle(id)
+    if vehicle is None or maneuver == "other":
+        return crash
+    gone = {"exit_heading": None, "meant": None, "from_stop": False} if maneuver not in TURNS else {}
+    changed = replace(vehicle, maneuver=maneuver, maneuver_stated=True, **gone)  # type: ignore[arg-type]
+    return replace(crash, vehicles=tuple(changed if v is vehicle else v for v in crash.vehicles))
+
+
+def _mine(crash: CrashFacts, one: Decided) -> CrashFacts:
+    return _touching(crash, cast("Area", one.value), None)
+
+
+def _theirs(crash: CrashFacts, one: Decided) -> CrashFacts:
+    return _touching(crash, None, cast("Area", one.value))
+
+
+def _touching(crash: CrashFacts, mine: Area | None, theirs: Area | None) -> CrashFacts:
+    """With another side of one of both; the side is then the only one that the text allows."""
+    contact = meeting(crash)
+    if contact is None:
+        return crash
+    was = areas(contact)
+    sides = mine or was[0], theirs or was[1]
+    striker, struck = sides if contact.striker == SUBJECT else sides[::-1]
+    may = {"striker_may": (striker,)} if (mine is None) != (contact.striker == SUBJECT) else {"struck_may": (struck,)}
+    changed = replace(contact, striker_area=striker, struck_area=struck, **may)  # type: ignore[arg-type]
+    return replace(crash, contacts=(changed, *crash.contacts[1:]))
+
+
+_CHANGES: Mapping[str, Callable[[CrashFacts, Decided], CrashFacts]] = {
+    "touched": _touched, "subject": _subject, "other": _other, "subject_area": _mine, "other_area": _theirs,
+}  # fmt: skip
+_NEEDED = (*_CHANGES, "met")
+
+
+def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFacts:
+    """A crash whose contact the rules cannot read, with the one that the second reader is sure of; else as it is."""
+    if not (crash.gap and crash.gap.unread) or not all(key in decided and decided[key].p >= FILLS for key in _NEEDED):
+        return crash
+    value = {key: decided[key].value for key in _NEEDED}
+    if value["met"] not in _VEHICLES or not crash.vehicles or crash.vehicles[0].id != SUBJECT:
+        return crash
+    them = next(
+        (v for v in crash.vehicles if v.id == _PARTNER), VehicleFacts(_PARTNER, cast("ActorKind", value["met"]))
+    )
+    me, them = (
+        replace(v, maneuver=cast("Maneuver", value[key]), maneuver_stated=True)
+        for v, key in ((crash.vehicles[0], "subject"), (them, "other"))
+    )
+    rest = tuple(v for v in crash.vehicles if v.id not in (SUBJECT, _PARTNER))
+    contact = _contact(cast("Area", value["subject_area"]), cast("Area", value["other_area"]))
+    near = None if value["touched"] else NearFacts()
+    return replace(crash, vehicles=(me, them, *rest), contacts=(contact,), near_crash=near, gap=None)
+
+
+def _contact(mine: Area, theirs: Area) -> ContactFacts:
+    """Who strikes is who touches with its front; of two fronts or none the other one."""
+    if mine == "front" and theirs != "front":
+        return ContactFacts(SUBJECT, _PARTNER, mine, theirs, True)
+    return ContactFacts(_PARTNER, SUBJECT, theirs, mine, True)

@@ -1,0 +1,73 @@
+"""Area phrases: "left front corner", "V1's driver side door", brought to one form and to an area. Knows no verb."""
+
+from __future__ import annotations
+
+import re
+
+from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.motion.clauses import Statement, subject_starts
+from sgcad_core.records.specs import Area
+
+Zone = str
+"""An area of a vehicle ("left") or a corner ("front/left": the end, then the flank)."""
+
+
+_POSSESSIVE = rule("zones.possessive")
+_FLANKPARTS = rule("zones.flankparts")
+_CORNER = rule("zones.corner")
+_CORNERED = rule("zones.cornered")
+
+
+_ITS_AREA = rule("zones.its_area")
+
+
+def area_of(words: str) -> Zone | None:
+    """What an area phrase means: "left door" -> "left", "left front" -> "front/left"; None if it names no side.
+
+    A corner keeps both: the end it belongs to and the flank, since reports use it for either; both flanks where it is
+    not told which corner.
+    """
+    text = words.lower().replace("-", " ")
+    flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
+    front = bool(rule("zones.front").search(text))
+    back = bool(rule("zones.back").search(text))
+    if flank and (front or back) and (not _FLANKPARTS.search(text) or _CORNERED.search(text)):
+        return f"front/{flank}" if front else f"back/{flank}"
+    if _CORNER.search(text) and (front or back) and not flank:
+        return "front/left/right" if front else "back/left/right"
+    return flank or ("front" if front else "back" if back else None)
+
+
+# ------------------------------------------------------------------ one form
+def plain(told: Statement, who: Roster) -> str:
+    """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
+    text = rule("zones.plural_number").sub(r"V\1's", told.text)
+    text = rule("zones.trailer_of_number").sub(r"\1", text)
+    text = rule("zones.of_trailer").sub(r"of \1", text)
+    text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
+    text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
+    text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
+    text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
+    return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)
+
+
+def _of_subject(told: Statement) -> str:
+    return rf"\g<area> of {told.subject}" if told.subject else r"\g<0>"
+
+
+def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
+    starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
+    owner = starts[-1][0] if starts and starts[-1] else told.subject
+    return f"the {match['area']} of {owner}" if owner else match.group()
+
+
+def area_if_told(words: str | None) -> Zone | None:
+    """The area of a phrase; None without one."""
+    return area_of(words) if words else None
+
+
+def area_by(scope: str) -> Zone | None:
+    """The area in "by the front", behind a verb of hitting."""
+    found = rule("contact.by_area").search(scope)
+    return area_of(found["area"]) if found else None

@@ -1,0 +1,168 @@
+"""The text of a crash report made uniform: one spelling per mention, unit and direction; sentences.
+
+`normalised` is idempotent and changes spelling only: "Vehicle # 1", "vehicle one (V1 - case vehicle)" and
+"V 1" all become "V1". Every character keeps its place in the text that was given. Knows no facts.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from sgcad_core.reading.actors.cyclists import number_cyclists
+from sgcad_core.reading.actors.parked import number_parked
+from sgcad_core.reading.actors.references import number_actors
+from sgcad_core.reading.language import of_role, rule, values
+from sgcad_core.reading.text.driving_study_style import named_in_full
+from sgcad_core.reading.text.first_person import in_third_person
+from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
+from sgcad_core.reading.text.traced_text import Traced, joined
+
+__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
+
+NUMBERS: dict[str, int] = values("number_word")
+MOST_READ = 16_000
+"""Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
+_TAIL = 12
+"""Characters at the end of a piece in which an abbreviation can stand."""
+LONGEST = 1000
+"""Characters of a sentence; the longest in published reports has about 650."""
+_WORDS = {str(number): word for word, number in NUMBERS.items()}
+
+
+class Sentence(NamedTuple):
+    """One normalized sentence, what it is for, and where it stands (all counted from 0).
+
+    [start, end): its characters in the text as it was given, white space around left out.
+    """
+
+    text: str
+    role: Role
+    number: int
+    paragraph: int
+    start: int = 0
+    end: int = 0
+
+
+# ------------------------------------------------------------------ characters
+_CHARACTERS = str.maketrans({
+    "\u2018": "'", "\u2019": "'", "\u201c": '"', "\u201d": '"', "\u2013": "-", "\u2014": " - ", "\u00a0": " ",
+    "\ufffd": '"', "\u2032": "'", "\u2033": '"', "\t": " ", "\r": "\n", "\u00bd": " 1/2", "\u2022": " ", "\x0b": "\n",
+    "\x0c": "\n", "\u2028": "\n", "\u2029": "\n", "\x85": "\n",
+    "\u00c2": " ", "\u00c3": " ",  # what is left where a file was read in another encoding twice
+})  # fmt: skip
+
+_TYPO = rule("text.typo")
+
+
+# ------------------------------------------------------------------ mentions, units, directions
+
+_LETTERED = rule("text.lettered")
+_SPOKEN = rule("text.spoken_speed")
+_VEHICLE_WORD = rule("text.vehicle_word")
+_VEHICLE_CASE = rule("text.vehicle_case")
+_COUNTED_LANE = rule("text.counted_lane")
+
+
+def normalize(text: str) -> str:
+    """The same report with one spelling for mentions (V1), units (kmph, mph), directions and road words.
+
+    Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
+    """
+    return normalised(Traced.of(text)).text
+
+
+def normalised(text: Traced) -> Traced:
+    """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
+    return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
+
+
+def _blocks(text: Traced) -> list[Traced]:
+    """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
+    plain = text.translate(_CHARACTERS)
+    return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
+
+
+def _paragraph(block: Traced) -> Traced:
+    once = _spell(block)
+    for _ in range(4):
+        again = _spell(once)
+        if again.text == once.text:
+            break
+        once = again
+    return once
+
+
+def _spell(text: Traced) -> Traced:
+    text = _spaces(text).sub(_TYPO, _mend_typo)
+    for spelling in of_role("spelling"):
+        text = text.sub(spelling, spelling.yields["to"])
+    text = text.sub(_SPOKEN, lambda m: str(values("spoken_speed")[m.group().lower()]))
+    text = text.sub(rule("text.first_vehicle"), "V1")
+    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
+    return _spaces(text)
+
+
+def _spaces(text: Traced) -> Traced:
+    """Single spaces, one full stop at a time, a space behind it and behind commas."""
+    text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
+    text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
+    text = text.sub(rule("text.glued_comma"), ", ").sub(rule("text.glued_bracket"), " (")
+    return text.sub(rule("text.glued_behind_bracket"), ") ").sub(rule("text.spaces"), " ").strip()
+
+
+def _mend_typo(match: re.Match[str]) -> str:
+    word = match.group(0)
+    to: str = values("typo")[word.lower()]
+    return to.capitalize() if word[0].isupper() else to
+
+
+def _mend_lanes(match: re.Match[str]) -> str:
+    """ "4 lane", "four lane" -> "four-lane"; "one lane" is a noun and stays."""
+    word = _WORDS.get(match.group(1), match.group(1).lower())
+    return match.group(0) if word == "one" else f"{word}-lane"
+
+
+# ------------------------------------------------------------------ sentences
+_ABBREVIATION = rule("text.abbreviation")
+_END = rule("text.end")
+
+
+def sentences(text: str) -> tuple[Sentence, ...]:
+    """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
+    return split_sentences(normalised(Traced.of(text)))
+
+
+def split_sentences(text: Traced) -> tuple[Sentence, ...]:
+    """The sentences of a normalized text; those who have no number get one."""
+    found: list[Sentence] = []
+    numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
+    blocks = [block for block in numbered.split_at("\n\n") if block.text]
+    for number, block in enumerate(blocks):
+        for piece in _split(block):
+            found.append(Sentence(piece.text, role_of(piece.text), len(found), number, *piece.span))
+    return tuple(found)
+
+
+def _split(block: Traced) -> list[Traced]:
+    pieces: list[Traced] = []
+    for part in block.split(_END):
+        last = pieces[-1].text[-_TAIL:] if pieces else ""
+        ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
+        titled = rule("text.title").search(last)
+        joins = pieces and _ABBREVIATION.search(last) and (titled or not ended)
+        if pieces and joins:
+            pieces[-1] = joined([pieces[-1], part], " ")
+        else:
+            pieces.append(part)
+    return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
+
+
+def _cut(sentence: Traced) -> list[Traced]:
+    """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
+    if len(sentence.text) <= LONGEST:
+        return [sentence]
+    return [sentence.cut(m.start(), m.end()) for m in rule("text.piece").finditer(sentence.text)]

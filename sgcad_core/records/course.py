@@ -1,0 +1,80 @@
+"""What a report tells of the whole course of a crash, beside who strikes whom: evasion, loss of control, rest.
+
+Records that no field of a spec holds: specs are answers, these are read by rules. Compass angles are clockwise degrees
+from north. Knows no text, no network and no motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from sgcad_core.records.specs import Area, Compass
+
+Where = Literal["road", "intersection", "shoulder", "median", "off_road"]
+Attitude = Literal["wheels", "roof", "left", "right"]
+"""On what a vehicle lies at last: its wheels, its roof, its left or right side."""
+Spin = Literal["clockwise", "counterclockwise"]
+Hand = Literal["left", "right"]
+Steering = Literal["left", "right", "either"]
+
+
+@dataclass(frozen=True)
+class RestTold:
+    """Where and how a vehicle came to rest; None: not told."""
+
+    facing_deg: float | None = None
+    where: Where | None = None
+    side: Compass | Hand | None = None
+    """Of the road or the intersection: a compass word, or a hand as seen in its direction of travel."""
+    attitude: Attitude | None = None
+    against: str | None = None
+    """What it leaned against, in the report's word."""
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is told."""
+        return self == RestTold()
+
+
+@dataclass(frozen=True)
+class CourseTold:
+    """What one vehicle did beside its maneuver, as told."""
+
+    brakes: bool = False
+    """Before its first contact."""
+    steers: Steering | None = None
+    """Before its first contact, to avoid it."""
+    no_evasion: bool = False
+    """The report says that it did nothing."""
+    lost_control: bool = False
+    spin: Spin | None = None
+    """How it turned after its first contact."""
+    spin_deg: float | None = None
+    rolls: bool = False
+    rest: RestTold = RestTold()
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is told."""
+        return self == CourseTold()
+
+
+@dataclass(frozen=True)
+class ImpactTold:
+    """A contact behind the first one: of a vehicle with another one, or with a thing that has no number."""
+
+    actor: str
+    other: str
+    """A vehicle's id, or the report's word for the thing."""
+    actor_area: Area | None = None
+    other_area: Area | None = None
+    before: bool = False
+    """Before the first contact of two vehicles."""
+
+
+Courses = Mapping[str, CourseTold]
+"""By vehicle id."""
+NOTHING_TOLD: Courses = MappingProxyType({})

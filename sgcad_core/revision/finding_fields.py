@@ -1,0 +1,97 @@
+"""Which editable fields a finding concerns, and the judges that a person's word overrules.
+
+A validator that holds an artifact against the narrative has nothing to say where a person said otherwise: its finding
+stays as a note. What cannot be drawn, driven or simulated stays a fault, whoever asked for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
+from sgcad_core.interfaces import Validator
+from sgcad_core.records.edits import Edit, effective
+from sgcad_core.records.specs import BehaviorSpec, RoadSpec
+from sgcad_core.revision.applied import SOURCE, standing
+from sgcad_core.revision.fields import EDITABLE, kind_of
+
+FROM_NARRATIVE = ("road_narrative", "behavior_narrative", "evidence_gate")
+"""Sources of findings that hold an artifact against the evidence."""
+_GATED = {
+    "lanes": ("roads.",), "road layout": ("junction.",), "actors": ("vehicles.", "others."),
+    "first contact": ("contacts.",),
+}  # fmt: skip
+"""What the evidence gate finds thin -> beginnings of the fields that a person may have told instead."""
+
+
+class Heeding(Validator):
+    """A validator whose findings yield to what a person says."""
+
+    inner: Validator
+    edits: tuple[Edit, ...]
+
+    @property
+    def stage(self) -> str:  # type: ignore[override]
+        """That of the validator."""
+        return self.inner.stage
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """The validator's own, those that a person overrules as notes."""
+        return [yielding(f, self.edits) for f in self.inner.findings(artifact, evidence)]
+
+
+class Standing(Validator):
+    """Doubts on edits that do not stand in what was written."""
+
+    edits: tuple[Edit, ...]
+    stage = "both"
+
+    def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
+        """One an edit."""
+        if isinstance(artifact, RoadNetwork):
+            return standing(self.edits, "road", artifact.spec)
+        network = evidence.network
+        return standing(self.edits, "scenario", network.spec if network else None, artifact.behavior)
+
+
+def heeding(validators: Sequence[Validator], edits: Sequence[Edit]) -> tuple[Validator, ...]:
+    """Validators that a person overrules, and one that says which edits do not stand; the same ones without edits."""
+    if not effective(edits):
+        return tuple(validators)
+    return (*(Heeding(inner=v, edits=tuple(edits)) for v in validators), Standing(edits=tuple(edits)))
+
+
+def yielding(finding: Finding, edits: Iterable[Edit]) -> Finding:
+    """A note in the place of a finding from the narrative that concerns an edited field."""
+    if finding.source not in FROM_NARRATIVE or finding.severity == "note":
+        return finding
+    if not any(concerns(finding, edit.field) for edit in effective(edits)):
+        return finding
+    return finding.model_copy(update={"severity": "note", "remedy": "a person says otherwise", "holds": ()})
+
+
+def concerns(finding: Finding, field: str) -> bool:
+    """Whether a finding concerns a field."""
+    if finding.source == "evidence_gate":
+        begins = _GATED.get(finding.value, ())
+        return field.startswith(begins) if begins else False
+    if finding.source == SOURCE:
+        return finding.where == field
+    return kind_of(field).concerned(field, finding.where)
+
+
+def by_field(
+    findings: Iterable[Finding], road: RoadSpec | None, behavior: BehaviorSpec | None, edits: Iterable[Edit] = ()
+) -> Mapping[str, tuple[Finding, ...]]:
+    """Field -> the findings that concern it; under "" those that concern no field of this case."""
+    from sgcad_core.revision.fields import fields_of
+
+    names = list(dict.fromkeys([*(f.name for f in fields_of(road, behavior)), *(e.field for e in effective(edits))]))
+    found: dict[str, list[Finding]] = {}
+    for finding in findings:
+        for name in [name for name in names if concerns(finding, name)] or [""]:
+            found.setdefault(name, []).append(finding)
+    return {name: tuple(said) for name, said in found.items()}
+
+
+__all__ = ["EDITABLE", "FROM_NARRATIVE", "Heeding", "Standing", "by_field", "concerns", "heeding", "yielding"]

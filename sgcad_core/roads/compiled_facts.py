@@ -1,0 +1,96 @@
+"""A compiled network as a reader of narratives sees it: roads with lanes each way, headings, limits, legs of junctions.
+
+Reads the lane graph; compass is north up. Knows no narrative.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.specs import Compass
+from sgcad_core.roads.lane_graph import LaneGraph, road_of
+from sgcad_core.units import MPS_PER_MPH
+
+BEHIND_SPLITTER_M = 60.0
+
+
+@dataclass(frozen=True)
+class DrawnRoad:
+    """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
+
+    id: str
+    forward: int
+    backward: int
+    headings: tuple[float, ...]
+    speeds_mph: tuple[float, ...]
+
+    @property
+    def total(self) -> int:
+        """Lanes of both directions."""
+        return self.forward + self.backward
+
+    def along(self, way: Compass, tolerance_deg: float, either: bool = False) -> bool:
+        """Whether the forward edge somewhere heads that way (or, with `either`, the other way)."""
+        return any(near(h, angle_of(way), tolerance_deg, either) for h in self.headings)
+
+    def lanes_towards(self, way: Compass, tolerance_deg: float) -> int:
+        """Lanes of traffic that heads that way; 0 where the road runs otherwise."""
+        if self.along(way, tolerance_deg):
+            return self.forward
+        against = any(near(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
+        return self.backward if against else 0
+
+
+def near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool = False) -> bool:
+    """Whether a heading lies within the tolerance of another or, with `either`, of the opposite."""
+    turn = abs((heading_rad - way_rad + math.pi) % (2 * math.pi) - math.pi)
+    turn = min(turn, math.pi - turn) if either else turn
+    return math.degrees(turn) <= tolerance_deg
+
+
+def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
+    """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
+    found = []
+    for road in dict.fromkeys(road_of(edge.id)[0] for edge in graph.edges.values() if not graph.is_around(edge)):
+        forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
+        edge = forward or backward
+        if edge is None:
+            continue
+        flip = 0.0 if forward is not None else math.pi
+        shape = edge.lanes[0].shape
+        steps = shape[1:] - shape[:-1]
+        headings = {round(math.atan2(y, x) + flip, 3) for x, y in steps}
+        overall = shape[-1] - shape[0]
+        headings.add(round(math.atan2(overall[1], overall[0]) + flip, 3))
+        speeds = tuple(lane.speed_mps / MPS_PER_MPH for lane in edge.car_lanes[:1])
+        lanes = [len(e.car_lanes) if e else 0 for e in (forward, backward)]
+        found.append(DrawnRoad(road, lanes[0], lanes[1], tuple(sorted(headings)), speeds))
+    return [d for d in found if d.total and d.speeds_mph]
+
+
+def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
+    """Bearings of the legs of every node, seen from it (radians), over edges that cars may use; most legs first.
+
+    A roundabout is one node.
+    """
+    legs: dict[str, dict[str, float]] = {}
+    for edge in graph.edges.values():
+        ends = [graph.center_of.get(node, node) for node in (edge.from_node, edge.to_node)]
+        if edge.car_lanes and ends[0] != ends[1]:
+            shape = edge.lanes[0].shape
+            dx, dy = _leads(shape, edge.from_node in graph.center_of)
+            ex, ey = _leads(shape[::-1], edge.to_node in graph.center_of)
+            legs.setdefault(ends[0], {})[ends[1]] = math.atan2(dy, dx)
+            legs.setdefault(ends[1], {})[ends[0]] = math.atan2(ey, ex)
+    return sorted((tuple(found.values()) for found in legs.values()), key=len, reverse=True)
+
+
+def _leads(line: Floats, opens: bool) -> Floats:
+    """Where a leg leads from its junction; one that opens into a roundabout does so at an angle first."""
+    ahead: Floats = line[1] - line[0]
+    if opens:
+        ahead = resample(line, [min(BEHIND_SPLITTER_M, arc_lengths(line)[-1])])[0] - line[0]
+    return ahead

@@ -1,0 +1,35 @@
+"""How many lanes a road may have that a narrative counts: the readings that its words allow.
+
+Knows what was read of roads; no network.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.reading.roads.road_facts import RoadFact
+
+
+def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
+    """Totals of both directions that agree with the text; empty where it does not state one for sure.
+
+    A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
+    not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
+    but those that the text names, and lanes told way by way leave no center lane open.
+    """
+    lanes = road.lanes
+    if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
+        return set()
+    named = lanes.total or (2 * lanes.each_way if lanes.each_way else None)
+    named = named or (sum(lanes.toward.values()) if len(lanes.toward) == 2 else None)
+    if not named:
+        return set()
+    whole = len(lanes.toward) == 2 and sum(lanes.toward.values()) == lanes.total  # turn lanes are among them
+    extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
+    both = "each" in lanes.turns or len(lanes.turns) > 1  # turn lanes either way: no place of the road has all of them
+    beyond = max(map(len, lanes.turns.values())) if both else 0
+    fewer = max(beyond, lanes.center_turn_lane or (vague(road, pictured) and named % 2))
+    return set(range(max(1, named - fewer), named + extra + 1))
+
+
+def vague(road: RoadFact, pictured: bool) -> bool:
+    """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
+    return pictured and len(road.lanes.toward) < 2

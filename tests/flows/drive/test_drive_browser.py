@@ -1,0 +1,74 @@
+"""A drive's page in a real browser: the script over the drive or beside it, speeds and times to collision of both."""
+
+import json
+import shutil
+
+import pytest
+
+from deploy.pages import BROWSERS
+from flows.batch.find_cases import Case
+from flows.case.chain import run_case
+from sgcad_core.config import load
+from sgcad_core.settings import ROOT
+from tests.flows.desk.browser import walking
+
+PROGRAM = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(PROGRAM is None, reason="no Chromium on this machine")]
+CAPTIONS = "[...document.querySelectorAll('#plots figcaption')].map(c => c.textContent)"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A bundled report, handed over once."""
+    out, report = tmp_path_factory.mktemp("drive"), ROOT / "docs" / "demo" / "left-turn-at-signal"
+    config = load("template.yaml", ("tracker=none", "drive.drivers=aeb"))
+    assert run_case(config, Case(report, "c1"), out, "d").result["status"] == "generated"
+    return out / "template" / "c1"
+
+
+@pytest.fixture(scope="module")
+def tab():
+    with walking(PROGRAM) as walker:
+        walker.size(1400, 900)
+        yield walker
+
+
+def picture(tab):
+    return tab.run("document.querySelector('#view').toDataURL()")
+
+
+def test_the_script_lies_over_the_drive_with_speeds_and_ttc_of_both(tab, folder):
+    page = next(folder.glob("drive/aeb/*/drive.html"))
+    tab.faults.clear()
+    tab.open(f"file://{page}")
+    assert tab.run("document.querySelector('#other').selectedOptions[0].textContent") == "script"
+    speed, clearance, ttc = tab.run(CAPTIONS)
+    assert speed.count("/") == 2  # two road users, in the drive and in the script
+    assert all(", script " in caption for caption in (speed, clearance, ttc))
+    over = picture(tab)
+    tab.click("#beside")
+    tab.until("document.querySelector('#beside').checked")
+    assert picture(tab) != over
+    tab.run("document.querySelector('#other').value = ''; document.querySelector('#other').onchange({target: "
+            "document.querySelector('#other')})")  # fmt: skip
+    assert all("script" not in caption for caption in tab.run(CAPTIONS))
+    assert tab.faults == []
+
+
+def test_in_the_drive_braking_shows_as_another_speed_than_the_scripts(tab, folder):
+    told = [json.loads(f.read_text()) for f in folder.glob("drive/aeb/*/drive.json")]
+    braked = next(t for t in told if t["braked_s"])
+    tab.open(f"file://{folder / 'drive' / 'aeb' / braked['ego'] / 'drive.html'}")
+    tab.key("End")
+    drive, script = tab.run(CAPTIONS)[0].removesuffix(" mph").removeprefix("speed: ").split(", script ")
+    assert drive != script
+
+
+def test_the_case_player_draws_a_chosen_drive_with_its_own_lines(tab, folder):
+    tab.faults.clear()
+    tab.open(f"file://{folder / 'player.html'}")
+    assert all("drives" not in caption for caption in tab.run(CAPTIONS))
+    tab.run("document.querySelector('#other').value = '0'; document.querySelector('#other').onchange({target: "
+            "document.querySelector('#other')})")  # fmt: skip
+    assert all(", aeb drives V" in caption for caption in tab.run(CAPTIONS))
+    assert tab.faults == []

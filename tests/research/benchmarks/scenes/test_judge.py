@@ -1,0 +1,58 @@
+"""The judge's figures over a folder of runs, with a program that stands in for esmini."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from flows.case import case_folder
+from research.benchmarks.scenes.judge import main
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from tests.plugins.simulator.fake_esmini import log, make
+from tests.sgcad_core.formats.xosc_samples import actor, trajectory
+
+K = np.arange(60)
+ACTORS = [actor("V1"), actor("V2")]
+MOVES = [trajectory("V1", K * 0.5 + 1.4, 0), trajectory("V2", K * 0.0 + 13.4, 0)]
+DECLARED = {"striker": "V1", "struck": "V2", "striker_area": "front", "struck_area": "back"}
+
+
+@pytest.fixture
+def runs(tmp_path):
+    case = tmp_path / "runs" / "template" / "c1"
+    case.mkdir(parents=True)
+    (case / "scenario.xosc").write_text(write_xosc(ACTORS, MOVES, None))
+    (case / "road.xodr").write_text("<OpenDRIVE/>")
+    case_folder.write_trajectories(case / "trajectories.csv", MOVES)
+    result = {"case": "c1", "actors": [a.model_dump() for a in ACTORS], "collision": {"declared": DECLARED}}
+    (case / "result.json").write_text(json.dumps(result))
+    return tmp_path / "runs"
+
+
+def judged(runs, tmp_path, *bodies):
+    return main([str(runs), "--path", str(make(tmp_path, log(*bodies)))])
+
+
+def test_a_player_that_agrees_is_counted_as_agreeing(runs, tmp_path, capsys):
+    assert judged(runs, tmp_path, ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4)) == 0
+    row = next(line.split() for line in capsys.readouterr().out.splitlines() if "esmini" in line)
+    assert row == ["runs", "esmini", "1/1", "1/1", "0.0000", "0.0000", "1/1"]
+
+
+def test_one_that_does_not_is_told_with_actor_and_time(runs, tmp_path, capsys):
+    """It takes the box's center for the rear axle, as players did with our former files."""
+    assert judged(runs, tmp_path, ("V1", 0.0, 0.0, 0.0, 10.0, 0.0), ("V2", 12.0, 9.0, 0.0, 0.0, 0.0)) == 1
+    out = capsys.readouterr().out
+    assert "0/1" in out
+    assert "V2 at 0.00 s is 9.108 m beside our playing (limit 0.01 m)" in " ".join(out.split())
+    assert "the first contact is not the declared one, but none" in " ".join(out.split())
+
+
+def test_a_folder_without_runs_and_a_binary_that_is_not_there_are_told(tmp_path, capsys, monkeypatch):
+    (tmp_path / "empty").mkdir()
+    assert judged(tmp_path / "empty", tmp_path) == 2
+    assert "no scenario.xosc with a trajectories.csv beside it" in capsys.readouterr().err
+    assert main([str(tmp_path), "--path", "/no/such"]) == 2
+    assert "'/no/such' is no program that can be run" in capsys.readouterr().err

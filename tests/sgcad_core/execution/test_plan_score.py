@@ -1,0 +1,126 @@
+"""The reading that our own checks doubt least is kept, at its price, and what was tried is told."""
+
+from __future__ import annotations
+
+from sgcad_core.case.records import Scenario
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.plan_score import doubt, least_doubted
+from sgcad_core.planner import plan
+from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.reading import crash_facts
+from sgcad_core.records.specs import BehaviorSpec
+from tests.sgcad_core.planner.aftermath.test_rest_fit import crossing
+from tests.sgcad_core.planner.crash_scenes import network
+
+TEXT = "V1 was eastbound. V2 was southbound. The front of V1 struck the right front of V2."
+GRAPH = network("four_leg")
+
+
+def scenario(oddity: float) -> Scenario:
+    behavior = crossing()
+    planned = plan(behavior, GRAPH)
+    return Scenario(xosc="", actors=(), behavior=behavior, planned=planned.trajectories, oddity=oddity)
+
+
+def other_side(facts: CrashFacts) -> BehaviorSpec:
+    """A behavior that meets in ordinary driving for the corner's other side only."""
+    if facts.contacts[0].struck_area == crash_facts(TEXT).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
+def other_open_side(facts: CrashFacts) -> BehaviorSpec:
+    """The same for sides that nobody tells."""
+    if facts.contacts[0].struck_area == crash_facts(OPEN).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
+def test_no_doubt_tries_nothing() -> None:
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, other_side, GRAPH, scenario(0.1))
+    assert (least.facts, least.words, least.notes()) == (facts, "", [])
+
+
+def test_a_told_corner_gives_way_only_where_nothing_comes_about() -> None:
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, other_side, GRAPH, scenario(1.5))
+    assert least.facts == facts
+    assert "instead of" in least.notes()[0]
+    assert least.notes()[0].endswith("kept: the first reading")
+    met = scenario(0.0)
+    assert met.behavior is not None
+    wrong = met.behavior.contacts[0].model_copy(update={"struck_area": "left"})
+    unmet = met.model_copy(update={"behavior": met.behavior.model_copy(update={"contacts": (wrong,)})})
+    least = least_doubted(facts, other_side, GRAPH, unmet)
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+
+
+OPEN = "V1 was eastbound. V2 was southbound. V1 struck V2."
+
+
+def test_the_reading_that_leaves_no_doubt_is_kept() -> None:
+    facts = crash_facts(OPEN)
+    least = least_doubted(facts, other_open_side, GRAPH, scenario(1.5))
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+    assert least.notes()[0].endswith(f"{least.words}: 0.0; kept: {least.words}")
+
+
+def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:
+    def nowhere(facts: CrashFacts) -> BehaviorSpec:
+        raise InvalidOutput("no road")
+
+    facts = crash_facts(TEXT)
+    least = least_doubted(facts, nowhere, GRAPH, scenario(1.5))
+    assert least.facts == facts
+    assert least.notes() == ["doubt 1.5 on the first reading; tried no other; kept: the first reading"]
+
+
+def test_a_contact_that_does_not_come_about_is_the_worst_doubt() -> None:
+    met = scenario(0.2)
+    assert met.behavior is not None
+    apart = met.behavior.model_copy(update={"contacts": (
+        met.behavior.contacts[0].model_copy(update={"struck_area": "left"}),)})  # fmt: skip
+    assert doubt(met.behavior, met.planned, 0.2) == 0.0
+    assert doubt(apart, met.planned, 0.2) > doubt(met.behavior, met.planned, 2.0) == 2.0
+
+
+UNNUMBERED = "The AV was eastbound. A van was southbound. The front of the AV struck the right front corner of the van."
+
+
+def unnumbered_other_side(facts: CrashFacts) -> BehaviorSpec:
+    if facts.contacts[0].struck_area == crash_facts(UNNUMBERED).contacts[0].struck_area:
+        raise InvalidOutput("this reading cannot be placed")
+    return crossing()
+
+
+def awry(by_rad: float) -> Scenario:
+    """A doubted scenario whose first actor has turned by so much before the contact."""
+    met = scenario(1.5)
+    first = met.planned[0]
+    headings = tuple(h + by_rad * i / len(first.heading_rad) for i, h in enumerate(first.heading_rad))
+    return met.model_copy(update={"planned": (first.model_copy(update={"heading_rad": headings}), *met.planned[1:])})
+
+
+def test_of_a_report_without_numbers_a_corner_gives_way_where_its_first_side_hides_what_is_told() -> None:
+    facts = crash_facts(UNNUMBERED)
+    assert least_doubted(facts, unnumbered_other_side, GRAPH, awry(0.0)).facts == facts
+    least = least_doubted(facts, unnumbered_other_side, GRAPH, awry(4.0))
+    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+
+
+def test_where_nothing_else_meets_somebody_who_slows_drives_on() -> None:
+    text = "V1 was eastbound and slowed for a bus. V2 was southbound. The front of V1 struck the right side of V2."
+    facts = crash_facts(text)
+
+    def only_onward(facts: CrashFacts) -> BehaviorSpec:
+        if facts.vehicles[0].maneuver == "slowing":
+            raise InvalidOutput("this reading cannot be placed")
+        return crossing()
+
+    met = scenario(0.0)
+    assert met.behavior is not None
+    wrong = met.behavior.contacts[0].model_copy(update={"struck_area": "left"})
+    unmet = met.model_copy(update={"behavior": met.behavior.model_copy(update={"contacts": (wrong,)})})
+    least = least_doubted(facts, only_onward, GRAPH, unmet)
+    assert least.facts.vehicles[0].maneuver == "straight"

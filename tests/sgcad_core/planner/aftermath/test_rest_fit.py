@@ -1,0 +1,161 @@
+"""Wrecks come to rest as told, told evasions are driven, and what cannot be is said."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sgcad_core.metrics.rest_error import attitude_of, rest_errors
+from sgcad_core.planner import plan
+from sgcad_core.planner.aftermath.ground_friction import Drag, Released, RunOut, run_out, slow
+from sgcad_core.planner.aftermath.impact import body
+from sgcad_core.planner.aftermath.rest_candidates import all_runs
+from sgcad_core.records.course import CourseTold, RestTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.roads.surface import road_surface
+from tests.sgcad_core.planner.crash_scenes import network
+
+CAR = (4.7, 1.8)
+
+
+def crossing() -> BehaviorSpec:
+    """V1 eastbound strikes the left side of V2 southbound in the middle of a crossroads."""
+    actors = (
+        Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=30),
+        Actor(id="V2", kind="car", road="N", direction="forward", exit_road="S", maneuver="straight", speed_mph=25),
+    )
+    return BehaviorSpec(
+        actors=actors, contacts=(Contact(striker="V1", struck="V2", striker_area="front", struck_area="right"),)
+    )
+
+
+def planned(courses, behavior=None, name="four_leg"):
+    behavior = behavior or crossing()
+    made = plan(behavior, network(name), courses=courses)
+    return made, {t.actor: t for t in made.trajectories}
+
+
+def rest_of(track):
+    return np.array([[track.x_m[-1], track.y_m[-1], track.heading_rad[-1]]])
+
+
+def errors_of(told: RestTold, track, name="four_leg"):
+    return rest_errors(told, rest_of(track), float(track.heading_rad[0]), road_surface(network(name))).right()
+
+
+# ------------------------------------------------------------------ rest
+@pytest.mark.parametrize(
+    "told",
+    [
+        RestTold(135.0), RestTold(180.0), RestTold(None, "off_road"), RestTold(None, "road"),
+        RestTold(None, "off_road", "SE"), RestTold(None, "intersection"),
+    ],
+)  # fmt: skip
+def test_a_struck_vehicle_comes_to_rest_as_told(told: RestTold) -> None:
+    made, tracks = planned({"V2": CourseTold(rest=told)})
+    assert made.realised
+    assert all(errors_of(told, tracks["V2"]).values()), made.notes
+
+
+def test_without_a_told_rest_nothing_is_chosen() -> None:
+    plain, empty = planned({})[0], planned({"V1": CourseTold(), "V2": CourseTold()})[0]
+    assert all(np.array_equal(a.x_m, b.x_m) for a, b in zip(plain.trajectories, empty.trajectories, strict=True))
+
+
+def test_what_cannot_be_reached_is_said_with_by_how_much() -> None:
+    slow = tuple(a.model_copy(update={"speed_mph": 8}) for a in crossing().actors)
+    behavior = crossing().model_copy(update={"actors": slow})
+    made, _ = planned({"V1": CourseTold(rest=RestTold(270.0, "off_road", "W"))}, behavior)
+    assert any(note.startswith("V1 comes to rest") for note in made.notes)
+
+
+def test_a_told_rollover_is_part_of_the_motion() -> None:
+    _, tracks = planned({"V2": CourseTold(rolls=True, rest=RestTold(attitude="roof"))})
+    assert attitude_of(float(tracks["V2"].rolls[-1])) == "roof"
+    assert tracks["V1"].roll_rad is None
+
+
+def test_two_plans_of_a_told_rest_are_the_same() -> None:
+    told = {"V2": CourseTold(rest=RestTold(180.0, "off_road"))}
+    first, second = planned(told)[0], planned(told)[0]
+    assert all(np.array_equal(a.heading_rad, b.heading_rad)
+               for a, b in zip(first.trajectories, second.trajectories, strict=True))  # fmt: skip
+
+
+@pytest.mark.parametrize(("spin", "way"), [("clockwise", -1.0), ("counterclockwise", 1.0)])
+def test_a_struck_vehicle_spins_as_told(spin, way) -> None:
+    made, tracks = planned({"V2": CourseTold(spin=spin)})
+    turned = tracks["V2"].heading_rad[-1] - tracks["V2"].heading_rad[round(made.contact.t_s / 0.05)]
+    assert made.realised
+    assert way * turned > math.radians(8)
+
+
+# ------------------------------------------------------------------ evasion
+def test_told_braking_shows_before_the_contact() -> None:
+    speeds = {}
+    for brakes in (False, True):
+        made, tracks = planned({"V1": CourseTold(brakes=brakes)})
+        k = round(made.contact.t_s / 0.05)
+        speeds[brakes] = tracks["V1"].speed_mps[: k - 1]
+    assert speeds[True].max() == pytest.approx(30 * 0.44704, rel=0.03)
+    assert speeds[True][-1] < 0.85 * speeds[True].max()
+    assert speeds[False][-1] > 0.95 * speeds[False].max()
+    drop = speeds[True][:-10] - speeds[True][10:]
+    assert 2.0 < drop.max() / 0.5 < 0.75 * 9.81
+
+
+@pytest.mark.parametrize(("hand", "way"), [("left", 1.0), ("right", -1.0)])
+def test_told_steering_shows_before_the_contact(hand, way) -> None:
+    made, tracks = planned({"V1": CourseTold(steers=hand)})
+    k = round(made.contact.t_s / 0.05)
+    assert made.realised
+    assert way * (tracks["V1"].y_m[k] - tracks["V1"].y_m[0]) > 0.25  # V1 drives east: left is north
+
+
+# ------------------------------------------------------------------ running out
+@pytest.mark.parametrize("bend", [0.0, 0.05, -0.1])
+@pytest.mark.parametrize(("turning", "rolls_s"), [(1.0, 0.0), (0.4, 0.0), (1.0, 1.5)])
+def test_many_ways_at_once_end_where_each_alone_ends(bend, turning, rolls_s) -> None:
+    drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 2.0, bend, turning, rolls_s), 0.01, 4.0
+    one = body((1.0, 2.0, 0.3), CAR, 1450.0)
+    one.vx, one.vy, one.spin = 11.0, 2.0, 0.8
+    other, slides = body((9.0, 2.0, 1.3), (9.0, 2.5), 9000.0), Drag(2.0, 5.0)
+    other.vx, other.spin = -4.0, 0.2
+    released = [Released(other, 0.0), Released(one, 0.0)]
+    both = run_out(released, [slides, drag], [[RunOut(0.0, 1.0)], [run, RunOut(0.0, 6.0)]], end, step)
+    assert [ways.shape[1] for ways in both] == [1, 2]
+    together = both[1][-1][0]
+    for k in range(round(end / step)):
+        one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
+        slow(one, drag, step, max(end - k * step, 0.1), run, k * step)
+    assert together == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
+
+
+def test_who_rolls_on_comes_further_before_it_brakes() -> None:
+    one, drag = body((0.0, 0.0, 0.0), CAR, 1450.0), Drag(4.5, 7.0)
+    one.vx = 6.0
+    ways = [RunOut(0.0, 3.0), RunOut(0.0, 3.0, rolls_s=1.5)]
+    ends = run_out([Released(one, 0.0)], [drag], [ways], 8.0, 0.05)[0][-1]
+    assert ends[1][0] - ends[0][0] == pytest.approx(9.0, abs=0.4)  # 6 m/s for 1.5 s
+
+
+def test_who_rolls_over_drives_nowhere_and_hardly_steers() -> None:
+    ways = all_runs(0.0, 7.0, on_wheels=False)
+    assert {way.rolls_s for way in ways} == {0.0}
+    assert max(abs(way.bend_per_m) for way in ways) < max(abs(way.bend_per_m) for way in all_runs(0.0, 7.0)) / 4
+    assert any(way.rolls_s for way in all_runs(0.0, 7.0))
+
+
+@pytest.mark.parametrize("bend", [0.1, -0.1])
+def test_a_steered_run_bends_to_its_side_within_friction(bend) -> None:
+    one, drag, step = body((0.0, 0.0, 0.0), CAR, 1450.0), Drag(4.5, 7.0), 0.01
+    one.vx = 12.0
+    for _ in range(200):
+        before = (one.vx, one.vy)
+        one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
+        slow(one, drag, step, 4.0, RunOut(0.0, 1.0, bend))
+        assert math.hypot(one.vx - before[0], one.vy - before[1]) / step < 7.0 * 1.2
+    assert one.y * bend > 0
+    assert one.heading * bend > 0

@@ -1,0 +1,102 @@
+"""A told rollover: it lies as told, rolls the way it slides, no faster than vehicles do, and stands in every file."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flows.case import case_folder
+from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.formats.openscenario.playing.player import play
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from sgcad_core.metrics.rest_error import attitude_of
+from sgcad_core.planner.aftermath.rollover import TRIPPED_S, rolled, rolls_over
+from sgcad_core.records.course import CourseTold, RestTold
+
+attitudes = st.sampled_from(["wheels", "roof", "left", "right"])
+
+
+def sliding(left_mps: float, count: int = 160) -> np.ndarray:
+    """Eastbound at 12 m/s and sideways, slower and slower."""
+    fade = np.linspace(1.0, 0.0, count)
+    x, y = (np.concatenate(([0.0], np.cumsum(v * fade[1:] * 0.05))) for v in (12.0, left_mps))
+    return np.column_stack((x, y, np.zeros(count)))
+
+
+def told(attitude: str | None) -> CourseTold:
+    return CourseTold(rolls=True, rest=RestTold(attitude=attitude))
+
+
+@settings(max_examples=60, deadline=None)
+@given(attitudes, st.floats(-8, 8), st.integers(2, 60))
+def test_it_lies_as_told_and_rolls_the_way_it_slides(attitude, left_mps, hit):
+    roll = rolled(sliding(left_mps), hit, told(attitude))
+    assert attitude_of(float(roll[-1])) == attitude
+    assert not roll[: hit + round(TRIPPED_S / 0.05)].any()
+    assert np.abs(np.diff(roll)).max() <= math.radians(410.0) * 0.05
+    assert (np.diff(np.abs(roll)) >= -1e-9).all()
+    if abs(left_mps) > 1.0:
+        assert (roll[-1] < 0) == (left_mps > 0)  # positive is to the right
+
+
+def test_without_a_told_end_it_comes_to_lie_on_the_side_to_which_it_slides():
+    assert attitude_of(float(rolled(sliding(3.0), 10, told(None))[-1])) == "left"
+    assert attitude_of(float(rolled(sliding(-3.0), 10, told(None))[-1])) == "right"
+
+
+def test_one_who_stands_where_it_is_struck_still_lies_as_told_in_the_end():
+    roll = rolled(np.zeros((100, 3)), 20, told("roof"))
+    assert attitude_of(float(roll[-1])) == "roof"
+
+
+@pytest.mark.parametrize(
+    ("course", "rolls"),
+    [
+        (CourseTold(), False), (CourseTold(rolls=True), True), (CourseTold(rest=RestTold(attitude="wheels")), False),
+        (CourseTold(rest=RestTold(attitude="left")), True),
+    ],
+)  # fmt: skip
+def test_who_rolls_over(course, rolls):
+    assert rolls_over(course) == rolls
+
+
+# ------------------------------------------------------------------ files
+def motion(name: str, roll: np.ndarray | None) -> Trajectory:
+    poses, t = sliding(2.0), np.arange(160) * 0.05
+    speed = np.hypot(*np.gradient(poses[:, :2], 0.05, axis=0).T)
+    return Trajectory(
+        actor=name, t_s=t, x_m=poses[:, 0], y_m=poses[:, 1] + (9.0 if name == "V2" else 0.0),
+        heading_rad=poses[:, 2], speed_mps=speed, roll_rad=roll,
+    )  # fmt: skip
+
+
+def actors() -> list[ActorInfo]:
+    return [ActorInfo(id=n, type="car", length_m=4.7, width_m=1.8, maneuver="straight") for n in ("V1", "V2")]
+
+
+def test_the_roll_stands_in_the_scenario_and_is_played():
+    roll = rolled(sliding(2.0), 10, told("roof"))
+    text = write_xosc(actors(), [motion("V1", roll), motion("V2", None)], None)
+    first, second = play(text)
+    assert np.abs(first.rolls - roll).max() < math.radians(3.0)
+    assert attitude_of(float(first.rolls[-1])) == "roof"
+    assert second.roll_rad is None
+    assert not second.rolls.any()
+    assert 'z="1.5"' in text  # a car on its roof: its origin, between the wheels, lies a car's height above the ground
+    assert " r=" not in write_xosc(actors(), [motion("V1", None), motion("V2", None)], None)
+
+
+def test_the_roll_is_a_column_where_somebody_rolls(tmp_path):
+    roll = rolled(sliding(2.0), 10, told("left"))
+    file = tmp_path / "trajectories.csv"
+    case_folder.write_trajectories(file, [motion("V1", roll), motion("V2", None)])
+    first, second = case_folder.read_trajectories(file)
+    assert first.rolls == pytest.approx(roll, abs=1e-4)
+    assert not second.rolls.any()
+    case_folder.write_trajectories(file, [motion("V1", None)])
+    assert "roll_rad" not in file.read_text()
+    assert case_folder.read_trajectories(file)[0].roll_rad is None

@@ -1,0 +1,85 @@
+"""What is struck on the way to rest stands there, in order, and is struck by nobody before."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from sgcad_core.execution.contact import poses
+from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.planner import plan
+from sgcad_core.records.course import CourseTold, RestTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from tests.sgcad_core.planner.crash_scenes import network
+
+
+def crash(*things: Actor, more: tuple[Contact, ...] = ()) -> BehaviorSpec:
+    """V1 eastbound strikes the right side of V2 southbound; V2 then strikes the things."""
+    actors = (
+        Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=40),
+        Actor(id="V2", kind="car", road="N", direction="forward", exit_road="S", maneuver="straight", speed_mph=30),
+        *things,
+    )
+    first = Contact(striker="V1", struck="V2", striker_area="front", struck_area="right")
+    later = (Contact(striker="V2", struck=t.id, striker_area="front", struck_area="front") for t in things)
+    return BehaviorSpec(actors=actors, contacts=(first, *more, *later))
+
+
+def thing(number: int, kind: str = "object") -> Actor:
+    return Actor(id=f"{'O' if kind == 'object' else 'P'}{number}", kind=kind, road="N", direction="forward",
+                 maneuver="stopped", length_m=0.4, width_m=0.4)  # fmt: skip
+
+
+def touches(behavior: BehaviorSpec, **more) -> tuple[list[tuple[str, str]], tuple[str, ...]]:
+    """Pairs in the order in which they first overlap, and the notes."""
+    made = plan(behavior, network("four_leg"), **more)
+    tracks = {t.actor: poses(t) for t in made.trajectories}
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    found = []
+    for a, b in combinations(sorted(tracks), 2):
+        hits = np.flatnonzero(box_gaps(tracks[a], sizes[a], tracks[b], sizes[b]) <= 0)
+        found += [(int(hits[0]), a, b)] if len(hits) else []
+    assert made.realised
+    return [(a, b) for _, a, b in sorted(found)], made.notes
+
+
+def test_a_pole_is_struck_behind_the_first_contact() -> None:
+    found, notes = touches(crash(thing(1)))
+    assert found == [("V1", "V2"), ("O1", "V2")], notes
+
+
+def test_two_things_are_struck_in_their_order() -> None:
+    found, notes = touches(crash(thing(2), thing(1)))
+    assert found == [("V1", "V2"), ("O2", "V2"), ("O1", "V2")], notes
+
+
+def test_somebody_beside_the_road_is_struck_too() -> None:
+    found, notes = touches(crash(thing(1, "pedestrian")))
+    assert found == [("V1", "V2"), ("P1", "V2")], notes
+
+
+def test_a_thing_that_nobody_can_reach_is_told_and_touches_nobody() -> None:
+    still = crash(thing(1)).model_copy(update={})
+    slow = [a.model_copy(update={"speed_mph": 3}) if a.id.startswith("V") else a for a in still.actors]
+    found, notes = touches(still.model_copy(update={"actors": tuple(slow)}))
+    assert found == [("V1", "V2")]
+    assert "V2 does not reach O1, which it strikes as told" in notes
+
+
+@pytest.mark.parametrize("where", ["off_road", "shoulder"])
+def test_the_rest_is_still_looked_for(where) -> None:
+    told = {"V1": CourseTold(rest=RestTold(where=where))}
+    found, _ = touches(crash(thing(1)), courses=told)
+    assert ("O1", "V2") in found
+
+
+def test_a_thing_is_struck_so_fast_that_a_file_shows_it() -> None:
+    behavior = crash(thing(1))
+    made = plan(behavior, network("four_leg"))
+    track = next(t for t in made.trajectories if t.actor == "V2")
+    post = next(t for t in made.trajectories if t.actor == "O1")
+    gaps = box_gaps(poses(track), (4.7, 1.8), poses(post), (0.4, 0.4))
+    hit = int(np.flatnonzero(gaps <= 0)[0])
+    assert np.hypot(*(poses(track)[hit - 1, :2] - poses(track)[hit - 2, :2])) > 0.11

@@ -1,0 +1,137 @@
+"""Evasion, spin, rest and later impacts as texts tell them. All texts are made up."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.reading import read
+from sgcad_core.records.course import CourseTold, ImpactTold, RestTold
+
+INTRO = (
+    "Vehicle #1 was a 2001 Ford Taurus traveling north in the northbound lane. "
+    "Vehicle #2 was a 1999 Honda Civic traveling east in the eastbound lane. "
+)
+HIT = "The front of Vehicle #1 struck the left side of Vehicle #2. "
+
+
+def course(text: str, vehicle: str = "V1") -> CourseTold:
+    return read(INTRO + text).crash.courses.get(vehicle, CourseTold())
+
+
+def impacts(text: str) -> list[tuple[str, str]]:
+    return [(i.actor, i.other) for i in read(INTRO + text).crash.impacts]
+
+
+# ------------------------------------------------------------------ before the contact
+@pytest.mark.parametrize(
+    "words",
+    ["braked but could not stop", "applied the brakes in an attempt to avoid a collision", "slammed on his brakes"],
+)
+def test_braking_is_read_of_whoever_braked(words: str) -> None:
+    text = f"The driver of Vehicle #1 {words}. {HIT}"
+    assert course(text).brakes
+    assert not course(text, "V2").brakes
+
+
+@pytest.mark.parametrize("words", ["did not brake", "never saw the brake lights ahead", "had replaced his brakes"])
+def test_brakes_alone_are_no_braking(words: str) -> None:
+    assert not course(f"The driver of Vehicle #1 {words}. {HIT}").brakes
+
+
+@pytest.mark.parametrize(
+    ("words", "hand"),
+    [("swerved to the right", "right"), ("steered left", "left"), ("swerved", "either"),
+     ("attempted to avoid it by steering hard left", "left")],
+)  # fmt: skip
+def test_steering_has_a_hand(words: str, hand: str) -> None:
+    assert course(f"The driver of Vehicle #1 {words}. {HIT}").steers == hand
+
+
+def test_what_an_onlooker_did_is_his_own_deed() -> None:
+    text = f"The driver of Vehicle #2 noticed Vehicle #1 turning into her path and steered to the right. {HIT}"
+    assert course(text, "V2").steers == "right"
+    assert course(text, "V1").steers is None
+
+
+def test_a_told_inaction_is_read() -> None:
+    assert course(f"{HIT} The driver of Vehicle #1 did not take any avoidance actions.").no_evasion
+
+
+def test_steering_behind_the_contact_is_no_evasion() -> None:
+    text = f"{HIT} Vehicle #1 swerved right and then left. Both vehicles came to final rest facing east."
+    assert course(text).steers is None
+
+
+# ------------------------------------------------------------------ behind it
+@pytest.mark.parametrize(
+    ("words", "rest"),
+    [
+        ("came to rest facing west", RestTold(270.0)),
+        ("came to final rest facing north-northeast", RestTold(22.5)),
+        ("came to rest in the intersection facing south", RestTold(180.0, "intersection")),
+        ("came to rest in the westbound lane", RestTold(None, "road")),
+        ("came to rest off the north side of the road", RestTold(None, "off_road", "N")),
+        ("came to rest on the northbound shoulder", RestTold(None, "shoulder", "E")),
+        ("departed the right side of the road and came to rest in a field", RestTold(None, "off_road", "right")),
+        ("came to rest on the northwest corner of the intersection", RestTold(None, "off_road", "NW")),
+        ("came to rest against a large tree", RestTold(against="tree")),
+        ("rolled over and came to rest on its roof", RestTold(attitude="roof")),
+    ],
+)
+def test_a_rest_is_read_in_its_parts(words: str, rest: RestTold) -> None:
+    assert course(f"{HIT} Vehicle #1 {words}.").rest == rest
+
+
+def test_a_rest_of_both_is_each_ones_rest() -> None:
+    text = f"{HIT} Both vehicles came to rest in the roadway facing north."
+    assert course(text).rest == course(text, "V2").rest == RestTold(0.0, "road")
+
+
+def test_where_the_contact_was_is_no_rest() -> None:
+    text = "The front of Vehicle #1 struck the left side of Vehicle #2 in the intersection. Vehicle #1 was towed."
+    assert course(text).rest == RestTold()
+
+
+@pytest.mark.parametrize(
+    ("words", "spin", "degrees"),
+    [("Vehicle #2 rotated counterclockwise approximately 150 degrees.", "counterclockwise", 150.0),
+     ("The impact caused Vehicle #2 to rotate in a clockwise manner.", "clockwise", None)],
+)  # fmt: skip
+def test_a_spin_is_the_struck_ones(words: str, spin: str, degrees: float | None) -> None:
+    told = course(HIT + words, "V2")
+    assert (told.spin, told.spin_deg) == (spin, degrees)
+
+
+# ------------------------------------------------------------------ later impacts
+def test_things_are_hit_in_the_order_of_the_text() -> None:
+    text = f"{HIT} Vehicle #1 then struck a utility pole. Vehicle #2 continued and hit a curb and a wooden fence."
+    assert impacts(text) == [("V1", "pole"), ("V2", "fence")]
+
+
+def test_what_was_hit_before_the_vehicles_met_is_marked() -> None:
+    text = f"Vehicle #1 crossed the center line and struck a stone wall. {HIT}"
+    assert read(INTRO + text).crash.impacts == (ImpactTold("V1", "wall", before=True),)
+
+
+def test_a_side_slap_is_a_second_contact_of_the_same_two() -> None:
+    assert impacts(f"{HIT} The two vehicles then side-slapped.") == [("V1", "V2")]
+
+
+def test_a_retelling_in_an_interview_is_no_second_contact() -> None:
+    text = f"{HIT} The driver of Vehicle #2 stated that Vehicle #1 struck the right side of his car."
+    assert impacts(text) == []
+
+
+# ------------------------------------------------------------------ facts
+def test_every_fact_of_a_course_has_its_sentence() -> None:
+    text = f"{INTRO}The driver of Vehicle #1 braked. {HIT}Vehicle #1 came to rest facing west."
+    facts = {f.field: f for f in read(text).facts}
+    braked, facing = facts["vehicles.V1.evasion.brakes"], facts["vehicles.V1.rest.facing_deg"]
+    assert text[braked.start : braked.end] == "The driver of Vehicle #1 braked."
+    assert (facing.value, facing.basis) == (270.0, "text")
+    assert text[facing.start : facing.end] == "Vehicle #1 came to rest facing west."
+
+
+@pytest.mark.parametrize("told", ["after striking Vehicle #2 rotated", "after colliding with Vehicle #2, then rotated"])
+def test_what_follows_a_contact_told_again_is_the_strikers_deed(told: str) -> None:
+    assert impacts(f"{HIT} Vehicle #1 {told} clockwise and then contacted a utility pole.") == [("V1", "pole")]

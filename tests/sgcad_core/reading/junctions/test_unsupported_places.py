@@ -1,0 +1,49 @@
+"""A crash at a place that cannot be drawn is refused by name; one mentioned in passing changes nothing."""
+
+import pytest
+
+from plugins.road_writer.template import Template
+from sgcad_core.case.records import Context
+from sgcad_core.errors import Refused
+from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
+from sgcad_core.reading.language import of_role
+from sgcad_core.reading.reading import road_facts
+
+AT = {
+    "Vehicle 1 was traveling north inside a parking garage when it struck the rear of Vehicle 2.": ("parking_garage",),
+    "The crash occurred at a railroad crossing. V1 was northbound and struck the rear of V2.": ("rail_crossing",),
+}
+BESIDE = (
+    "V1 was northbound on a two-lane street. It had passed a roundabout a mile before. V1 struck the rear of V2.",
+    "The crash occurred in an intersection near a roundabout. V1 was northbound and struck the left side of V2.",
+    "V1 was coming out of a parking garage and was turning left onto the street. V1 struck the left side of V2.",
+    "V1 was northbound and struck the rear of V2. The driver of V1 said he knew the rotary well.",
+)
+
+
+@pytest.mark.parametrize(("text", "kinds"), AT.items())
+def test_the_place_of_the_crash_is_found(text: str, kinds: tuple[str, ...]) -> None:
+    assert road_facts(text).junction.unsupported == kinds
+
+
+@pytest.mark.parametrize("text", BESIDE)
+def test_a_place_mentioned_in_passing_has_no_effect(text: str) -> None:
+    assert road_facts(text).junction.unsupported == ()
+
+
+def test_a_parking_garage_is_refused_by_name() -> None:
+    text = next(iter(AT))
+    with pytest.raises(Refused, match="the crash happened at a parking garage, which cannot be drawn yet") as raised:
+        Template().write(Context(narrative=text), (), (), ask=None, attempt=1)  # type: ignore[arg-type]
+    assert raised.value.missing == ("leave the case out: no aisles or decks can be drawn",)
+
+
+def test_a_place_whose_road_can_be_drawn_is_not_refused() -> None:
+    refuse_unsupported(("rail_crossing", "interchange"))
+
+
+@pytest.mark.parametrize("rule", of_role("unsupported"), ids=lambda rule: rule.id)
+def test_the_rules_read_their_examples_and_no_counterexample(rule) -> None:  # type: ignore[no-untyped-def]
+    assert rule.record.examples
+    assert all(rule.search(text) for text in rule.record.examples)
+    assert not [text for text in rule.record.counterexamples if rule.search(text)]

@@ -1,0 +1,68 @@
+"""Lanes of single approaches: whose they are, what they are for, what leads out, and what is no list of lanes."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.reading import road_facts
+from sgcad_core.records.specs import Leg
+
+AT = "The crash was at a four-leg intersection. "
+
+
+def _legs(text: str) -> dict[str, Leg]:
+    return {leg.bearing: leg for leg in layout_of_facts(road_facts(text)).legs}
+
+
+@pytest.mark.parametrize(
+    ("text", "leg", "turns", "out"),
+    [
+        ("The north leg has a left-turn lane and a through/right lane coming in and one lane going out.",
+         "N", ("through_right", "left"), 1),
+        ("From the west there are two lanes, the right one for right turns and the left one for going straight.",
+         "W", ("right", "through"), None),
+        ("Eastbound drivers find three lanes, right, through and left, and two lanes beyond.",
+         "W", ("right", "through", "left"), 2),
+        ("On the east-west road each approach has two lanes (left turn; through and right) and one leaving.",
+         "E", ("through_right", "left"), 1),
+    ],
+)  # fmt: skip
+def test_a_leg_has_the_lanes_that_are_listed_of_it(
+    text: str, leg: str, turns: tuple[str, ...], out: int | None
+) -> None:
+    found = _legs(AT + text)[leg]
+    assert found.turns_in == turns
+    assert found.lanes_in == len(turns)
+    assert out is None or found.lanes_out == out
+
+
+def test_lanes_where_somebody_drives_are_no_list() -> None:
+    legs = road_facts(
+        AT + "V1 came from the north in the left-turn lane and V2 in the second of three lanes."
+    ).approaches
+    assert legs.named == ()
+
+
+def test_listed_legs_of_two_roads_make_a_crossing() -> None:
+    text = (
+        "V1 was northbound and hit V2. From the north and the south two lanes come in, for through and for left turns;"
+    )
+    text += " from the east and the west a right-turn lane and a through lane come in."
+    assert road_facts(text).junction.kind == "four_leg"
+
+
+def test_a_leg_with_turn_lanes_only_is_the_stem() -> None:
+    text = "At the T-intersection V1 was northbound. The west leg has a right-turn lane and a left-turn lane."
+    assert road_facts(text).junction.stem == "W"
+
+
+def test_a_total_is_filled_with_lanes_that_go_on() -> None:
+    found = _legs(AT + "The north leg has three lanes, one for left turns, and one lane out.")["N"]
+    assert found.turns_in == ("through_right", "through", "left")
+
+
+def test_a_leg_by_which_nobody_comes_has_no_control() -> None:
+    text = AT + "V1 was northbound on a one-way street and V2 was eastbound. All approaches have traffic signals."
+    legs = _legs(text)
+    assert [legs["S"].control, legs["N"].control] == ["signal", "none"]

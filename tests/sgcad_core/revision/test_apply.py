@@ -1,0 +1,217 @@
+"""A person's facts over specs: what is asked stands, what cannot be is told, undoing is exact."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sgcad_core.case.records import Finding
+from sgcad_core.reading.reading import read
+from sgcad_core.reading.reading_with_edits import holds, mended
+from sgcad_core.records.edits import AS_READ, Edit, by_person, canonical, effective
+from sgcad_core.records.facts import Fact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
+from sgcad_core.revision import applied
+from sgcad_core.revision.actors import laid_behavior
+from sgcad_core.revision.fields import EDITABLE, fields_of
+from sgcad_core.revision.file import merged, undone
+from sgcad_core.revision.finding_fields import yielding
+from sgcad_core.revision.roads import laid_roads
+from sgcad_core.revision.spec_to_layout import layout_of
+from sgcad_core.revision.values import junction_kind_of, value_of
+from sgcad_core.roads.layout import road_spec
+
+TEXT = (
+    "V1, a 2001 Chrysler Sebring, was traveling east on a two-lane, two-way road and approached a T-intersection. V2, "
+    "a 1999 Chevrolet Blazer, was traveling south. V1 turned left and the front of V2 struck the left side of V1."
+)
+LAYOUT = RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) for b in ("N", "S", "W")))
+SPEC = road_spec(LAYOUT)
+BEHAVIOR = BehaviorSpec(
+    actors=(
+        Actor(id="V1", kind="car", road="W", direction="forward", maneuver="turn_left", exit_road="N"),
+        Actor(id="V2", kind="suv", road="N", direction="forward", maneuver="straight", exit_road="S"),
+    ),
+    contacts=(Contact(striker="V2", struck="V1", striker_area="front", struck_area="left"),),
+)
+
+
+def edits(**values):
+    return tuple(Edit(field=canonical(name.replace("__", ".")), value=value) for name, value in values.items())
+
+
+def test_lanes_of_one_leg_change_and_no_others():
+    laid = laid_roads(SPEC, LAYOUT, {"roads.N.lanes_forward": 3})
+    assert [r.lanes_forward for r in laid.roads] == [3, 1, 1]
+    assert laid_roads(laid, LAYOUT, {"roads.N.lanes_forward": 3}) == laid
+
+
+def test_junctions_become_what_a_person_says_and_stand():
+    for kind in ("none", "t", "four_leg", "driveway", "roundabout", "parking_lot", "ramp"):
+        laid = laid_roads(SPEC, LAYOUT, {"junction.kind": kind})
+        assert junction_kind_of(laid) == kind
+        assert applied(edits(junction__kind=kind), "road", laid) == []
+
+
+def test_the_stem_lies_where_a_person_says():
+    laid = laid_roads(SPEC, LAYOUT, {"junction.stem": "E"})
+    assert value_of("junction.stem", laid, None) == "E"
+    assert {r.id for r in laid.roads} == {"N", "S", "E"}
+
+
+def test_a_leg_is_added_by_its_bearing_and_taken_away_by_its_name():
+    more = laid_roads(SPEC, LAYOUT, {"roads.E.present": True})
+    assert {r.id for r in more.roads} == {"N", "S", "W", "E"}
+    assert {r.id for r in laid_roads(more, LAYOUT, {"roads.E.present": False}).roads} == {"N", "S", "W"}
+
+
+def test_signs_stand_beside_the_main_road_where_nobody_says_where():
+    plain = SPEC.model_copy(update={"roads": tuple(r.model_copy(update={"minor": False}) for r in SPEC.roads)})
+    laid = laid_roads(plain, LAYOUT, {"junction.control": "stop"})
+    assert [r.id for r in laid.roads if r.minor] == ["W"]
+
+
+def test_another_heading_is_another_road_and_another_maneuver_another_exit():
+    laid = laid_behavior(BEHAVIOR, SPEC, {"vehicles.V2.heading": "N", "vehicles.V1.maneuver": "turn_right"})
+    assert [(a.road, a.exit_road) for a in laid.actors] == [("W", "S"), ("S", "N")]
+
+
+def test_naming_the_struck_as_striker_turns_the_contact_around_and_sides_stay_with_their_vehicles():
+    laid = laid_behavior(BEHAVIOR, SPEC, {"contacts.0.striker": "V1"})
+    assert laid.contacts[0] == Contact(striker="V1", struck="V2", striker_area="left", struck_area="front")
+
+
+def test_who_is_taken_out_takes_the_contacts_along():
+    laid = laid_behavior(BEHAVIOR, SPEC, {"vehicles.V2.present": False})
+    assert [a.id for a in laid.actors] == ["V1"]
+    assert laid.contacts == ()
+
+
+def test_somebody_joins_and_is_struck():
+    facts = {"others.P1.present": True, "contacts.1.striker": "V1", "contacts.1.struck": "P1"}
+    laid = laid_behavior(BEHAVIOR, SPEC, facts)
+    assert [(a.id, a.kind) for a in laid.actors] == [("V1", "car"), ("V2", "suv"), ("P1", "pedestrian")]
+    assert (laid.contacts[1].striker, laid.contacts[1].struck) == ("V1", "P1")
+
+
+def test_an_avoided_contact_is_a_near_crash_and_back():
+    near = laid_behavior(BEHAVIOR, SPEC, {"near_crash": True, "near_crash.clearance_m": 1.5})
+    assert (near.contacts, near.near_crash.conflict, near.near_crash.clearance_m) == ((), BEHAVIOR.contacts[0], 1.5)
+    assert laid_behavior(near, SPEC, {"near_crash": False}) == BEHAVIOR
+
+
+def test_what_does_not_stand_is_told_with_its_reason():
+    given = edits(vehicles__V9__kind="bus", V1__start_lane=4, contacts__5__striker="V1")
+    told = applied(given, "scenario", SPEC, BEHAVIOR)
+    assert [f.where for f in told] == ["vehicles.V9.kind", "vehicles.V1.start_lane", "contacts.5.striker"]
+    assert "there are V1, V2" in told[0].what
+    assert "1 lane(s)" in told[1].what
+    assert {f.severity for f in told} == {"doubt"}
+    assert "there are N, S, W" in applied(edits(roads__Q__lanes_forward=1), "road", SPEC)[0].what
+
+
+def test_a_finding_from_the_narrative_yields_to_a_person_and_a_fault_of_the_drawing_does_not():
+    lanes = Finding(source="road_narrative", what="has 2 lanes", where="roads N, S")
+    given = edits(roads__N__lanes_forward=3)
+    assert yielding(lanes, given).severity == "note"
+    assert yielding(lanes, edits(roads__W__lanes_forward=3)).severity == "repair"
+    assert yielding(lanes.model_copy(update={"source": "topology"}), given).severity == "repair"
+
+
+def test_a_layout_comes_back_from_its_spec():
+    bent = RoadLayout(legs=(Leg(bearing="N", lanes_in=2, lanes_out=1, curve="left", speed_limit_mph=45),
+                            Leg(bearing="S", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1,
+                            control="stop")))  # fmt: skip
+    assert layout_of(road_spec(bent)) == bent
+    assert layout_of(road_spec(LAYOUT.model_copy(update={"circle_lanes": 1}))).circle_lanes == 1
+
+
+# ------------------------------------------------------------------ the reading
+def test_a_reading_goes_by_a_person():
+    given = edits(V1__maneuver="straight", V2__heading="N", contacts__0__struck_area="front", junction__kind="four_leg")
+    reading = mended(read(TEXT), given)
+    assert [(v.maneuver, v.heading, v.heading_stated) for v in reading.crash.vehicles][1] == ("straight", "N", True)
+    assert reading.crash.vehicles[0].maneuver == "straight"
+    assert reading.crash.contacts[0].struck_may == ("front",)
+    assert (reading.roads.junction.kind, reading.roads.junction.stated) == ("four_leg", True)
+    person = {f.field for f in reading.facts if f.basis == "person"}
+    assert person == {edit.field for edit in given}
+    assert holds(reading.crash, given)
+    assert not holds(read(TEXT).crash, given)
+
+
+def test_a_reading_that_nobody_changed_is_the_same_one():
+    reading = read(TEXT)
+    assert mended(reading, ()) is reading
+    assert mended(reading, edits(V1__maneuver=AS_READ)) is reading
+
+
+def test_facts_of_a_person_take_the_place_of_the_text():
+    told = Fact(field="vehicles.V1.heading", value="E", basis="text", status="stated", rule="x", confidence=0.9)
+    other = told.model_copy(update={"field": "vehicles.V2.heading"})
+    found = by_person([told, other], edits(V1__heading="W", V3__kind="bus"))
+    assert [(f.field, f.value, f.basis) for f in found] == [
+        ("vehicles.V1.heading", "W", "person"), ("vehicles.V2.heading", "E", "text"),
+        ("vehicles.V3.kind", "bus", "person"),
+    ]  # fmt: skip
+
+
+# ------------------------------------------------------------------ any sequence
+def _possible(field):
+    kind = field.kind
+    if kind.form == "flag":
+        return st.booleans()
+    if kind.form == "list":
+        return st.just(())
+    if kind.form in ("integer", "number"):
+        return st.integers(int(kind.least) + 1, int(kind.most))
+    return st.sampled_from(field.choices)
+
+
+EDITS = st.lists(
+    st.sampled_from(fields_of(SPEC, BEHAVIOR)).flatmap(lambda f: st.tuples(st.just(f.name), _possible(f))), max_size=6
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(EDITS)
+def test_laying_twice_changes_nothing_more(pairs):
+    given_values = dict(pairs)
+    road = laid_roads(SPEC, LAYOUT, given_values)
+    assert laid_roads(road, LAYOUT, given_values) == road
+    behavior = laid_behavior(BEHAVIOR, road, given_values)
+    assert laid_behavior(behavior, road, given_values) == behavior
+
+
+@settings(max_examples=60, deadline=None)
+@given(EDITS)
+def test_every_edit_stands_or_is_told(pairs):
+    given_edits = [Edit(field=name, value=value) for name, value in pairs]
+    values = {e.field: e.value for e in effective(given_edits)}
+    road = laid_roads(SPEC, LAYOUT, values)
+    behavior = laid_behavior(BEHAVIOR, road, values)
+    told = {f.where for f in (*applied(given_edits, "road", road), *applied(given_edits, "scenario", road, behavior))}
+    for edit in effective(given_edits):
+        if not edit.field.endswith(".heading"):
+            assert edit.field in told or value_of(edit.field, road, behavior) == edit.value
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(EDITS.filter(bool), max_size=4))
+def test_any_history_is_undone_step_by_step(revisions):
+    history, states = (), [()]
+    for pairs in revisions:
+        first = Edit(field=pairs[0][0], value=pairs[0][1])
+        new = [Edit(field=name, value=value, when=first.when) for name, value in dict(pairs).items()]
+        longer = merged(history, new)
+        assert merged(longer, new) == longer
+        history, states = longer, [*states, longer] if longer != history else states
+    for before in reversed(states[:-1]):
+        history = undone(history)
+        assert history == before
+    assert undone(()) == ()
+
+
+def test_every_field_of_a_case_is_one_of_the_editable_kinds_with_its_value():
+    found = fields_of(SPEC, BEHAVIOR)
+    assert {f.kind for f in found} <= set(EDITABLE)
+    assert all(f.value == value_of(f.name, SPEC, BEHAVIOR) for f in found)
+    assert next(f for f in found if f.name == "vehicles.V1.start_road").choices == ("N", "S", "W")
