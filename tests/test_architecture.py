@@ -1,10 +1,12 @@
 """The architecture is a test: catalogue, imports, configs, sizes and the README's tree."""
 
 import ast
+import graphlib
 import re
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from importlib.metadata import entry_points
 from pathlib import Path
 from statistics import median, quantiles
@@ -19,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "research") for p in (ROOT / d).rglob("*.py"))
 STUDIES = sorted((ROOT / "configs" / "studies").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(STUDIES))
+MOST_MODULES = 15
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
@@ -103,6 +106,41 @@ def test_functions_are_short():
     ]
     assert median(lengths) <= 10
     assert quantiles(lengths, n=10)[-1] <= 30
+
+
+def test_a_folder_holds_at_most_fifteen_modules():
+    kinds = {ROOT / "plugins" / kind for kind in registry.KINDS}
+    counts = Counter(file.parent for file in SOURCES if file.name != "__init__.py")
+    crowded = {str(f.relative_to(ROOT)): n for f, n in counts.items() if n > MOST_MODULES and f not in kinds}
+    assert crowded == {}
+
+
+def test_no_modules_import_each_other():
+    modules = {".".join(f.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): f for f in SOURCES}
+    imports = {name: _imported(file, modules) for name, file in modules.items()}
+    with pytest.raises(graphlib.CycleError, match="cycle"):  # the check itself works
+        graphlib.TopologicalSorter({"a": {"b"}, "b": {"a"}}).prepare()
+    graphlib.TopologicalSorter(imports).prepare()
+
+
+def _imported(file, modules):
+    """Names of the project's modules that a file imports anywhere in it, also inside functions."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                found |= {name for name in (f"{node.module}.{alias.name}", node.module) if name in modules}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names if alias.name in modules}
+    own = ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    return {name for name in found if modules[name].name != "__init__.py"} - {own}
+
+
+@pytest.mark.parametrize("package", ["sgcad_core", "flows", "research", "sgcad_core/reading"])
+def test_the_page_on_the_architecture_names_every_folder(package):
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    folders = {f.parent.name for f in (ROOT / package).glob("*/__init__.py")}
+    assert {name for name in folders if f"`{name}/`" not in page and f"/{name}/`" not in page} == set()
 
 
 def test_the_tree_in_the_readme_is_the_tree():

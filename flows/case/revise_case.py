@@ -35,8 +35,8 @@ from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit, effective
 from sgcad_core.result import STAGES, as_declared, result_of
 from sgcad_core.revision import CaseField, by_field, checked, fields_of, read_edits, report_digest, write_edits
-from sgcad_core.revision.applied import SOURCE
 from sgcad_core.revision.file import alone, merged, undone
+from sgcad_core.revision.standing_edits import SOURCE
 from sgcad_core.system.report_files import facts_file
 
 Given = Mapping[str, object]

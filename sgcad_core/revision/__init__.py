@@ -11,7 +11,6 @@ from sgcad_core.records.edits import AS_READ as AS_READ
 from sgcad_core.records.edits import Edit as Edit
 from sgcad_core.records.edits import canonical as canonical
 from sgcad_core.records.edits import effective as effective
-from sgcad_core.revision.applied import standing as standing
 from sgcad_core.revision.apply import lay_road as lay_road
 from sgcad_core.revision.apply import lay_scenario as lay_scenario
 from sgcad_core.revision.fields import EDITABLE as EDITABLE
@@ -25,3 +24,4 @@ from sgcad_core.revision.file import write_edits as write_edits
 from sgcad_core.revision.finding_fields import Heeding as Heeding
 from sgcad_core.revision.finding_fields import by_field as by_field
 from sgcad_core.revision.finding_fields import heeding as heeding
+from sgcad_core.revision.standing_edits import standing as standing

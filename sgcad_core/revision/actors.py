@@ -2,7 +2,7 @@
 
 What hangs on a changed fact follows: another heading is another road, another maneuver another exit. What an edit asks
 for and the behavior has already stays untouched; an edit that cannot be laid is left out here, and
-`sgcad_core.revision.applied` says so. Knows specs and ways; no narrative and no planner.
+`sgcad_core.revision.standing_edits` says so. Knows specs and ways; no narrative and no planner.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
 from sgcad_core.records.edits import Edit, effective
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
-from sgcad_core.revision.applied import SOURCE, standing
 from sgcad_core.revision.fields import EDITABLE, kind_of
+from sgcad_core.revision.standing_edits import SOURCE, standing
 
 FROM_NARRATIVE = ("road_narrative", "behavior_narrative", "evidence_gate")
 """Sources of findings that hold an artifact against the evidence."""

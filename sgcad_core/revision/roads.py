@@ -2,7 +2,7 @@
 
 What an edit asks for and the spec has already stays untouched. A network that was drawn from a layout is drawn anew
 where its junction becomes another one; any other spec gains and loses legs at its hub. An edit that cannot be laid is
-left out here; `sgcad_core.revision.applied` says so. Knows no file and no narrative.
+left out here; `sgcad_core.revision.standing_edits` says so. Knows no file and no narrative.
 """
 
 from __future__ import annotations

@@ -14,7 +14,10 @@ import pytest
 
 from flows import cli
 
-CODE = "from flows import cases, cli; cases._code_digest = lambda: 'as it is'; cli.main()"
+CODE = (
+    "from flows import cli; from flows.batch import find_cases; "
+    "find_cases._code_digest = lambda: 'as it is'; cli.main()"
+)
 SGCAD = [sys.executable, "-c", CODE]
 """The command; code that is edited while tests run makes no case stale."""
 
@@ -324,13 +327,13 @@ def test_an_interrupted_batch_ends_with_130_and_keeps_what_is_done(reports, conf
 def test_an_interrupt_that_a_library_turns_into_its_own_error_is_still_an_interrupt(reports, config_file, tmp_path):
     """Pydantic does so while it serializes, as Prefect makes it do when it is imported."""
     code = (
-        "import os, signal, time; from flows import cli, start\n"
+        "import os, signal, time; from flows import cli; from flows.batch import run_batch\n"
         "def evaluate(made, on_ending, on_turn=None):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT); time.sleep(9)\n"
         "    except KeyboardInterrupt as fault:\n"
         "        raise ValueError('Error calling function') from fault\n"
-        "start.evaluate = evaluate; cli.main()\n"
+        "run_batch.evaluate = evaluate; cli.main()\n"
     )
     command = ["evaluate", reports(a=""), "--config", config_file(), "--out", tmp_path / "out"]
     ended = subprocess.run([sys.executable, "-c", code, *map(str, command)], capture_output=True, text=True)

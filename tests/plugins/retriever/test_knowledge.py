@@ -46,7 +46,7 @@ def test_the_api_is_that_of_the_installed_package():
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_a_snippet_runs_as_it_is_shown(name):
     shown = next(c for c in snippet_chunks() if c.id == f"snippet/{name}").text
-    module = "snippets_road" if SNIPPETS[name][1] == ("road",) else "snippets_scenario"
+    module = "snippets.road_snippets" if SNIPPETS[name][1] == ("road",) else "snippets.scenario_snippets"
     scope = dict(vars(importlib.import_module(f"plugins.retriever.knowledge.{module}")))
     exec(shown, scope)  # noqa: S102 - the project's own text
     assert etree.tostring(etree.fromstring(xml_of(scope["result"])))

@@ -23,7 +23,8 @@ def place(tmp_path, monkeypatch):
 
 def killed(code):
     """Run code that kills its own process."""
-    told = f"import os\nfrom pathlib import Path\nfrom sgcad_core import scratch\n{code}\n    os.kill(os.getpid(), 9)"
+    head = "import os\nfrom pathlib import Path\nfrom sgcad_core.system import temp_folders"
+    told = f"{head}\n{code}\n    os.kill(os.getpid(), 9)"
     assert subprocess.run([sys.executable, "-c", told], check=False).returncode == -9
 
 
@@ -43,7 +44,7 @@ def test_a_folder_may_be_locked_by_who_uses_it():
 
 
 def test_what_a_killed_process_left_is_found_and_removed(place):
-    killed('with scratch.scratch("test") as folder:\n    (folder / "file").write_text("x")')
+    killed('with temp_folders.scratch("test") as folder:\n    (folder / "file").write_text("x")')
     assert [p.parent for p in temp_folders.left()] == [place]
     assert temp_folders.clear_left() == 1
     assert not list(place.iterdir())
@@ -76,7 +77,9 @@ def test_a_folder_beside_its_target_takes_its_place_or_vanishes(place):
 
 
 def test_what_was_killed_beside_a_target_goes_with_the_next_try(place):
-    killed(f"with scratch.beside(Path({str(place / 'index')!r})) as folder:\n    (folder / 'file').write_text('half')")
+    killed(
+        f"with temp_folders.beside(Path({str(place / 'index')!r})) as folder:\n    (folder / 'file').write_text('half')"
+    )
     assert len(list(place.iterdir())) == 1
     with temp_folders.beside(place / "index") as one, temp_folders.beside(place / "index") as other:
         assert set(place.iterdir()) == {one, other}

@@ -1,7 +1,4 @@
-"""What the language tests ask besides examples: which rules the code names, and which rules of a role read a sentence.
-
-The mutants benchmark asks the same.
-"""
+"""What the language tests ask besides examples: which rules the code names, and which rules of a role read a sentence."""
 
 from __future__ import annotations
 

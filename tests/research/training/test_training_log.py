@@ -89,5 +89,5 @@ def test_a_trainer_that_fails_fails_the_flow(tmp_path, monkeypatch):
     from research.training.training_flow import train_flow
 
     monkeypatch.setattr(training_log, "TRAINER", ("-c", "raise SystemExit(5)"))
-    with pytest.raises(RuntimeError, match=r"mini\.train ended with code 5"):
+    with pytest.raises(RuntimeError, match=r"training\.train ended with code 5"):
         train_flow.fn(str(tmp_path / "mini"), [], str(tmp_path / "mlflow.db"))
