@@ -1,4 +1,4 @@
-"""What the language tests ask besides examples: which rules the code names, and which rules of a role read a sentence."""
+"""What the language tests ask beside examples: rules that the code names, rules of a role that read a sentence."""
 
 from __future__ import annotations
 
