@@ -28,7 +28,7 @@ def load_config(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
         config = config_of(study, arm, after=overrides)
     except ConfigError as fault:
         raise ConfigError(f"{study.file}: arm {arm.name!r}: {fault}") from fault
-    return config.model_copy(update={"name": safe_id(f"{study.name}-{place.name}")})
+    return config.model_copy(update={"name": safe_id(f"{study.name}-{place.name}"), "extends": arm.config})
 
 
 def config_of(study: Study, arm: Arm, before: tuple[str, ...] = (), after: tuple[str, ...] = ()) -> Config:

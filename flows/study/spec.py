@@ -230,7 +230,7 @@ def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
         faults.append(f"reference: no arm is called {parsed.reference!r}; there are: {names}")
     if parsed.cross:
         faults += [f"cross.over.{key}: no values; give a list" for key, v in parsed.cross.over.items() if not v]
-        names = [arm.name for arm in arms]
-        lost = [name for name in parsed.cross.published if name not in names]
-        faults += [f"cross.published.{n}: no arm is called so.{nearest(n, names)}" for n in lost]
+        known = [arm.name for arm in arms]
+        lost = [name for name in parsed.cross.published if name not in known]
+        faults += [f"cross.published.{name}: no arm is called so.{nearest(name, known)}" for name in lost]
     return faults

@@ -32,8 +32,13 @@ def _listed(arms: Any) -> bool:
 
 def _arms(base: list[dict[str, Any]], changes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     held = {arm["name"] for arm in base}
-    changed = {arm["name"]: arm for arm in changes if arm["name"] in held}
-    new = [arm for arm in changes if arm["name"] not in held]
+    changed: dict[str, dict[str, Any]] = {}
+    new = []
+    for arm in changes:
+        if arm["name"] in held - set(changed):
+            changed[arm["name"]] = arm
+        else:
+            new.append(arm)  # a name given twice stands twice, which is told
     return [*(extends.block(arm, changed.get(arm["name"], {})) for arm in base), *new]
 
 

@@ -90,10 +90,11 @@ def _found(file: Path, name: Any, folders: Sequence[Path]) -> Path:
         raise ConfigError(f"{file}: extends: expected the name of one YAML, such as template.yaml, found {name!r}")
     base = base_of(file, name, folders)
     if base is None:
-        known = sorted({str(f.relative_to(folder)) for folder in folders for f in folder.rglob("*.yaml")})
+        known = sorted(f.name for f in folders[0].glob("*.yaml"))
+        places = " or ".join(f"{folder.name}/" for folder in folders)
         raise ConfigError(
-            f"{file}: extends {name!r}: no such file beside it or under {folders[-1].name}/.{nearest(name, known)} "
-            f"There: {', '.join(known)}"
+            f"{file}: extends {name!r}: no such file beside it or under {places}."
+            f"{nearest(name, known)} In {folders[0].name}/: {', '.join(known)}"
         )
     if base.resolve() == file.resolve():
         raise ConfigError(f"{file}: extends itself: name another YAML, or leave `extends` out and write it whole")
