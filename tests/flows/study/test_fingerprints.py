@@ -1,4 +1,4 @@
-"""What every bundled config and study means, as fingerprints: an edited base changes all that extend it, and this tells.
+"""What every bundled config and study means, as fingerprints: an edited base changes all that extend it.
 
 A fingerprint that differs means that finished results of that config are done again. If that is meant, write the new
 one down in fingerprints.yaml.
