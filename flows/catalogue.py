@@ -79,7 +79,9 @@ def _type(schema: dict[str, Any]) -> str:
 def describe_config(config: Config) -> None:
     """Say what a config that passed its check would do."""
     console = _console()
-    console.print(f"{escape(config.name)}: fine; seed {config.seed}, at most {config.max_attempts} attempts a stage")
+    based = f"; extends {escape(config.extends)}" if config.extends else ""
+    limits = f"seed {config.seed}, at most {config.max_attempts} attempts a stage"
+    console.print(f"{escape(config.name)}: fine{based}; {limits}", soft_wrap=True)
     table = Table("kind", "plugin", "fields")
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:

@@ -187,12 +187,12 @@ def check(
     """Check a config, or all arms of a study, without starting anything."""
     from flows.catalogue import describe_config
     from flows.study import plan, spec
-    from sgcad_core.config import load
+    from flows.study.arm_config import load_config
 
     if study_file := spec.study_in(config):
         typer.echo(plan.described(spec.load_study(study_file), tuple(overrides or ())))
         return
-    describe_config(load(config, tuple(overrides or ())))
+    describe_config(load_config(config, tuple(overrides or ())))
 
 
 @app.command()

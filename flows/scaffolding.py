@@ -12,10 +12,10 @@ from pathlib import Path
 
 import yaml
 
-from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import nearest
 from sgcad_core.registry import KINDS, catalogue
+from sgcad_core.system import extends
 
 TEMPLATES = Path(__file__).parent / "scaffold"
 IMPORTS = {
@@ -47,8 +47,10 @@ IMPORTS = {
     ),
 }
 """What a kind's test imports beside the plugin itself."""
+BASES = {"decoder": "mini.yaml"}
+"""The config that a kind's example extends; the plugin takes its kind's place."""
 BASE = "template.yaml"
-"""The config that an example begins with; the plugin takes its kind's place."""
+"""The same for every other kind."""
 
 
 def new(kind: str, name: str, into: Path) -> list[Path]:
@@ -125,12 +127,9 @@ def _order(line: str) -> tuple[bool, str]:
     return line.startswith("from"), line
 
 
-def _example(kind: str, lines: dict[str, object]) -> str:
-    """The default config with the plugin in its place."""
-    base = yaml.safe_load((settings.CONFIGS / BASE).read_text(encoding="utf-8"))
-    if kind == "decoder":
-        base = yaml.safe_load((settings.CONFIGS / "mini.yaml").read_text(encoding="utf-8"))
-    return yaml.safe_dump(base | (lines or {}), sort_keys=False)
+def _example(kind: str, lines: dict[str, object] | None) -> str:
+    """A config that extends a bundled one, with the plugin in its place."""
+    return yaml.safe_dump({extends.KEY: BASES.get(kind, BASE), **(lines or {})}, sort_keys=False)
 
 
 def _readme(given: dict[str, str]) -> str:

@@ -1,6 +1,7 @@
-"""One YAML = one experiment: parsed, overridden, checked whole before anything starts.
+"""One YAML = one experiment: parsed, put on its base, overridden, checked whole before anything starts.
 
-Flat: one mapping a plugin, its `name` and its fields. Knows the registry; no plugin, no flow.
+Flat: one mapping a plugin, its `name` and its fields. A YAML may be the differences to another (`extends`): what is
+checked, kept and fingerprinted is the whole. Knows the registry; no plugin, no flow.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from sgcad_core.kinds import CrashRole
 from sgcad_core.near_names import nearest
 from sgcad_core.records.second_reader import LEARNED
 from sgcad_core.registry import plugin_class
+from sgcad_core.system import extends
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion")
@@ -89,7 +91,9 @@ class Config(Record):
     """A second simulator, whose playing of the generated scenarios is compared with ours."""
     tracker: Tracker
     raw: dict[str, Any] = Field(repr=False)
-    """The mapping it was built from, for logs, digests and worker processes."""
+    """The mapping it was built from, written out, for logs, digests and worker processes."""
+    extends: str = ""
+    """The base that its YAML is written against, for people; of no effect."""
 
     def validators_of(self, stage: str) -> tuple[Validator, ...]:
         """Validators of one stage, or of both, in the order of the YAML."""
@@ -99,25 +103,25 @@ class Config(Record):
 def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
     """Read a YAML and `key=value` overrides into a checked Config. Raises ConfigError with every fault."""
     file = _find(Path(path))
-    try:
-        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError, OSError) as fault:
-        raise ConfigError(f"{file}: cannot be read as YAML: {fault}") from fault
-    if not isinstance(raw, dict):
-        raise ConfigError(f"{file}: expected a mapping of plugin kinds, found {type(raw).__name__}")
+    raw, base = extends.written_out(file, "of plugin kinds", (settings.CONFIGS,))
     for text in overrides:
         _override(raw, text)
-    return build(raw, name_of(file), str(file))
+    config = build(raw, name_of(file), f"{file} (extends {base})" if base else str(file))
+    return config.model_copy(update={"extends": str(_inside(base))}) if base else config
 
 
 def name_of(file: Path) -> str:
     """The config's name in runs/: its path under configs/ without suffix, "/" as "-"; else ConfigError."""
-    file = file.resolve()
-    inner = file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
-    name = "-".join(inner.with_suffix("").parts)
+    name = "-".join(_inside(file).with_suffix("").parts)
     if name.startswith(".") or not name.isprintable():
         raise ConfigError(f"{file}: its results go to a folder of its name: begin the name with a letter")
     return name
+
+
+def _inside(file: Path) -> Path:
+    """The path under configs/; of a file elsewhere its name."""
+    file = file.resolve()
+    return file.relative_to(settings.CONFIGS) if file.is_relative_to(settings.CONFIGS) else Path(file.name)
 
 
 def build(raw: dict[str, Any], name: str, where: str) -> Config:
@@ -125,7 +129,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
     faults: list[str] = []
     fields: dict[str, Any] = {k: raw[k] for k in SCALARS if k in raw}
     known = {*SINGLE, "judge", "drive", "validators", *SCALARS}
-    faults += [f"{key}: {config_faults.unknown('key', str(key), sorted(known))}" for key in raw if key not in known]
+    faults += [_unknown(str(key), known) for key in raw if key not in known]
     for kind in SINGLE:
         if raw.get(kind) is None:
             if kind not in OPTIONAL:
@@ -152,6 +156,12 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
     if config is None:
         raise ConfigError("\n".join([f"{where}: {len(faults)} fault(s)", *(f"  {f}" for f in faults)]))
     return config
+
+
+def _unknown(key: str, known: set[str]) -> str:
+    if key == extends.KEY:
+        return f"{key}: names a base in a YAML only: it is read before --set, which cannot change it"
+    return f"{key}: {config_faults.unknown('key', key, sorted({*known, extends.KEY}))}"
 
 
 def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | None:

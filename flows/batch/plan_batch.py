@@ -25,8 +25,9 @@ from flows.case import case_folder, chain
 from flows.case.case_folder import CaseFolder
 from flows.case.chain import Ending
 from flows.case.step_log import OnStep, unheard
+from flows.study.arm_config import load_config
 from sgcad_core.asking.refine import OnAttempt
-from sgcad_core.config import Config, load
+from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed
 from sgcad_core.interfaces import Backbone
 from sgcad_core.system import temp_folders
@@ -127,7 +128,7 @@ def _load_all(paths: Sequence[Path], overrides: tuple[str, ...]) -> tuple[Config
     loaded: list[Config] = []
     for path in paths:
         try:
-            loaded.append(config_folder.named(load(path, overrides), overrides))
+            loaded.append(config_folder.named(load_config(path, overrides), overrides))
         except ConfigError as fault:
             faults.append(str(fault))
     twice = [name for name, n in Counter(c.name for c in loaded).items() if n > 1]

@@ -41,6 +41,11 @@ def overrides_of(factors: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(f"{key}={_yaml(value)}" for key, value in factors.items() if key != "config")
 
 
+def overrides_in(given: Any) -> Any:
+    """A mapping as `key=value` overrides; anything else as it is."""
+    return tuple(f"{key}={_yaml(value)}" for key, value in given.items()) if isinstance(given, Mapping) else given
+
+
 def _yaml(value: Any) -> str:
     """A value in one line; a word needs no quotes unless YAML would read something else in it."""
     plain = isinstance(value, str) and value.isidentifier() and yaml.safe_load(value) == value

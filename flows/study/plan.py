@@ -25,9 +25,10 @@ from flows.batch.plan_batch import Batch, Job, batch_over
 from flows.case import case_folder
 from flows.results.published import publication
 from flows.study import machine
-from flows.study.spec import Arm, Study, fault_lines, is_study
+from flows.study.arm_config import config_of
+from flows.study.spec import Arm, Study, fault_lines
 from sgcad_core import settings
-from sgcad_core.config import Config, build, load
+from sgcad_core.config import Config, build
 from sgcad_core.errors import ConfigError
 
 DOCUMENT = "study.json"
@@ -142,7 +143,8 @@ def described(study: Study, overrides: Sequence[str] = ()) -> str:
     """A study in words, one line an arm. Raises ConfigError with every fault of its arms."""
     configs = arms_of(study, Path(), overrides)
     width = max(len(arm.name) for arm in study.arms)
-    lines = [f"study {study.name}: {study.title}; {len(configs)} arms"]
+    based = f"; extends {study.extends}" if study.extends else ""
+    lines = [f"study {study.name}: {study.title}; {len(configs)} arms{based}"]
     return "\n".join([*lines, *(f"  {a.name:<{width}}  {' '.join([_plain(a.config), *a.set])}" for a in study.arms)])
 
 
@@ -176,9 +178,8 @@ def _unpublished(study: Study) -> list[str]:
 
 def _config(study: Study, arm: Arm, out: Path, overrides: Sequence[str], faults: list[str]) -> Config | None:
     """An arm's config under the arm's name; None and a fault where it cannot be built."""
-    beside = study.file.parent / arm.config
     try:
-        config = load(beside if beside.is_file() and not is_study(beside) else arm.config, (*overrides, *arm.set))
+        config = config_of(study, arm, before=tuple(overrides))
         raw = copy.deepcopy(config.raw)
         raw["tracker"] = _tracker(config, study, out)
         return build(raw, arm.name, arm.config)

@@ -1,11 +1,12 @@
 """A study file: arms, listed or crossed, over a set of cases.
 
     title: Alpha sensitivity
+    extends: OTHER.yaml                 # optional: another study, of which this one is the differences
+    config: paper/mini_sg_cadvlm.yaml   # of every arm that names none (optional)
     reference: alpha_0.7                # the arm that others are compared with (optional)
     arms:                               # an explicit list ...
-      - {name: greedy, config: mini_greedy.yaml, set: ["decoder=greedy"], label: Greedy, published: sg_cadvlm_qwen72b}
+      - {name: greedy, set: {decoder: greedy}, label: Greedy, published: multimodal_only_qwen72b}
     cross:                              # ... and/or a cross product; names come from the values
-      config: paper/mini_sg_cadvlm.yaml
       over: {decoder.alpha: [0, 0.3, 0.7], seed: [0, 1]}
     cases: [my-cases]                   # optional folders; --cases on the command line wins
     truth: my-truth                     # optional; --truth wins
@@ -19,21 +20,28 @@ import math
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from flows.batch.find_cases import safe_id
-from flows.study import cross_product
+from flows.study import cross_product, study_base
 from sgcad_core import settings
 from sgcad_core.config_faults import unknown
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import nearest
+from sgcad_core.system import extends
 
 STUDIES = settings.CONFIGS / "studies"
+FOLDERS = (STUDIES, settings.CONFIGS)
+EXPECTED = "with `title` and `arms` or `cross`"
 MAX_ARMS = 500
 """More is a slip of the pen: a cross product grows fast."""
+
+
+Overrides = Annotated[tuple[str, ...], BeforeValidator(cross_product.overrides_in)]
+"""Overrides as on the command line, `key=value` each, or a mapping of them."""
 
 
 class _Part(BaseModel):
@@ -45,8 +53,7 @@ class Arm(_Part):
 
     name: str = Field(min_length=1)
     config: str = Field(min_length=1)
-    set: tuple[str, ...] = ()
-    """Overrides as on the command line: key=value."""
+    set: Overrides = ()
     label: str = ""
     """How tables call it; the name if empty."""
     published: str | None = None
@@ -60,8 +67,10 @@ class Cross(_Part):
 
     config: str = ""
     over: dict[str, tuple[Any, ...]] = Field(min_length=1)
-    set: tuple[str, ...] = ()
+    set: Overrides = ()
     """Overrides of every arm, before its own values."""
+    published: dict[str, str] = Field(default_factory=dict)
+    """Name of an arm -> row of the published figures that stands beside it."""
 
     @model_validator(mode="after")
     def _can_be_spread(self) -> Self:
@@ -75,10 +84,11 @@ class Cross(_Part):
         """All combinations, the last key changing fastest."""
         return tuple(
             Arm(
-                name=cross_product.name_of(factors),
+                name=(name := cross_product.name_of(factors)),
                 config=str(factors.get("config", self.config)),
                 set=(*self.set, *cross_product.overrides_of(factors)),
                 label=cross_product.label_of(factors),
+                published=self.published.get(name),
                 factors=factors,
             )
             for factors in cross_product.combinations(self.over)
@@ -89,6 +99,8 @@ class _File(_Part):
     """The file's own shape."""
 
     title: str = Field(min_length=1)
+    config: str = ""
+    """Of arms and of a cross product that name none; they hold it by now."""
     reference: str | None = None
     arms: tuple[Arm, ...] = ()
     cross: Cross | None = None
@@ -98,7 +110,7 @@ class _File(_Part):
 
 @dataclass(frozen=True)
 class Study:
-    """A study file as read, its cross product spread out."""
+    """A study file as read, put on its base, its cross product spread out."""
 
     name: str
     file: Path
@@ -109,25 +121,31 @@ class Study:
     truth: Path | None = None
     faults: tuple[str, ...] = ()
     """What is wrong with the file itself; told together with what is wrong with its arms."""
+    extends: str = ""
+    """The study that this one is written against."""
+
+    def arm(self, name: str) -> Arm:
+        """The arm of this name. Raises ConfigError naming those there are."""
+        names = [arm.name for arm in self.arms]
+        if name not in names:
+            raise ConfigError(f"study {self.name}: no arm {name!r}.{nearest(name, names)} Arms: {', '.join(names)}")
+        return self.arms[names.index(name)]
 
 
 def load_study(path: Path | str) -> Study:
     """Read a study; its faults stand in it. Raises ConfigError where so little is right that no arm can be told."""
     file = find_study(Path(path))
-    try:
-        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError, OSError) as fault:
-        raise ConfigError(f"{file}: cannot be read as YAML: {fault}") from fault
-    if not isinstance(raw, dict):
-        raise ConfigError(f"{file}: expected a mapping with `title` and `arms` or `cross`, found {type(raw).__name__}")
+    raw, base = extends.written_out(file, EXPECTED, FOLDERS, study_base.merged)
+    study_base.give_config(raw)
     parsed, faults = _parsed(raw)
     if parsed is None:
         raise ConfigError(fault_lines(file, faults))
     arms = (*parsed.arms, *(parsed.cross.arms() if parsed.cross else ()))
     faults += _faults(parsed, arms)
     return Study(
-        safe_id(file.stem), file, parsed.title, arms, parsed.reference, parsed.cases, parsed.truth, tuple(faults)
-    )
+        safe_id(file.stem), file, parsed.title, arms, parsed.reference, parsed.cases, parsed.truth, tuple(faults),
+        base.name if base else "",
+    )  # fmt: skip
 
 
 def study_in(path: Path) -> Path | None:
@@ -140,12 +158,18 @@ def study_in(path: Path) -> Path | None:
 
 
 def is_study(file: Path) -> bool:
-    """Whether a YAML has arms or a cross product."""
+    """Whether a YAML, or the base that it extends, has arms or a cross product."""
+    raw = _looked_into(file)
+    base = extends.base_of(file, raw.get(extends.KEY), FOLDERS)
+    return bool({"arms", "cross"} & {*raw, *(_looked_into(base) if base else ())})
+
+
+def _looked_into(file: Path) -> dict[str, Any]:
     try:
         raw = yaml.safe_load(file.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError, OSError):
-        return False
-    return isinstance(raw, dict) and bool({"arms", "cross"} & set(raw))
+        return {}
+    return raw if isinstance(raw, dict) else {}
 
 
 def fault_lines(file: Path, faults: list[str] | tuple[str, ...]) -> str:
@@ -206,4 +230,7 @@ def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
         faults.append(f"reference: no arm is called {parsed.reference!r}; there are: {names}")
     if parsed.cross:
         faults += [f"cross.over.{key}: no values; give a list" for key, v in parsed.cross.over.items() if not v]
+        known = [arm.name for arm in arms]
+        lost = [name for name in parsed.cross.published if name not in known]
+        faults += [f"cross.published.{name}: no arm is called so.{nearest(name, known)}" for name in lost]
     return faults

@@ -8,13 +8,14 @@ import threading
 from pathlib import Path
 
 import pytest
-import yaml
 
 from flows.batch.find_cases import Case
 from flows.case.chain import run_case
+from flows.study.arm_config import load_config
+from flows.study.spec import load_study
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core import settings
-from sgcad_core.config import build, load
+from sgcad_core.config import build
 from sgcad_core.errors import ConfigError, MissingTool
 from tests import transcripts_rivals as said
 from tests.plugins.backbone.test_openai_chat import Server, chat
@@ -179,15 +180,18 @@ def test_a_server_that_never_answers_in_time_stops_the_run_and_says_so(run, serv
 
 
 # ------------------------------------------------------------------ the configs themselves
-RIVALS = sorted(
-    f for f in (settings.CONFIGS / "paper").glob("*.yaml")
-    if any(word in f.stem for word in ("omnitester", "text2scenario", "osm_direct"))
-)  # fmt: skip
+RIVALS = [
+    f"{study.name}/{arm.name}"
+    for study in map(load_study, ("baselines", "baselines_qwen72b", "baselines_llama90b"))
+    for arm in study.arms
+    if any(word in arm.name for word in ("omnitester", "text2scenario", "osm_direct"))
+]
 
 
-@pytest.mark.parametrize("file", RIVALS, ids=lambda f: f.stem)
-def test_every_rivals_config_runs_with_a_script_in_the_models_place(run, file, tmp_path):
-    raw = yaml.safe_load(file.read_text())
+@pytest.mark.parametrize("name", RIVALS)
+def test_every_rivals_config_runs_with_a_script_in_the_models_place(run, name, tmp_path):
+    config = load_config(name)
+    raw = config.raw
     kept = {k: raw[k] for k in ("report_reader", "road_writer", "scenario_writer", "validators", "max_attempts")}
     if folder := raw["road_writer"].get("folder"):
         extract = {"knowledge-town": "town.osm", "knowledge-far": "far_city.osm"}[folder]
@@ -196,12 +200,12 @@ def test_every_rivals_config_runs_with_a_script_in_the_models_place(run, file, t
         kept["road_writer"] = {**raw["road_writer"], "folder": str(tmp_path / folder)}
     if raw["road_writer"].get("form") == "layout":
         pytest.skip("the embedded model answers specs")
-    answers = said.OMNI_GOOD if "omnitester" in file.stem else said.T2S_GOOD
-    result, _ = run(kept, answers if load(file).road_writer.asks_model else None)
+    answers = said.OMNI_GOOD if "omnitester" in name else said.T2S_GOOD
+    result, _ = run(kept, answers if config.road_writer.asks_model else None)
     assert result["status"] == "generated", result["reason"]
 
 
 def test_an_index_that_is_missing_is_named_before_anything_starts(tmp_path):
-    writer = load("paper/osm_direct.yaml", (f"road_writer.folder={tmp_path / 'nowhere'}",)).road_writer
+    writer = load_config("baselines/osm_direct", (f"road_writer.folder={tmp_path / 'nowhere'}",)).road_writer
     with pytest.raises(ConfigError, match=r"no knowledge base in .*nowhere: build it with `sgcad index build"):
         _ = writer.stamp

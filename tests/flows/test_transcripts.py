@@ -13,8 +13,10 @@ import pytest
 
 from flows.batch.find_cases import Case
 from flows.case.chain import run_case
+from flows.study.arm_config import load_config
+from flows.study.spec import load_study
 from sgcad_core import settings
-from sgcad_core.config import build, load
+from sgcad_core.config import build
 from tests import transcripts
 from tests.plugins.backbone.test_openai_chat import Server, chat
 
@@ -124,14 +126,14 @@ def test_the_table_of_a_runs_folder_tells_where_files_failed(run):
     assert row == "| kit | 1 | 0 | 0.0 % | 100.0 % | 100.0 % | 0.0 % | 100.0 % | 0.0 % | 10.0 | parse 3 | - |"
 
 
-PAPER = sorted(f for f in (settings.CONFIGS / "paper").glob("*.yaml") if load(f).road_writer.asks_model)
+STUDIES = ("components_qwen72b", "components_llama90b", "rag_qwen72b", "rag_llama90b")
+PAPER = [f"{study.name}/{arm.name}" for study in map(load_study, STUDIES) for arm in study.arms]
 
 
-@pytest.mark.parametrize("file", PAPER, ids=lambda f: f.stem)
-def test_every_arm_of_the_paper_runs_with_a_script_in_the_models_place(run, file):
-    raw = load(file).raw
-    if raw["road_writer"]["name"] != "plain_xml":
-        pytest.skip("the embedded model answers specs")
+@pytest.mark.parametrize("name", PAPER)
+def test_every_arm_of_the_paper_runs_with_a_script_in_the_models_place(run, name):
+    raw = load_config(name).raw
+    assert raw["road_writer"]["name"] == "plain_xml"
     kept = {k: raw[k] for k in ("report_reader", "road_writer", "scenario_writer", "validators", "max_attempts")}
     result, _ = run(transcripts.GOOD, **kept)
     assert result["status"] == "generated", result["reason"]

@@ -3,8 +3,10 @@
 import json
 
 import pytest
+import yaml
 
 from flows import scaffolding
+from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.registry import KINDS
 from tests.packaging.conftest import ROOT
@@ -28,6 +30,14 @@ def test_a_package_that_is_there_is_left_alone(tmp_path):
     (tmp_path / "sgcad-mine").mkdir()
     with pytest.raises(ConfigError, match="is there already: nothing was written"):
         scaffolding.new("decoder", "mine", tmp_path)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_config_is_the_difference_to_a_bundled_one(tmp_path, kind):
+    scaffolding.new(kind, "mine", tmp_path)
+    told = yaml.safe_load((tmp_path / "sgcad-mine" / "mine.yaml").read_text())
+    assert (settings.CONFIGS / told["extends"]).is_file()
+    assert "mine" in str(told.get(kind, told.get("validators"))) or kind == "driver"
 
 
 @pytest.mark.slow

@@ -60,7 +60,7 @@ def test_it_is_the_wheel_that_runs_and_not_the_checkout(installed):
 
 
 @pytest.mark.parametrize(
-    "name", ["template.yaml", "mini.yaml", "paper/osm_direct.yaml", "paper/qwen72b_omnitester.yaml"]
+    "name", ["template.yaml", "mini_text_only.yaml", "baselines/osm_direct", "baselines_qwen72b/omnitester"]
 )
 def test_every_kind_of_config_is_there(installed, name):
     bin_, empty = installed
@@ -75,7 +75,7 @@ def test_a_study_is_there(installed):
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("config", ["template.yaml", "mini_greedy.yaml", "paper/text2scenario_rules.yaml"])
+@pytest.mark.parametrize("config", ["template.yaml", "mini_no_contrast.yaml", "baselines/text2scenario_rules"])
 def test_a_report_becomes_a_scenario(installed, config):
     bin_, empty = installed
     (empty / "report.txt").write_bytes(REPORT.read_bytes())

@@ -7,13 +7,13 @@ import re
 from pathlib import Path
 
 import pytest
-import yaml
 from rich.console import Console
 
 from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
 from flows.results.published import publication
 from flows.results.refusal import counts
+from flows.study.spec import load_study
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
@@ -196,8 +196,8 @@ def test_every_measure_has_one_name():
 
 @pytest.mark.parametrize("file", sorted((settings.CONFIGS / "studies").glob("*.yaml")), ids=lambda f: f.stem)
 def test_every_study_names_rows_that_are_published(file):
-    for arm in yaml.safe_load(file.read_text()).get("arms") or ():
-        publication().row(arm.get("published"))
+    for arm in load_study(file).arms:
+        publication().row(arm.published)
 
 
 def test_a_study_that_has_not_begun_has_no_tables_and_says_so(tables):

@@ -32,6 +32,21 @@ def test_orchestration_is_told_a_case_and_as_a_share(made):
     assert cost_line(made, Cost(0, 1.25)) == "all cached: 1.2 s"
 
 
+@pytest.mark.parametrize(
+    ("named", "told"),
+    [
+        ("mini_no_contrast.yaml", "mini_no_contrast: fine; extends mini.yaml; seed 42"),
+        ("paper/llama90b_sg_cadvlm", "extends paper/qwen72b_sg_cadvlm.yaml"),
+        ("alpha_llama90b", "Llama-3.2-90B; 7 arms; extends alpha_qwen72b.yaml"),
+        ("rag_qwen72b/no_rag", "rag_qwen72b-no_rag: fine; extends paper/qwen72b_sg_cadvlm.yaml"),
+    ],
+)
+def test_check_tells_what_a_config_or_study_extends(named, told):
+    said = CliRunner().invoke(app, ["check", named])
+    assert said.exit_code == 0
+    assert told in said.output
+
+
 def test_check_names_the_arms_of_a_study():
     said = CliRunner().invoke(app, ["check", "refinement"])
     assert said.exit_code == 0
