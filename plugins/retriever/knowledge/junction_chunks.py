@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from plugins.retriever.knowledge.chunk import Chunk
-from plugins.retriever.knowledge.junctions.cutting import Cut, cut
-from plugins.retriever.knowledge.junctions.osm import plain_of
-from plugins.retriever.knowledge.junctions.plain_graph import PlainGraph, read_plain
+from plugins.retriever.knowledge.junction_cut import Cut, cut
+from plugins.retriever.knowledge.osm_extract import plain_of
+from plugins.retriever.knowledge.plain_graph import PlainGraph, read_plain
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.roads.junction_words import JunctionLeg, describe, marks

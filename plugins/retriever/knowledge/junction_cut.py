@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from plugins.retriever.knowledge.junctions.plain_graph import PlainEdge, PlainGraph, Point
+from plugins.retriever.knowledge.plain_graph import PlainEdge, PlainGraph, Point
 from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput
 
