@@ -58,7 +58,7 @@ class Running:
 
     def answer(self, call: Call) -> tuple[Generation, tuple[int, ...]]:
         """The generation and its token ids. Raises the project's errors, see `HfVision.generate`."""
-        from plugins.backbone.engine import records
+        from plugins.backbone.engine import faults, records
 
         try:
             grammar = self._grammar(call.schema)
@@ -76,20 +76,20 @@ class Running:
                 views=views,
             )
             found = self.engine.generate(request)
-        except records.DoesNotFit as fault:
+        except faults.DoesNotFit as fault:
             finding = Finding(
                 source="backbone", what=str(fault), where=fault.path, remedy="answer shorter, or raise max_new_tokens"
             )
             raise InvalidOutput(f"{fault} (at {fault.path})", [finding]) from fault
-        except records.BadLogits as fault:
+        except faults.BadLogits as fault:
             raise InvalidOutput(f"{self.name}: {fault}; try dtype bfloat16 or float32") from fault
-        except records.BadScores as fault:
+        except faults.BadScores as fault:
             raise InvalidOutput(f"{self.name}: {fault}; mend the decoder") from fault
-        except records.TooLong as fault:
+        except faults.TooLong as fault:
             raise BadInput(f"{self.name}: {fault}; set backbone.truncate, or lower backbone.max_new_tokens") from fault
-        except records.TooBig as fault:
+        except faults.TooBig as fault:
             raise ConfigError(f"{self.name}: {fault}; use quantization, device_map or a smaller model") from fault
-        except records.EngineFault as fault:
+        except faults.EngineFault as fault:
             raise ConfigError(f"{self.name}: {fault}") from fault
         computed = f"computed in {str(self.engine.model.dtype).removeprefix('torch.')}"
         return self._generation(found, [*self.prompter.notes, *note, computed]), tuple(found.ids)
@@ -216,9 +216,9 @@ def start(
     """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
     from plugins.backbone.engine.check import batching
     from plugins.backbone.engine.families import family_of
+    from plugins.backbone.engine.faults import EngineFault
     from plugins.backbone.engine.grammar import GrammarMaker
     from plugins.backbone.engine.loop import Engine
-    from plugins.backbone.engine.records import EngineFault
     from plugins.backbone.hf_load import load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 

@@ -7,6 +7,7 @@ Text models work too; they see no diagrams. Needs no torchvision.
 from __future__ import annotations
 
 import hashlib
+import re
 import threading
 from collections import OrderedDict
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from plugins.backbone import hf_gguf, hf_run, hf_size
+from plugins.backbone import hf_gguf, hf_run
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
@@ -23,6 +24,10 @@ from sgcad_core.interfaces import Backbone, Decoder
 _KEPT_ANSWERS = 256
 _WHOLE_BYTES = 1 << 24
 """Files up to here are read whole for the fingerprint; of larger ones as much of either end."""
+BYTES = {"float32": 4.0, "bfloat16": 2.0, "float16": 2.0, "native": 2.0, "auto": 2.0}
+QUANTIZED = {"int8": 1.1, "int4": 0.62}
+"""Bytes a parameter; what is kept in 16 bits (embeddings, norms, the vision tower) adds to a byte and a half byte."""
+_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 
 
 class HfVision(Backbone):
@@ -82,7 +87,7 @@ class HfVision(Backbone):
         """By the folder's files, else by the number of parameters in the name."""
         place = Path(self.model)
         folder = place if place.is_dir() else settings.ROOT / self.model
-        return hf_size.weights_gb(folder, self.model, self.dtype, self.quantization)
+        return weights_gb(folder, self.model, self.dtype, self.quantization)
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answer a query; blocks until the loop has it.
@@ -151,3 +156,17 @@ def folder_stamp(model: str) -> str:
                 opened.seek(max(0, size - _WHOLE_BYTES))
                 found.update(opened.read())
     return found.hexdigest()[:16] if folder else ""
+
+
+def weights_gb(folder: Path, name: str, dtype: str, quantization: str) -> float | None:
+    """Decimal gigabytes of weights in memory; None where neither a folder nor the name tells.
+
+    A folder's files are taken as stored in 16 bits unless its weights are asked for as they are ("auto").
+    """
+    per_parameter = QUANTIZED.get(quantization, BYTES.get(dtype, 2.0))
+    stored = sum(file.stat().st_size for file in folder.glob("*.safetensors")) if folder.is_dir() else 0
+    if stored:
+        as_stored = dtype == "auto" and quantization == "none"
+        return stored / 1e9 * (1.0 if as_stored else per_parameter / 2.0)
+    found = _BILLIONS.findall(Path(name).name)
+    return float(found[-1]) * per_parameter if found else None

@@ -14,7 +14,8 @@ import torch
 from torch import Tensor
 
 from plugins.backbone.engine.families import Beside, Family, raw_inputs
-from plugins.backbone.engine.records import Picture, Prompt, WrongBatch
+from plugins.backbone.engine.faults import WrongBatch
+from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.engine.runner import Runner
 
 _BEHIND = (3, 1, 1)

@@ -19,7 +19,8 @@ from weakref import WeakKeyDictionary
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.records import Picture, Prompt, TooLong
+from plugins.backbone.engine.faults import TooLong
+from plugins.backbone.engine.records import Picture, Prompt
 
 _KEPT_PICTURES = 64
 Positions = Tensor

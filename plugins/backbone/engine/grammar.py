@@ -17,7 +17,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from plugins.backbone.engine.records import DoesNotFit
+from plugins.backbone.engine.faults import DoesNotFit
 
 Mask = NDArray[np.int32]
 """(rows, words): bit t of a row set if token t may come next."""

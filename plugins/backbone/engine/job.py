@@ -15,11 +15,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 
-from plugins.backbone.engine.draft import Draft
+from plugins.backbone.engine.faults import DoesNotFit
 from plugins.backbone.engine.grammar import Mask, Track
-from plugins.backbone.engine.records import Answer, DoesNotFit, Request
+from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Row
 from sgcad_core.asking.json_field_spans import open_path
+
+_LONGEST_GUESS = 64
+_SHORTEST_GUESS = 2
+_CLUE = 3
+"""How many tokens must agree before the place in the earlier answer counts as found."""
 
 
 @dataclass
@@ -229,3 +234,41 @@ class Job:
         self.answer.prompt_tokens = sum(len(row.prompt.ids) for row in self.rows)
         self.answer.reused_tokens = sum(row.reused for row in self.rows)
         self.answer.seconds = max(time.perf_counter() - self.started, 1e-9)
+
+
+class Draft:
+    """Guesses at the next tokens, taken from an earlier answer of which a repair repeats most.
+
+    Guessed tokens are fed together and kept as far as the decoder picks the same ones: they change the speed and never
+    the answer. Follows one place in the earlier answer.
+    """
+
+    def __init__(self, earlier: Sequence[int]) -> None:
+        self.earlier = list(earlier)
+        self.at = 0
+        self.length = 16
+        self.recent: list[int] = []
+
+    def guess(self, limit: int) -> list[int]:
+        """The next tokens, at most `limit`."""
+        return self.earlier[self.at : self.at + min(self.length, max(0, limit))]
+
+    def note(self, token: int) -> None:
+        """A token of the new answer: follow it, or look for the place anew after a difference."""
+        self.recent = [*self.recent[-(_CLUE - 1) :], token]
+        if self.at < len(self.earlier) and self.earlier[self.at] == token:
+            self.at += 1
+        else:
+            self.at = self._found() or min(self.at + 1, len(self.earlier))
+
+    def judge(self, guessed: int, right: int) -> None:
+        """Guess further after success, less far after failure."""
+        if guessed:
+            self.length = min(2 * self.length, _LONGEST_GUESS) if right == guessed else max(right + 1, _SHORTEST_GUESS)
+
+    def _found(self) -> int | None:
+        """Behind the occurrence of the last tokens that is nearest to the present place."""
+        if len(self.recent) < _CLUE:
+            return None
+        ends = [i + _CLUE for i in range(len(self.earlier) - _CLUE + 1) if self.earlier[i : i + _CLUE] == self.recent]
+        return min(ends, key=lambda end: abs(end - self.at), default=None)

@@ -18,9 +18,9 @@ from typing import Any
 import torch
 
 from plugins.backbone.engine.families import Family, window_of
+from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, TooLong, tried
 from plugins.backbone.engine.job import Job
-from plugins.backbone.engine.memory import tried
-from plugins.backbone.engine.records import Answer, BadLogits, EngineFault, Request, TooBig, TooLong
+from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Runner
 from plugins.backbone.engine.scoring import Heard, averaged, heard
 

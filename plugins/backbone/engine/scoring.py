@@ -14,10 +14,9 @@ from functools import partial
 import torch
 from torch import Tensor
 
+from plugins.backbone.engine.faults import BadLogits, BadScores, TooBig, tried
 from plugins.backbone.engine.grammar import Mask, allowed, choices, only
 from plugins.backbone.engine.job import Job, Said
-from plugins.backbone.engine.memory import tried
-from plugins.backbone.engine.records import BadLogits, BadScores, TooBig
 
 NEVER = float("-inf")
 _BLOCK = 8

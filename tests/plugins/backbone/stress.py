@@ -15,9 +15,10 @@ import sys
 from collections import Counter
 from typing import Any
 
+from plugins.backbone.engine.faults import DoesNotFit
 from plugins.backbone.engine.grammar import Grammar, GrammarMaker
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import DoesNotFit, Prompt, Request
+from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy

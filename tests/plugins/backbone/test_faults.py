@@ -11,9 +11,10 @@ import torch
 import transformers as tf
 
 from plugins.backbone.engine.families import Family, family_of
+from plugins.backbone.engine.faults import BadLogits, BadScores, EngineFault, TooBig
 from plugins.backbone.engine.grammar import Grammar, GrammarMaker, Track
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import Answer, BadLogits, BadScores, EngineFault, Prompt, Request, TooBig
+from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from plugins.decoder.nucleus import Nucleus

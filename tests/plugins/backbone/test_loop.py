@@ -11,9 +11,10 @@ import transformers as tf
 
 from plugins.backbone.engine.check import batching
 from plugins.backbone.engine.families import Family, family_of
+from plugins.backbone.engine.faults import DoesNotFit, EngineFault, TooBig, TooLong, WrongBatch
 from plugins.backbone.engine.grammar import GrammarMaker
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import DoesNotFit, EngineFault, Prompt, Request, TooBig, TooLong, WrongBatch
+from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from sgcad_core.interfaces import Decoder

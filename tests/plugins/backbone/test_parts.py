@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plugins.backbone.engine.cache import SlotCache, Window
-from plugins.backbone.engine.draft import Draft
+from plugins.backbone.engine.faults import DoesNotFit
 from plugins.backbone.engine.grammar import GrammarMaker, allowed, choices, collisions, only
+from plugins.backbone.engine.job import Draft
 from plugins.backbone.engine.prefix import SHORTEST, PrefixStore, prompt_key
-from plugins.backbone.engine.records import DoesNotFit
 from tests.plugins.backbone import tiny
 
 torch.set_num_threads(1)
