@@ -7,7 +7,7 @@ model, no cache, no grammar: the backbone masks `scores` with the grammar before
 from __future__ import annotations
 
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field
 
@@ -38,6 +38,24 @@ class Sampled(Decoder):
     def draw(self, scores: Any, generator: Any) -> Any:
         """One token a row from masked logits (rows, vocabulary); see `sample`."""
         return sample(scores, self.temperature, self.top_p, generator)
+
+
+class FixedContrast(Sampled):
+    """A decoder that contrasts the two rows with the same alpha at every token."""
+
+    needs_prior: ClassVar[bool] = True
+    alpha: float = Field(0.7, ge=0.0, le=10.0)
+    beta: float = Field(0.0, ge=0.0, lt=1.0, description="plausibility: p >= beta * max p with context; 0 = off")
+
+    def reads_prior(self) -> bool:
+        """False at alpha 0, which is the row with context alone: the second row is then not run."""
+        return self.alpha > 0.0
+
+    def scores(self, with_context: Any, without_context: Any | None) -> Any:
+        """Contrast, then plausibility; rows (rows, vocabulary) in, the same shape out."""
+        if self.alpha == 0.0:
+            return plausible_only(with_context, with_context, self.beta)
+        return plausible_only(contrast(with_context, without_context, self.alpha), with_context, self.beta)
 
 
 def sample(scores: Tensor, temperature: float, top_p: float, generator: Any) -> Tensor:

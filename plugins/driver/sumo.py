@@ -15,7 +15,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plugins.driver._sumo_orders import Begin, End, Habits, Mover, Place, Step
+from plugins.driver._sumo_messages import Begin, End, Habits, Mover, Place, Step
 from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -32,7 +32,7 @@ _IN_THE_WAY_M = 0.2
 @functools.cache
 def _worker() -> Worker:
     """One SUMO process for all drives of this process: its start is what costs."""
-    return Worker("plugins.driver._sumo_traffic:obey")
+    return Worker("plugins.driver._sumo_worker:obey")
 
 
 class Sumo(Driver):
@@ -61,11 +61,6 @@ class Sumo(Driver):
         )
         _worker().call(Begin(task.net_xml, _place(task.ego), route, habits), timeout_s=self.timeout_s)
         return _Seat(self, task, graph)
-
-    @property
-    def _habits(self) -> Habits:
-        braking = self.braking_mps2, self.hardest_mps2
-        return Habits(self.model, self.acceleration_mps2, *braking, self.headway_s, self.gap_m)
 
 
 class _Seat(Seat):

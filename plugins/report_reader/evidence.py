@@ -34,38 +34,10 @@ UNREADABLE = (
     RuntimeError, MemoryError, struct.error, zlib.error,
 )  # fmt: skip
 """What Pillow and pypdf raise for broken files, beside errors of their own: the file is at fault, not the program."""
-_FUNCTION_WORDS = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "of",
-        "in",
-        "on",
-        "at",
-        "to",
-        "and",
-        "was",
-        "were",
-        "is",
-        "it",
-        "that",
-        "by",
-        "with",
-        "for",
-        "from",
-        "as",
-        "this",
-        "which",
-        "had",
-        "not",
-        "no",
-        "has",
-        "be",
-        "or",
-        "both",
-    ]
-)
+_FUNCTION_WORDS = frozenset((
+    "the", "a", "an", "of", "in", "on", "at", "to", "and", "was", "were", "is", "it", "that", "by", "with", "for",
+    "from", "as", "this", "which", "had", "not", "no", "has", "be", "or", "both",
+))  # fmt: skip
 
 
 class EvidenceReader(ReportReader, ABC):

@@ -17,7 +17,6 @@ from pydantic import Field, PrivateAttr
 from plugins.retriever.knowledge.chunk import KINDS, TASKS, Chunk, Kind, Task
 from plugins.retriever.knowledge.embedders import Embedder, Name, make
 from plugins.retriever.knowledge.manifest import Manifest, read_manifest
-from plugins.retriever.knowledge.topics import topics
 from sgcad_core.case.records import Passage
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Retriever
@@ -26,6 +25,29 @@ if TYPE_CHECKING:
     from plugins.retriever.knowledge.search import Hit, Index
     from plugins.retriever.knowledge.sources import OnSkip
     from plugins.retriever.knowledge.store import Progress
+
+TOPICS: dict[tuple[Kind, Task], tuple[str, ...]] = {
+    ("xml", "road"): (
+        "edge of a road: numLanes, speed, priority, shape, from node, to node",
+        "node of a junction: x, y, type priority traffic_light priority_stop",
+        "connection from edge to edge, fromLane, toLane",
+    ),
+    ("xml", "scenario"): (
+        "vehicle with depart, departLane, departPos, departSpeed and route",
+        "vType length width minGap tau decel junction model ignore foe",
+        "route edges",
+    ),
+    ("api", "scenario"): (
+        "xosc.FollowTrajectoryAction with a trajectory",
+        "xosc.Trajectory and xosc.Polyline with times and positions",
+        "xosc.Vehicle name vehicle_type boundingbox frontaxle rearaxle",
+        "xosc.TeleportAction in Init",
+        "xosc.StoryBoard, Story, Act, ManeuverGroup, Event with a trigger",
+    ),
+    ("snippet", "scenario"): ("drive along a timed trajectory of world positions", "a whole scenario of two vehicles"),
+}
+"""Queries beside the narrative, most needed first. A writer of XML or Python needs these pieces for every crash, but a
+narrative says "vehicle" and "lane" in every sentence and never "trajectory" or "connection"."""
 
 
 class LanceDB(Retriever):
@@ -62,7 +84,7 @@ class LanceDB(Retriever):
 
     def _of_kind(self, text: str, kind: Kind, task: Task) -> list[Hit]:
         """The best of one kind. Of a language's pieces: those of the task's own topics in turn, then the text's."""
-        asked = (*topics(kind, task), text)
+        asked = (*TOPICS.get((kind, task), ()), text)
         lists = [self.search(words, self.per_kind, (kind,), task) for words in asked]
         in_turn = (hit for rank in zip_longest(*lists) for hit in rank if hit is not None)
         return list({hit.id: hit for hit in in_turn}.values())[: self.per_kind]

@@ -10,12 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from plugins.road_writer._maps import compiled, library, nearest
+from plugins.road_writer._map_search import compiled, library, nearest
+from plugins.road_writer._told_layout import told_layout
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
-from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
-from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 
 
 class MapLibrary(RoadWriter):
@@ -30,9 +28,5 @@ class MapLibrary(RoadWriter):
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
         """Choose, turn, compile. Raises Refused on a text without a crash, ConfigError for a folder without maps."""
-        facts = context.reading.roads
-        if not facts.crash.vehicles and not facts.roads:
-            missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
-            raise Refused("the narrative names neither a vehicle nor a road", missing)
-        refuse_unsupported(facts.junction.unsupported)
-        return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))
+        wanted = told_layout(context)
+        return compiled(*nearest(library(self.folder), wanted))

@@ -11,10 +11,11 @@ import json
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar, Literal, cast
+from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
+from plugins.road_writer._told_layout import Embedder, junction_index
 from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
 from sgcad_core.asking.case_cache import OncePerCase
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
@@ -22,7 +23,6 @@ from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwor
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.records.specs import Spec
-from sgcad_core.registry import plugin_class
 
 
 class RoadInterpretation(Spec):
@@ -39,7 +39,7 @@ class OmnitesterRoad(RoadWriter):
     form: Literal["envelope", "fenced"] = "fenced"
     folder: Path | None = None
     """An index of real junctions (`sgcad index build EXTRACT --out FOLDER`); none: nothing is retrieved."""
-    embedder: Literal["none", "minilm", "sentence_transformers", "openai"] = "none"
+    embedder: Embedder = "none"
     model: str = ""
     base_url: str = ""
     junctions: int = Field(2, ge=1, le=5)
@@ -73,9 +73,7 @@ class OmnitesterRoad(RoadWriter):
     def _retriever(self) -> Retriever | None:
         if self.folder is None:
             return None
-        fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
-        kinds = {"kinds": ("junction",), "per_kind": self.junctions}
-        return cast("Retriever", plugin_class("retriever", "lancedb")(**fields, **kinds))
+        return junction_index(self.folder, self.embedder, self.model, self.base_url, self.junctions)
 
 
 def _interpret(context: Context, ask: Ask, attempt: int) -> RoadInterpretation:

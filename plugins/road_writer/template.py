@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from plugins.road_writer._told_layout import no_crash
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.netconvert import compile_network
@@ -52,10 +53,7 @@ class Template(RoadWriter):
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
         if not (facts.crash.vehicles or facts.roads or _CRASH_WORDS.search(narrative)):
-            raise Refused(
-                "the narrative names neither a vehicle nor a road",
-                ["the road or junction of the crash", "the vehicles and how they traveled"],
-            )
+            raise no_crash()
         refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         layout = layout_of_facts(facts, defaults)

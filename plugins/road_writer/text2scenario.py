@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from plugins.road_writer._maps import compiled, library, nearest
+from plugins.road_writer._map_search import compiled, library, nearest
 from sgcad_core import kinds
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork

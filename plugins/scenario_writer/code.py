@@ -11,8 +11,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from plugins.scenario_writer.api import nearest_entry
-from plugins.scenario_writer.lanes import lane_lines
+from plugins.scenario_writer._api_hint import nearest_entry
+from plugins.scenario_writer._network_words import lane_lines
 from plugins.scenario_writer.sandbox.outside import Fault, Limits, run_script
 from sgcad_core.asking.fenced_blocks import fenced_blocks
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer

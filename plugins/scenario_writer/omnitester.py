@@ -12,8 +12,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
+from plugins.scenario_writer._network_words import edge_lines
 from plugins.scenario_writer.code import CodedActor, Declaration
-from plugins.scenario_writer.edges import edge_lines
 from sgcad_core.asking.case_cache import OncePerCase
 from sgcad_core.asking.fenced_blocks import xml_document
 from sgcad_core.asking.prompts import MAX_ANSWER, answer_schema, load_prompt, parse_answer

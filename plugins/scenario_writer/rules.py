@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
+from plugins.scenario_writer._planned import PlannedWriter, roads_of
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario
-from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.plan_score import least_doubted
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
-from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import Reading
@@ -24,15 +22,12 @@ from sgcad_core.reading.reading_with_edits import holds
 from sgcad_core.records.specs import RoadSpec
 
 
-class Rules(ScenarioWriter):
+class Rules(PlannedWriter):
     """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "3"
-    openscenario: Version = DEFAULT_VERSION
-    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
-    encoding: Encoding = DEFAULT_ENCODING
-    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
+
     try_others: bool = True
     """Plan readings that differ in one weak fact where our own checks doubt the first, and keep the least doubted."""
 
@@ -46,7 +41,7 @@ class Rules(ScenarioWriter):
         network: RoadNetwork,
     ) -> Scenario:
         """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
-        spec = network.spec or _read_back(network)
+        spec = roads_of(network)
         reading = context.reading
         scenario = self._compiled(reading.crash, spec, network, reading)
         said: list[str] = []
@@ -71,13 +66,6 @@ class Rules(ScenarioWriter):
             courses=facts.courses,
             signals=reading.signals,
         )
-
-
-def _read_back(network: RoadNetwork) -> RoadSpec:
-    """The roads of a network that was drawn from no spec."""
-    if network.net_xml is None:
-        raise InvalidOutput("the road network has no net.xml: no road to place an actor on")
-    return spec_of_graph(parse_net(network.net_xml))
 
 
 def _inferred(facts: CrashFacts) -> Iterator[str]:

@@ -10,19 +10,19 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from plugins.scenario_writer._planned import PlannedWriter
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
-from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import as_read
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.roads.describe import describe_network, road_ids
 
 
-class SpecScenario(ScenarioWriter):
+class SpecScenario(PlannedWriter):
     """Asks for a `BehaviorSpec` whose roads are those of the network."""
 
     asks_model: ClassVar[bool] = True
@@ -33,11 +33,6 @@ class SpecScenario(ScenarioWriter):
 
     near_crashes: bool = False
     """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
-
-    openscenario: Version = DEFAULT_VERSION
-    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
-    encoding: Encoding = DEFAULT_ENCODING
-    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,

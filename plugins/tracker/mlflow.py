@@ -5,21 +5,25 @@ Knows the run folder and result.json; no plugin of another kind. docs/mlflow.md 
 
 from __future__ import annotations
 
+import hashlib
+import json
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field, PrivateAttr
 
-from plugins.tracker import mlflow_ready
-from plugins.tracker.figures import attempt_figures, case_figures, means, parameters
+from plugins.tracker import mlflow_database
+from plugins.tracker.figures import attempt_figures, case_figures, means, numbers, parameters
 from plugins.tracker.headline import arm_note, case_note, experiment_note, headline, prefect_links
-from plugins.tracker.mlflow_store import CONFIG, NOTE, Parent, Store, store_of
+from plugins.tracker.mlflow_store import CONFIG, LEVEL, MAX_VALUE, NOTE, Parent, Store, plain, source_tags, store_of
 from sgcad_core.case.records import Generation, Query
 from sgcad_core.case.tracker_arm import Arm
 from sgcad_core.interfaces import Tracker
 
+LOG, LINES = "sgcad.log", "sgcad.lines"
+"""Tags of a training run: the key of its log, and how many lines of it are logged."""
 UPDATE_S, UPDATE_SHARE = 10.0, 0.02
 """Means are brought up to date this often at most, and in at most this share of the time."""
 
@@ -38,7 +42,7 @@ class MlflowTracker(Tracker):
 
     def ready(self, out: Path) -> None:
         """Look whether the database or server can be logged to. Raises ConfigError within some 20 s."""
-        mlflow_ready.check(self._address(out))
+        mlflow_database.check(self._address(out))
 
     def begin(self, arm: Arm) -> None:
         """Open the arm's parent run, with the data set, plugin versions, commit and hardware."""
@@ -110,8 +114,6 @@ class MlflowTracker(Tracker):
 
     def log_training(self, name: str, params: dict[str, Any], lines: Sequence[Mapping[str, Any]]) -> int:
         """One run a training, one step a line that has a "step"; lines that are there already are passed over."""
-        from plugins.tracker.mlflow_training import log_training
-
         return log_training(self._store(Path()), name, parameters(params), lines)
 
     def _store(self, out: Path) -> Store:
@@ -160,8 +162,6 @@ def _repository(address: str, uri: str) -> Any:
 
 
 def _dataset(arm: Arm) -> dict[str, str]:
-    import json
-
     return {
         "name": arm.dataset.name,
         "digest": arm.dataset.digest[:16],
@@ -197,3 +197,45 @@ def _span(store: Store, run: str, case: str, query: Query, generation: Generatio
         start_time_ns=end - int(generation.seconds * 1e9),
     )
     span.end(outputs={"text": generation.text, "grounding": dict(generation.grounding)}, end_time_ns=end)
+
+
+# ------------------------------------------------------------------ training logs
+def log_training(store: Store, name: str, params: Mapping[str, str], lines: Sequence[Mapping[str, Any]]) -> int:
+    """Log the lines that the run does not have; how many. 0 where the log has no step yet."""
+    first = next((line for line in lines if "step" in line), None)
+    if first is None:
+        return 0
+    key = hashlib.sha256(json.dumps([name, first], sort_keys=True).encode()).hexdigest()[:16]
+    run = store.run_tagged(LOG, key) or _made(store, name, key, lines)
+    found = store.client.get_run(run)
+    done = int(found.data.tags.get(LINES, 0))
+    if done < len(lines):
+        fresh = {k: v for k, v in params.items() if plain(k) not in found.data.params}
+        store.log(run, {}, fresh)
+        store.client.log_batch(run, metrics=list(_metrics(lines[done:], found.info.start_time)))
+        for number, line in enumerate(lines[done:], done):
+            if "event" in line:
+                told = ", ".join(f"{k} {v}" for k, v in line.items() if k != "event")
+                store.client.set_tag(run, f"event.{number}", f"{line['event']}: {told}"[:MAX_VALUE])
+        store.client.set_tag(run, LINES, str(len(lines)))
+        store.client.set_terminated(run)
+    return max(0, len(lines) - done)
+
+
+def _made(store: Store, name: str, key: str, lines: Sequence[Mapping[str, Any]]) -> str:
+    """A run that began when its log says: now less the seconds of its last line."""
+    spent = max((float(line.get("seconds", 0.0)) for line in lines), default=0.0)
+    tags = {LOG: key, LEVEL: "training", **source_tags()}
+    started = int((time.time() - spent) * 1000)
+    made = store.client.create_run(store.experiment_id, run_name=name, tags=tags, start_time=started)
+    return str(made.info.run_id)
+
+
+def _metrics(lines: Sequence[Mapping[str, Any]], began_ms: int) -> Iterator[Any]:
+    from mlflow.entities import Metric
+
+    for line in lines:
+        if "step" in line:
+            at = began_ms + int(float(line.get("seconds", 0.0)) * 1000)
+            for name, value in numbers({k: v for k, v in line.items() if k != "step"}).items():
+                yield Metric(plain(name), value, at, int(line["step"]))

@@ -19,17 +19,16 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-from plugins.tracker import mlflow_ready
-from plugins.tracker.mlflow_database import make_database
-from plugins.tracker.mlflow_ready import ELSEWHERE
+from plugins.tracker import mlflow_database
+from plugins.tracker.mlflow_database import ELSEWHERE, make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.system.locks import alone
 
 MAX_VALUE = 500
 """Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
-MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 50
-"""MLflow's limits of a batch, and of a page of runs."""
+MAX_RUNS = 50
+"""Runs that are read at a time."""
 LEVEL, CASE, CONFIG, BATCH, PARENT = "sgcad.level", "sgcad.case", "sgcad.config", "sgcad.batch", "mlflow.parentRunId"
 """Tags that runs are found by; the last one is what MLflow's pages nest runs by."""
 
@@ -75,10 +74,10 @@ class Store:
             client.get_experiment("0")
         except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
             if self._file and isinstance(fault, OSError | SQLAlchemyError):
-                mlflow_ready.check_file(self._file)  # says it in plain words, if it finds it too
+                mlflow_database.check_file(self._file)  # says it in plain words, if it finds it too
             place = self._file or _no_password(self.uri)
-            if mlflow_ready.is_full(fault):
-                raise ConfigError(f"{place}: {mlflow_ready.reason(fault)}; make room, {ELSEWHERE}") from fault
+            if mlflow_database.is_full(fault):
+                raise ConfigError(f"{place}: {mlflow_database.reason(fault)}; make room, {ELSEWHERE}") from fault
             raise ConfigError(
                 f"{place}: cannot be used as MLflow's database ({_first_line(fault)}); move it away, {ELSEWHERE}"
             ) from fault
@@ -93,7 +92,7 @@ class Store:
             return ""
         with (
             contextlib.suppress(sqlite3.Error),
-            contextlib.closing(sqlite3.connect(self._file, timeout=mlflow_ready.LOCKED_S)) as found,
+            contextlib.closing(sqlite3.connect(self._file, timeout=mlflow_database.LOCKED_S)) as found,
         ):
             asked = "SELECT experiment_id, creation_time FROM experiments WHERE name = ?"
             row = found.execute(asked, (self.experiment,)).fetchone()
@@ -160,11 +159,8 @@ class Store:
         now = int(time.time() * 1000)
         metrics = [Metric(plain(k), v, now, step) for step, figures in steps.items() for k, v in figures.items()]
         entries = [Param(plain(name), value[:MAX_VALUE]) for name, value in (params or {}).items()]
-        while metrics or entries:
-            part = entries[:MAX_PARAMS]
-            room = MAX_METRICS - len(part)
-            self.client.log_batch(run, metrics=metrics[:room], params=part)
-            metrics, entries = metrics[room:], entries[MAX_PARAMS:]
+        if metrics or entries:
+            self.client.log_batch(run, metrics=metrics, params=entries)
 
     def tag(self, run: str, tags: Mapping[str, str]) -> None:
         """Set tags of a run."""

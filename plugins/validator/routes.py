@@ -14,7 +14,7 @@ from sgcad_core.system.worker_process import Worker
 
 _finding = Finder(SOURCE, where="routes")
 
-_WORKER = Worker("plugins.validator._sumo_routes:trial")
+_WORKER = Worker("plugins.validator._sumo_worker:trial")
 
 
 class Routes(Validator):
