@@ -24,7 +24,7 @@ from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
 from sgcad_core.system.digest import file_sha256
 
-TOLD = "told.safetensors"
+HEADS_FILE = "told.safetensors"
 Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
 """A picture in one of its views (0: as it is) to the tensors of the model's arguments, and what else the processor says
 of it."""
@@ -38,7 +38,7 @@ class Loaded:
     tokenizer: Any
     template: str | None
     prepare: Prepare | None
-    told: Mapping[str, torch.Tensor] = field(default_factory=dict)
+    evidence_heads: Mapping[str, torch.Tensor] = field(default_factory=dict)
     """Heads (hidden + 1,) by the names of fields ("legs.lanes_in"), the constant last: the log-odds that the evidence
     tells the value of such a field, from the state before its first token. Empty for a model that has none."""
 
@@ -69,7 +69,7 @@ def load(
     model.eval()
     sees = hasattr(model.config, "vision_config")
     prepare = _prepare(place, revision) if sees else None
-    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _told(place, model))
+    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
 
 
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
@@ -121,9 +121,9 @@ def _model(place: str, revision: str | None, options: dict[str, Any], quantizati
         raise _not_loaded(place, fault) from fault
 
 
-def _told(place: str, model: Any) -> dict[str, torch.Tensor]:
+def _evidence_heads(place: str, model: Any) -> dict[str, torch.Tensor]:
     """The heads that stand beside a folder's weights, if there are some."""
-    file = Path(place) / TOLD
+    file = Path(place) / HEADS_FILE
     if not file.is_file():
         return {}
     size = model.get_output_embeddings().weight.shape[1] + 1
@@ -181,11 +181,13 @@ def _prepare(place: str, revision: str | None) -> Prepare:
     except (OSError, ValueError) as fault:
         raise _not_loaded(place, fault) from fault
     if type(processor).__name__.startswith(("Idefics3", "SmolVLM")):
-        return lambda picture, view: processor([[moved(picture, view)]], return_tensors="pt", return_row_col_info=True)
-    return lambda picture, view: processor([moved(picture, view)], return_tensors="pt")
+        return lambda picture, view: processor(
+            [[shifted_view(picture, view)]], return_tensors="pt", return_row_col_info=True
+        )
+    return lambda picture, view: processor([shifted_view(picture, view)], return_tensors="pt")
 
 
-def moved(picture: Image.Image, view: int) -> Image.Image:
+def shifted_view(picture: Image.Image, view: int) -> Image.Image:
     """A picture on a white sheet a little larger, lying elsewhere in every view; view 0 is the picture itself."""
     if not view:
         return picture

@@ -23,7 +23,7 @@ from sgcad_core.case.records import Finding, Generation, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 
 if TYPE_CHECKING:
-    from plugins.backbone.engine.grammar import Grammar, GrammarMaker
+    from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
     from plugins.backbone.engine.loop import Engine
     from plugins.backbone.engine.records import Answer, Policy, Prompt
     from plugins.backbone.hf_prompt import Prompter
@@ -45,16 +45,16 @@ class Call:
 
 
 @dataclass(frozen=True)
-class Running:
+class RunningModel:
     """One model, its loop and what writes its prompts."""
 
     engine: Engine
     prompter: Prompter
-    maker: GrammarMaker
+    maker: GrammarCompiler
     eos: frozenset[int]
     name: str
-    told: Mapping[str, Any] = field(default_factory=dict)
-    """Heads of the model's own that say whether the evidence tells a value (`hf_load.Loaded.told`)."""
+    evidence_heads: Mapping[str, Any] = field(default_factory=dict)
+    """Heads of the model's own that say whether the evidence tells a value (`hf_load.Loaded.evidence_heads`)."""
 
     def answer(self, call: Call) -> tuple[Generation, tuple[int, ...]]:
         """The generation and its token ids. Raises the project's errors, see `HfVision.generate`."""
@@ -150,7 +150,7 @@ class Running:
     def _told(self, text: str, ends: Sequence[int], found: Answer) -> dict[str, float]:
         """By path: how likely the evidence tells the value, of those that were a choice and whose kind has a head."""
         places = {path: at for path, at in first_tokens(text, ends).items() if not found.forced[at]}
-        heads = {path: head for path in places if (head := self.told.get(name_of(path))) is not None}
+        heads = {path: head for path in places if (head := self.evidence_heads.get(name_of(path))) is not None}
         logits = {path: float(found.states[places[path]] @ head[:-1] + head[-1]) for path, head in heads.items()}
         return {path: 1 / (1 + math.exp(-logit)) for path, logit in logits.items()}
 
@@ -178,30 +178,30 @@ def options(dtype: str, attention: str, device_map: str | dict[str, int | str] |
     return found | ({"device_map": device_map} if device_map is not None else {})
 
 
-_RUNNING: WeakValueDictionary[str, Running] = WeakValueDictionary()
+_RUNNING: WeakValueDictionary[str, RunningModel] = WeakValueDictionary()
 _LOCKS: defaultdict[str, threading.Lock] = defaultdict(threading.Lock)
-_LOOKING = threading.Lock()
+_LOCKS_LOCK = threading.Lock()
 
 
-def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> Running:
-    """What runs already under the same options, or is started now (see `start`).
+def shared_model(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> RunningModel:
+    """What runs already under the same options, or is started now (see `start_model`).
 
     The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
     prefix cache, and the last that lets go frees both. `stamp` tells folders (of weights, of an adapter) whose files
     were replaced.
     """
     key = repr((stamp, name, revision, sorted(settings.items()), sorted(how.items())))
-    with _LOOKING:
+    with _LOCKS_LOCK:
         lock = _LOCKS[key]
     with lock:  # a model that takes minutes keeps nobody waiting who asks another
         running = _RUNNING.get(key)
         if running is None or running.engine.ended:
-            running = _RUNNING[key] = start(name, revision, settings, **how)
+            running = _RUNNING[key] = start_model(name, revision, settings, **how)
             weakref.finalize(running, running.engine.end)
         return running
 
 
-def start(
+def start_model(
     name: str,
     revision: str | None,
     settings: Mapping[str, Any],
@@ -212,12 +212,12 @@ def start(
     prefix_bytes: int,
     pictures_first: bool,
     adapter: str | None = None,
-) -> Running:
+) -> RunningModel:
     """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
     from plugins.backbone.engine.check import batching
     from plugins.backbone.engine.families import family_of
     from plugins.backbone.engine.faults import EngineFault
-    from plugins.backbone.engine.grammar import GrammarMaker
+    from plugins.backbone.engine.grammar import GrammarCompiler
     from plugins.backbone.engine.loop import Engine
     from plugins.backbone.hf_load import load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
@@ -231,9 +231,9 @@ def start(
         raise ConfigError(f"backbone.model {name}: {fault}") from fault
     eos = _end_tokens(loaded.model, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
-    maker = GrammarMaker(loaded.tokenizer, vocabulary, sorted(eos))
-    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.told))
-    return Running(engine, prompter, maker, frozenset(eos), name, loaded.told)
+    maker = GrammarCompiler(loaded.tokenizer, vocabulary, sorted(eos))
+    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
+    return RunningModel(engine, prompter, maker, frozenset(eos), name, loaded.evidence_heads)
 
 
 def _end_tokens(model: Any, tokenizer: Any) -> set[int]:

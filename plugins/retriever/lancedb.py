@@ -51,7 +51,7 @@ narrative says "vehicle" and "lane" in every sentence and never "trajectory" or 
 
 
 class LanceDB(Retriever):
-    """Passages by full text and, with an embedder, by meaning; `sgcad index build` makes the folder."""
+    """Finds passages by full text and, with an embedder, by meaning, in an index that `sgcad index build` makes."""
 
     folder: Path = Path("knowledge")
     """Where the index lies; relative to the working directory."""
@@ -74,7 +74,7 @@ class LanceDB(Retriever):
     _guard: threading.Lock = PrivateAttr(default_factory=threading.Lock)
 
     def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
-        """The best of each kind, kinds in the order of the field. Raises ConfigError: no index to read."""
+        """The best passages of each kind, kinds in the field's order. Raises ConfigError if there is no index."""
         if task not in TASKS:
             raise ConfigError(f"retriever 'lancedb' serves the tasks {', '.join(TASKS)}, not {task!r}")
         own = self.road_kinds if task == "road" else self.scenario_kinds
@@ -83,7 +83,7 @@ class LanceDB(Retriever):
         return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score, data=hit.data) for hit in found)
 
     def _of_kind(self, text: str, kind: Kind, task: Task) -> list[Hit]:
-        """The best of one kind. Of a language's pieces: those of the task's own topics in turn, then the text's."""
+        """The best of one kind, taken in turn from the hits of the task's topics and of the text."""
         asked = (*TOPICS.get((kind, task), ()), text)
         lists = [self.search(words, self.per_kind, (kind,), task) for words in asked]
         in_turn = (hit for rank in zip_longest(*lists) for hit in rank if hit is not None)
@@ -94,7 +94,7 @@ class LanceDB(Retriever):
         return self._index().search(text, k, kinds, task)
 
     def search_checked(self, text: str, k: int, kinds: Sequence[str], task: str | None) -> list[Hit]:
-        """`search` with names from a command line. Raises ConfigError naming what there is."""
+        """`search` with names from a command line. Raises ConfigError that lists the known names."""
         for name, known in [*((kind, KINDS) for kind in kinds), *([(task, TASKS)] if task else [])]:
             if name not in known:
                 raise ConfigError(f"unknown {name!r}; there are {', '.join(known)}")
@@ -110,7 +110,7 @@ class LanceDB(Retriever):
         return read_manifest(self.folder)
 
     def chunks(self, files: Sequence[Path], builtin: bool, on_skip: OnSkip) -> Iterator[Chunk]:
-        """What the project brings, if wanted, then each file's. Raises ConfigError before anything is read."""
+        """The project's own chunks, if wanted, then each file's. Raises ConfigError before anything is read."""
         from plugins.retriever.knowledge import sources
 
         for file in files:
@@ -119,13 +119,13 @@ class LanceDB(Retriever):
         return chain(own, chain.from_iterable(sources.file_chunks(file, on_skip) for file in files))
 
     def build(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
-        """Write the index anew from chunks. Raises ConfigError, MissingTool."""
+        """Writes a new index from chunks. Raises ConfigError, MissingTool."""
         from plugins.retriever.knowledge import store
 
         return store.build(self.folder, chunks, self._embedder, progress)
 
     def add(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
-        """Add what is new or changed. Raises ConfigError, MissingTool."""
+        """Adds new and changed chunks. Raises ConfigError, MissingTool."""
         from plugins.retriever.knowledge import store
 
         return store.add(self.folder, chunks, self._embedder, progress)

@@ -1,8 +1,8 @@
-"""Direct retrieval (OSM-Direct): the nearest real junction to what the report tells of its roads, and nothing drawn.
+"""Direct retrieval (OSM-Direct): the real junction nearest to the roads of the report; nothing is drawn.
 
-No model: the template's road facts are put in the words in which an index describes junctions, and the first one found
-is turned so that its legs lie as told, and compiled. A report of a plain road gets a junction too: an index of
-junctions holds nothing else. Knows no index but through the retriever that it names.
+No model: the narrative's road facts are described in the index's words, and the first junction found is turned to fit
+and compiled. A report of a plain road gets a junction too, since the index holds nothing else. Reads the index through
+the retriever only.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ from sgcad_core.roads.layout import LEG_M
 
 
 class OsmDirect(RoadWriter):
-    """The nearest junction of an index that `sgcad index build EXTRACT --out FOLDER` made."""
+    """Takes the real junction nearest to the report's roads from an index (`sgcad index build EXTRACT --out FOLDER`).
+
+    model and base_url are those of the embedder, as in the retriever `lancedb`.
+    """
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
@@ -50,13 +53,13 @@ class OsmDirect(RoadWriter):
 
     @property
     def stamp(self) -> str:
-        """That of the index. Raises ConfigError where there is none."""
+        """The index's fingerprint. Raises ConfigError if the folder holds no index."""
         return self._retriever.stamp
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Describe, look up, turn, compile. Raises Refused (a text of no crash), ConfigError (no junctions)."""
+        """Searches, turns and compiles. Raises Refused (a text without a crash), ConfigError (no junctions)."""
         layout = told_layout(context)
         found, data = self._nearest(layout)
         legs = _legs(data)

@@ -1,7 +1,6 @@
 """Scenarios by rules: the narrative's facts placed on the network and planned, without a model.
 
-The rival that a model has to beat, and the writer that always works. Reads the narrative only: no diagram,
-no passages; findings cannot change its answer.
+The baseline without a model. Reads the narrative only: no diagram, no passages; findings cannot change its answer.
 """
 
 from __future__ import annotations
@@ -23,13 +22,13 @@ from sgcad_core.records.specs import RoadSpec
 
 
 class Rules(PlannedWriter):
-    """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
+    """Plans vehicles, headings, maneuvers and contacts as the narrative states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "3"
 
     try_others: bool = True
-    """Plan readings that differ in one weak fact where our own checks doubt the first, and keep the least doubted."""
+    """If the checks doubt the first plan: plan readings that differ in one weak fact, and keep the least doubted."""
 
     def write(
         self,
@@ -40,7 +39,7 @@ class Rules(PlannedWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
+        """Plans and writes the scenario. Raises Refused (no vehicles), InvalidOutput (no network)."""
         spec = roads_of(network)
         reading = context.reading
         scenario = self._compiled(reading.crash, spec, network, reading)
@@ -69,7 +68,7 @@ class Rules(PlannedWriter):
 
 
 def _inferred(facts: CrashFacts) -> Iterator[str]:
-    """What the text does not tell outright."""
+    """Notes on facts that the text does not state."""
     for v in facts.vehicles:
         if not v.heading_stated:
             yield f"{v.id}'s heading is not told: inferred as {v.heading}" if v.heading else f"{v.id}'s heading is open"

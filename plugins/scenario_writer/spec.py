@@ -1,6 +1,6 @@
-"""The model says who drives where and who strikes whom; code plans and writes the scenario.
+"""The model describes the actors' driving and the contacts; code plans and writes the scenario.
 
-The roads stand in the query, the crash evidence in the context, so that contrast amplifies the evidence only.
+The roads are part of the query, the crash evidence is the context, so that contrast amplifies the evidence only.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from sgcad_core.roads.describe import describe_network, road_ids
 
 
 class SpecScenario(PlannedWriter):
-    """Asks for a `BehaviorSpec` whose roads are those of the network."""
+    """Asks a model for a `BehaviorSpec` on the roads of the network, and plans the scenario from it."""
 
     asks_model: ClassVar[bool] = True
     prompt: str = Field("behavior", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     roads: Literal["described", "layout"] = "described"
-    """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+    """Content of that slot: the network in words, or the layout's JSON as it was answered (for small models)."""
 
     near_crashes: bool = False
     """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
@@ -43,7 +43,7 @@ class SpecScenario(PlannedWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Ask, read, plan, write. Raises InvalidOutput with findings, Refused where the model declines."""
+        """Asks, reads, plans and writes. Raises InvalidOutput with findings, Refused if the model declines."""
         roads = _roads(network)
         ids = road_ids(roads)
         query = Query(

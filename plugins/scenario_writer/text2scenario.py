@@ -1,8 +1,8 @@
 """The further levels of a hierarchical reading: roles and temporal events, parsed by the model, placed by templates.
 
-The model fills in a form (who comes from where, what happens in which order); rule templates make maneuvers, sides of
-contact and places on the map of it, and the planner drives. It never names a road, a lane line or a coordinate. Knows
-no map library: whatever network is written will do.
+The model fills in a form (the actors with their origins, the events in order); rule templates make maneuvers, sides of
+contact and places on the map of it, and the planner drives. The model never names a road, a lane line or a coordinate.
+Knows no map library: any network will do.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class Representation(Spec):
 
 
 class Text2Scenario(PlannedWriter):
-    """Asks for roles and events; templates and the planner make the scenario of them."""
+    """Asks a model for roles and events; rule templates and the planner make the scenario from them."""
 
     asks_model: ClassVar[bool] = True
     prompt: str = Field("text2scenario_events", pattern=r"^[\w-]+$")
@@ -100,7 +100,7 @@ class Text2Scenario(PlannedWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Ask, read, fill the templates, plan. Raises InvalidOutput with findings, Refused."""
+        """Asks, reads, fills the templates and plans. Raises InvalidOutput with findings, Refused."""
         spec = roads_of(network)
         query = Query(
             task=load_prompt(self.prompt, roads=describe_network(spec)),
@@ -199,7 +199,7 @@ def _side(striker: Role, struck: Role) -> Area:
         return "back"
     if abs(across) >= _OPPOSITE:
         return "front"
-    return "right" if across > 0 else "left"  # who travels to the left of my heading comes from my right
+    return "right" if across > 0 else "left"  # a vehicle that heads to the left of the striker comes from its right
 
 
 def _contact(c: ContactFacts) -> Contact:

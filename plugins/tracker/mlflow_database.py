@@ -23,17 +23,17 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.system.locks import alone
 
 LOCKED_S = 5.0
-"""Another batch holds the database for milliseconds; who holds it longer than this keeps it."""
+"""Another batch locks the database for milliseconds; a longer lock belongs to another program."""
 CONNECT_S = 10.0
 PORTS = {"postgresql": 5432, "mysql": 3306, "mssql": 1433}
 ELSEWHERE = "or log elsewhere: --set tracker.database=FILE, --set tracker=jsonl, --set tracker=none"
 _HEADER = b"SQLite format 3\0"
 _BESIDE = ("", "-wal", "-shm", "-journal")
-"""What sqlite may leave of one database."""
+"""Suffixes of the files that sqlite may leave beside a database."""
 
 
 def check(uri: str) -> None:
-    """Raise ConfigError naming what stands in the way of logging to sqlite:///file, http://..., postgresql://..."""
+    """Raises ConfigError with the reason if sqlite:///file, http://... or postgresql://... cannot be logged to."""
     if uri.startswith("sqlite:///"):
         check_file(Path(uri.removeprefix("sqlite:///")))
     elif urlsplit(uri).hostname:
@@ -41,7 +41,7 @@ def check(uri: str) -> None:
 
 
 def check_file(file: Path) -> None:
-    """Raise ConfigError where a sqlite file cannot be written, is none, or is held by another program."""
+    """Raises ConfigError if a file cannot be written, is no sqlite database, or is locked by another program."""
     try:
         _check_place(file)
         if file.exists() and file.stat().st_size:
@@ -85,12 +85,12 @@ def reason(fault: BaseException) -> str:
 
 
 def is_full(fault: BaseException) -> bool:
-    """Whether a disk without room is what it comes down to."""
+    """Whether a full disk is the cause of a fault."""
     return getattr(fault, "errno", None) == errno.ENOSPC or any(t in str(fault) for t in ("disk is full", "No space"))
 
 
 def remedy(fault: BaseException) -> str:
-    """What a person can do about it."""
+    """What the user can do about a fault."""
     if is_full(fault):
         return "make room"
     if "locked" in str(fault):
@@ -101,7 +101,7 @@ def remedy(fault: BaseException) -> str:
 
 
 def _check_server(uri: str) -> None:
-    """A connection within CONNECT_S; of an http server its health too, whatever it answers."""
+    """Raises ConfigError without a connection within CONNECT_S; of an http server the health page must answer too."""
     parts = urlsplit(uri)
     kind = parts.scheme.partition("+")[0]
     port = parts.port or {"http": 80, "https": 443}.get(kind) or PORTS.get(kind)
@@ -115,7 +115,7 @@ def _check_server(uri: str) -> None:
                 pass
     except (OSError, ValueError) as fault:
         if isinstance(fault, urllib.error.HTTPError) and fault.code in (401, 403):
-            return  # it is there and wants a login, which MLflow's own client has
+            return  # the server is there and wants a login, which MLflow's own client has
         shown, said = re.sub(r"//[^/@]*@", "//", uri), getattr(fault, "reason", None) or fault
         raise ConfigError(
             f"tracker.uri {shown}: no MLflow server answers ({said}); start that server, {ELSEWHERE}"
@@ -124,7 +124,7 @@ def _check_server(uri: str) -> None:
 
 # ------------------------------------------------------------------ making a sqlite file
 def make_database(file: Path) -> None:
-    """Make a database with MLflow's tables where there is none. Raises OSError, what sqlite and MLflow raise."""
+    """Makes a database with MLflow's tables if there is none. Raises OSError and the errors of sqlite and MLflow."""
     if file.exists():
         _usable(file)
         return
@@ -138,7 +138,7 @@ def make_database(file: Path) -> None:
 
 
 def _usable(file: Path) -> None:
-    """Raises OSError for what MLflow would try to open for minutes."""
+    """Raises OSError for files that MLflow would try to open for minutes."""
     if not file.is_file():
         raise IsADirectoryError("it is no file")
     if not os.access(file, os.R_OK | os.W_OK) or not os.access(file.parent, os.W_OK):

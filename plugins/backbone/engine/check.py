@@ -13,7 +13,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.families import Beside, Family, raw_inputs
+from plugins.backbone.engine.families import CrossAttentionFamily, Family, forward_inputs
 from plugins.backbone.engine.faults import WrongBatch
 from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.engine.runner import Runner
@@ -68,10 +68,10 @@ def batch_error(model: Any, family: Family, apart: bool, prompts: Sequence[Promp
 def reference(model: Any, family: Family, prompt: Prompt, behind: Sequence[int] = ()) -> Tensor:
     """Logits (1 + behind, vocabulary) from the prompt's last token on: one forward, no cache, its own positions."""
     ids = torch.tensor([[*prompt.ids, *behind]], device=model.device)
-    inputs = family.moved(raw_inputs(prompt.pictures))
+    inputs = family.to_model(forward_inputs(prompt.pictures))
     if prompt.pictures and family.dimensions > 1:
         inputs["mm_token_type_ids"] = ids.eq(family.image_token or 0).int()
-    if prompt.pictures and isinstance(family, Beside):
+    if prompt.pictures and isinstance(family, CrossAttentionFamily):
         whole = Prompt(ids[0].tolist(), prompt.pictures)
         inputs["cross_attention_mask"] = family.visible(whole)[None].to(model.device)
     _forget_positions(model)

@@ -27,7 +27,7 @@ _KEPT_GRAMMARS = 64
 _STRUCTURE = '{"}[]:,0123456789.-'
 
 
-class GrammarMaker:
+class GrammarCompiler:
     """Compiles schemas for one tokenizer: a fast tokenizer of transformers, or a ready `LLTokenizer`."""
 
     def __init__(self, tokenizer: Any, vocabulary: int, eos: Sequence[int]) -> None:
@@ -51,7 +51,7 @@ class GrammarMaker:
         grammar = Grammar(self, schema)
         if fault := grammar.fault:
             shared = {k: schema[k] for k in ("$defs", "definitions") if k in schema}
-            path = next((p for p, s in _parts(schema) if Grammar(self, {**shared, **s}).fault), "$")
+            path = next((p for p, s in _subschemas(schema) if Grammar(self, {**shared, **s}).fault), "$")
             raise DoesNotFit(f"no answer can meet the schema at {path}: {fault}; mend the schema", path)
         return grammar
 
@@ -59,7 +59,7 @@ class GrammarMaker:
 class Grammar:
     """A compiled schema; `track` starts an answer."""
 
-    def __init__(self, maker: GrammarMaker, schema: Mapping[str, Any]) -> None:
+    def __init__(self, maker: GrammarCompiler, schema: Mapping[str, Any]) -> None:
         from llguidance import LLMatcher
 
         self.maker = maker
@@ -71,9 +71,9 @@ class Grammar:
         self.start = LLMatcher(maker.tokens, text, log_level=0)
         self.fault = self.start.get_error() if self.start.is_error() else ""
 
-    def track(self) -> Track:
+    def track(self) -> GrammarState:
         """Follow one answer from its beginning."""
-        return Track(self)
+        return GrammarState(self)
 
     def text(self, ids: Sequence[int]) -> str:
         """Tokens as text; what is no UTF-8 yet becomes U+FFFD."""
@@ -84,7 +84,7 @@ class Grammar:
         return bytes(self.maker.tokens.decode_bytes(list(ids)))
 
 
-class Track:
+class GrammarState:
     """Where one answer stands in its grammar."""
 
     def __init__(self, grammar: Grammar) -> None:
@@ -135,13 +135,13 @@ def allowed(mask: Mask, vocabulary: int, device: torch.device) -> Tensor:
     return ((words[..., None] >> shifts) & 1).bool().flatten(1)[:, :vocabulary]
 
 
-def choices(mask: Mask) -> NDArray[np.int64]:
+def choice_counts(mask: Mask) -> NDArray[np.int64]:
     """How many tokens may come next, by row."""
     counted: NDArray[np.int64] = np.bitwise_count(mask.view(np.uint32)).sum(-1, dtype=np.int64)
     return counted
 
 
-def only(mask: Mask) -> NDArray[np.int64]:
+def single_choices(mask: Mask) -> NDArray[np.int64]:
     """The one token of each row that has one."""
     word = mask.view(np.uint32).argmax(-1)
     bits = mask.view(np.uint32)[np.arange(len(mask)), word]
@@ -169,14 +169,14 @@ def _token_table(tokenizer: Any, vocabulary: int, eos: list[int]) -> Any:
     return from_tokenizer(tokenizer, n_vocab=vocabulary, eos_token=eos, slices=LLTokenizer.json_slices())
 
 
-def _parts(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _subschemas(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Sub-schemas with their paths, innermost first."""
     for name, part in (schema.get("properties") or {}).items():
         if isinstance(part, Mapping):
-            yield from _parts(part, f"{path}.{name}" if path else name)
+            yield from _subschemas(part, f"{path}.{name}" if path else name)
     if isinstance(schema.get("items"), Mapping):
-        yield from _parts(schema["items"], f"{path}[]")
+        yield from _subschemas(schema["items"], f"{path}[]")
     for part in schema.get("anyOf") or ():
         if isinstance(part, Mapping):
-            yield from _parts(part, path)
+            yield from _subschemas(part, path)
     yield path or "$", schema

@@ -16,7 +16,7 @@ import numpy as np
 import torch
 
 from plugins.backbone.engine.faults import DoesNotFit
-from plugins.backbone.engine.grammar import Mask, Track
+from plugins.backbone.engine.grammar import GrammarState, Mask
 from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Row
 from sgcad_core.asking.json_field_spans import open_path
@@ -28,7 +28,7 @@ _CLUE = 3
 
 
 @dataclass
-class Said:
+class ChunkResult:
     """What the model said of one chunk; position i is about the token behind chunk[i].
 
     Of the first `known` positions the token behind is in the chunk; then come the scored ones.
@@ -62,7 +62,7 @@ class Job:
     closing: bool = False
     """The answer is complete; its forced end is fed once more for its log-probabilities."""
     started: float = field(default_factory=time.perf_counter)
-    track: Track | None = None
+    track: GrammarState | None = None
     draft: Draft = field(init=False)
     generator: torch.Generator | None = None
     begun: bool = False
@@ -72,11 +72,11 @@ class Job:
     def __post_init__(self) -> None:
         self.draft = Draft([token for token in self.request.draft if token not in self.request.eos])
 
-    def given_up(self) -> bool:
+    def is_cancelled(self) -> bool:
         """True, once, if the caller has cancelled; whoever waits for it is told."""
         return self.future.cancelled() and not self.future.set_running_or_notify_cancel()
 
-    def tell(self, outcome: Answer | Exception) -> None:
+    def resolve(self, outcome: Answer | Exception) -> None:
         """End the caller's wait, unless the caller has given up."""
         if not self.future.set_running_or_notify_cancel():
             return
@@ -144,18 +144,18 @@ class Job:
         self.guesses, self.taken = [], 0
 
     # ------------------------------------------------------------------ after the step
-    def hear(self, said: Said, choices: Sequence[int]) -> None:
+    def take_result(self, result: ChunkResult, choices: Sequence[int]) -> None:
         """Take the model's word for a chunk: note log-probabilities, accept tokens, force the next ones.
 
         `choices` is how many tokens the grammar left at each scored position, empty without one. Raises
         DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
         """
-        known = len(said.known_with)
-        self._note(said.known_with, said.known_without, said.states[:known])
+        known = len(result.known_with)
+        self._note(result.known_with, result.known_without, result.states[:known])
         if self.closing:
             return self._finish()
         guesses = self.guesses
-        right = next((i for i, (g, p) in enumerate(zip(guesses, said.picked, strict=False)) if g != p), len(guesses))
+        right = next((i for i, (g, p) in enumerate(zip(guesses, result.picked, strict=False)) if g != p), len(guesses))
         fed = len(self.pending) + right
         if self.track:
             self.track.back(self.taken - right)
@@ -165,14 +165,14 @@ class Job:
         for i in range(right + 1):
             if choices and choices[i] == 0:
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
-            self._accept(said.picked[i], bool(choices) and choices[i] == 1)
+            self._accept(result.picked[i], bool(choices) and choices[i] == 1)
             one = slice(i, i + 1)
-            self._note(said.picked_with[one], said.picked_without[one], said.states[known + i : known + i + 1])
-            if i == right and not self._take(said.picked[i]):
+            self._note(result.picked_with[one], result.picked_without[one], result.states[known + i : known + i + 1])
+            if i == right and not self._take(result.picked[i]):
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
         for row in self.rows:
             row.length += fed
-        self.pending = [said.picked[right]]
+        self.pending = [result.picked[right]]
         return self._go_on()
 
     def text(self) -> str:

@@ -22,7 +22,7 @@ from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, TooLo
 from plugins.backbone.engine.job import Job
 from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Runner
-from plugins.backbone.engine.scoring import Heard, averaged, heard
+from plugins.backbone.engine.scoring import ScoredChunk, averaged, score_chunks
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""
@@ -81,7 +81,7 @@ class Engine:
             if self.ended:
                 raise EngineFault(f"the engine is closed{self.reason}")
             if self.thread is None:
-                self.thread = threading.Thread(target=self._own, name="token-loop", daemon=True)
+                self.thread = threading.Thread(target=self._run_loop, name="token-loop", daemon=True)
                 self.thread.start()
             self.arrivals.put(job)
         return job.future
@@ -99,17 +99,17 @@ class Engine:
             self.arrivals.put(None)
 
     # ------------------------------------------------------------------ the owner's thread
-    def _own(self) -> None:
+    def _run_loop(self) -> None:
         try:
             with torch.inference_mode():
-                while self._arrive():
+                while self._collect_arrivals():
                     self._admit()
                     if self.jobs:
                         self._step()
         finally:
-            self._abandon(sys.exc_info()[1])
+            self._fail_unanswered(sys.exc_info()[1])
 
-    def _arrive(self) -> bool:
+    def _collect_arrivals(self) -> bool:
         """Take what has arrived, waiting if there is nothing else to do; False to stop."""
         idle = not (self.jobs or self.waiting)
         while idle or not self.arrivals.empty():
@@ -126,14 +126,14 @@ class Engine:
             if self.jobs and (self.waiting[0].alone or self.jobs[0].alone):
                 return
             job = self.waiting.popleft()
-            if job.given_up():
+            if job.is_cancelled():
                 continue
             fault = tried(partial(self._open, job))
             if isinstance(fault, TooBig):
                 self._restart(fault)
             elif fault:
-                self._leave(job)
-                job.tell(fault)
+                self._close_job(job)
+                job.resolve(fault)
 
     def _open(self, job: Job) -> None:
         before = self.runner.calls
@@ -146,29 +146,29 @@ class Engine:
 
     def _step(self) -> None:
         """One forward pass a lane for all jobs, and what follows from it for each."""
-        for job in [job for job in self.jobs if job.given_up()]:
-            self._leave(job)
-        jobs, results = list(self.jobs), list[Heard]()
+        for job in [job for job in self.jobs if job.is_cancelled()]:
+            self._close_job(job)
+        jobs, results = list(self.jobs), list[ScoredChunk]()
         if not jobs:
             return
         if failed := tried(lambda: results.extend(self._forward(jobs))):
             self._restart(failed)
             return
         # every job hears first: a row that moves into a freed slot takes only what its job has accepted
-        faults = [self._hear(job, result) for job, result in zip(jobs, results, strict=True)]
+        faults = [self._take_result(job, result) for job, result in zip(jobs, results, strict=True)]
         for job, fault in zip(jobs, faults, strict=True):
             if fault or job.finished:
-                self._leave(job, keep=not fault)
-                job.tell(fault or job.answer)
+                self._close_job(job, keep=not fault)
+                job.resolve(fault or job.answer)
 
-    def _hear(self, job: Job, result: Heard) -> Exception | None:
+    def _take_result(self, job: Job, result: ScoredChunk) -> Exception | None:
         if isinstance(result.fault, BadLogits):
-            self._spoil(job)
-        if result.said is None:
+            self._clear_slots(job)
+        if result.result is None:
             return result.fault
-        return tried(partial(job.hear, result.said, result.choices))
+        return tried(partial(job.take_result, result.result, result.choices))
 
-    def _forward(self, jobs: list[Job]) -> list[Heard]:
+    def _forward(self, jobs: list[Job]) -> list[ScoredChunk]:
         guesses = max(2, _GUESSES // len(jobs))
         chunks = [(row, chunk) for job in jobs for chunk in [job.chunk(guesses)] for row in job.rows]
         before = self.runner.calls
@@ -179,17 +179,17 @@ class Engine:
             without_context.append(next(logits) if job.request.without_context is not None else None)
             with_context.append(averaged(first, [next(logits) for _ in job.request.views]))
             job.answer.model_calls += self.runner.calls - before
-        found = heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
+        found = score_chunks(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
         for job, one in zip(jobs, found, strict=True):
             states = self.runner.states.get(id(job.rows[0]))
-            if one.said is not None and states is not None:
-                one.said.states = states.float().cpu().unbind()
+            if one.result is not None and states is not None:
+                one.result.states = states.float().cpu().unbind()
         return found
 
     def _vocabulary(self) -> int:
         return int(self.model.get_output_embeddings().weight.shape[0])
 
-    def _leave(self, job: Job, keep: bool = False) -> None:
+    def _close_job(self, job: Job, keep: bool = False) -> None:
         self.jobs.remove(job)
         for row in reversed(job.rows):
             if keep and tried(partial(self.runner.keep, row, job.answer.ids)):
@@ -197,7 +197,7 @@ class Engine:
             self.runner.close(row)
         job.rows = []
 
-    def _spoil(self, job: Job) -> None:
+    def _clear_slots(self, job: Job) -> None:
         """NaN in a slot would reach the next row there through a weight of 0."""
         self.runner.prefixes.clear()
         for row in job.rows:
@@ -219,13 +219,13 @@ class Engine:
             ended = fault if job.alone else tried(job.forget_guesses)
             job.rows, job.alone = [], not halved
             if ended:
-                job.tell(ended)
+                job.resolve(ended)
             else:
                 self.waiting.appendleft(job)
         if torch.cuda.is_available():
             torch.cuda.empty_cache()
 
-    def _abandon(self, fault: BaseException | None) -> None:
+    def _fail_unanswered(self, fault: BaseException | None) -> None:
         """The loop has ended: nobody waits for ever."""
         with self.lock:
             self.ended = True
@@ -235,4 +235,4 @@ class Engine:
                 self.waiting.append(job)
         for job in [*self.jobs, *self.waiting]:
             closed = EngineFault(f"the engine was closed before this report was answered{self.reason}")
-            job.tell(fault if isinstance(fault, Exception) else closed)
+            job.resolve(fault if isinstance(fault, Exception) else closed)

@@ -15,29 +15,29 @@ import torch
 from torch import Tensor
 
 from plugins.backbone.engine.faults import BadLogits, BadScores, TooBig, tried
-from plugins.backbone.engine.grammar import Mask, allowed, choices, only
-from plugins.backbone.engine.job import Job, Said
+from plugins.backbone.engine.grammar import Mask, allowed, choice_counts, single_choices
+from plugins.backbone.engine.job import ChunkResult, Job
 
 NEVER = float("-inf")
 _BLOCK = 8
 
 
 @dataclass
-class Heard:
+class ScoredChunk:
     """What one job is told of its chunk: `said`, or the fault that ends it."""
 
     choices: list[int] = field(default_factory=list)
     parts: list[Tensor] = field(default_factory=list)
     """On the device: finite, log-probabilities of known tokens, then sound, picked tokens, their log-probabilities."""
-    said: Said | None = None
+    result: ChunkResult | None = None
     fault: Exception | None = None
 
 
-def heard(
+def score_chunks(
     jobs: Sequence[Job], with_context: Sequence[Tensor], without_context: Sequence[Tensor | None], words: int
-) -> list[Heard]:
+) -> list[ScoredChunk]:
     """Score every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
-    found = [Heard() for _ in jobs]
+    found = [ScoredChunk() for _ in jobs]
     for i, job in enumerate(jobs):
         prior = without_context[i]
         logits = [with_context[i]] if prior is None else [with_context[i], prior]
@@ -52,7 +52,7 @@ def heard(
         for part in one.parts:
             lists.append(numbers[at : at + len(part)])
             at += len(part)
-        _tell(job, one, lists)
+        _set_result(job, one, lists)
     return found
 
 
@@ -87,10 +87,10 @@ class _Row:
         return self.logits[places].gather(-1, tokens[:, None])[:, 0].float() - self.mass[places]
 
 
-def _score(one: Heard, job: Job, logits: Sequence[Tensor], words: int) -> None:
+def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> None:
     """Fill in what is known of a chunk, on the device."""
     mask = job.masks(words)
-    one.choices = choices(mask).tolist() if mask is not None else []
+    one.choices = choice_counts(mask).tolist() if mask is not None else []
     known = len(job.pending) - 1
     rows = [_Row.of(row) for row in logits]
     finite = torch.stack([row.mass.isfinite().all() for row in rows]).all()[None]
@@ -112,7 +112,7 @@ def _all_picked(
         return _picked(job, rows, mask, free, finite)
     forced = [i for i, count in enumerate(left) if count == 1]
     picked = torch.empty(len(left), dtype=torch.long, device=finite.device)
-    picked[forced] = torch.from_numpy(only(mask[forced])).to(finite.device)
+    picked[forced] = torch.from_numpy(single_choices(mask[forced])).to(finite.device)
     sound = torch.ones(1, dtype=torch.bool, device=finite.device)
     if free:
         sound, picked[free] = _picked(job, [row[free] for row in rows], mask[free], free, finite)
@@ -164,7 +164,7 @@ def _described(found: object) -> str:
     return f"{found.dtype} {tuple(found.shape)}" if isinstance(found, Tensor) else repr(found)[:80]
 
 
-def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
+def _set_result(job: Job, one: ScoredChunk, lists: list[list[float]]) -> None:
     finite, *rest = lists
     rows = 1 + (job.request.without_context is not None)
     if not finite[0]:
@@ -174,7 +174,7 @@ def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
     if scored and not scored[0][0]:
         one.fault = _unsound(job, "scores are NaN or inf, or its tokens outside the vocabulary,")
         return
-    one.said = Said(
+    one.result = ChunkResult(
         known_with=known[0],
         known_without=known[1] if rows > 1 else [],
         picked=[int(token) for token in scored[1]] if scored else [],

@@ -1,6 +1,6 @@
-"""Where chunks come from: what the project brings, and files that the user names.
+"""Sources of chunks: the project's own, and files that the user names.
 
-A file is an OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf) or chunks of the user's own (.jsonl).
+A file is an OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf) or holds the user's own chunks (.jsonl).
 Knows no database.
 """
 
@@ -19,7 +19,7 @@ from sgcad_core.errors import ConfigError
 ENDINGS = (*OSM_ENDINGS, ".jsonl")
 
 OnSkip = Callable[[str, str], None]
-"""Told of what could not be taken in: its name and why."""
+"""Called with the name of each item that could not be used, and the reason."""
 
 
 def builtin_chunks() -> Iterator[Chunk]:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-from plugins.scenario_writer.sandbox.rules import ANY, BUILTINS, MODULES
+from plugins.scenario_writer.sandbox.script_rules import ANY, BUILTINS, MODULES
 
 _LIBRARY = "scenariogeneration"
 _UNUSED = ("xmlschema", "lxml", "lxml.etree", "venv")

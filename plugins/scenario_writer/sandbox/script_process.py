@@ -15,9 +15,9 @@ import xml.etree.ElementTree as ET
 from types import ModuleType
 from typing import Any
 
-from plugins.scenario_writer.sandbox import confine
-from plugins.scenario_writer.sandbox.modules import fronts, script_builtins
-from plugins.scenario_writer.sandbox.rules import breaches, parsed
+from plugins.scenario_writer.sandbox import isolation
+from plugins.scenario_writer.sandbox.script_modules import fronts, script_builtins
+from plugins.scenario_writer.sandbox.script_rules import breaches, parsed
 
 Json = dict[str, Any]
 MAX_XML = 5_000_000
@@ -28,14 +28,14 @@ def main(site: str, status: int) -> None:
     """Serve the job on standard input, then end. `status` is the descriptor on which the walls are told."""
     job: Json = json.loads(sys.stdin.buffer.read())
     os.close(0)
-    own = confine.isolate((1, 2, status))
+    own = isolation.isolate((1, 2, status))
     if not own and not job["allow_without_namespace"]:
         _tell(status, isolated=False)
         os._exit(0)
     modules = fronts(site)
-    walls = {"namespaces": own, "root": own and confine.shut_in(job["folder"])}
-    confine.limit(job["cpu_s"], job["memory_mb"])
-    walls["calls"] = confine.filter_calls()
+    walls = {"namespaces": own, "root": own and isolation.shut_in(job["folder"])}
+    isolation.limit(job["cpu_s"], job["memory_mb"])
+    walls["calls"] = isolation.filter_calls()
     _tell(status, isolated=True, walls=[name for name, up in walls.items() if up])
     printed: list[str] = []
     secret = job.pop("secret").encode()
