@@ -1,6 +1,6 @@
-"""A loaded model at work: prompts in, Generations out, the loop's faults as the project's errors.
+"""A loaded model: from prompts to Generations, with the loop's faults as the project's errors.
 
-Kept apart from the plugin class so that naming `hf_vision` in a YAML loads no torch. Knows no file.
+A module of its own, so that naming `hf_vision` in a YAML loads no torch. Knows no file.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Call:
-    """One question as the loop needs it; `without_context` None = that row is not run."""
+    """One question for the loop; `without_context` None: that row is not run."""
 
     with_context: Parts
     without_context: Parts | None
@@ -46,7 +46,7 @@ class Call:
 
 @dataclass(frozen=True)
 class RunningModel:
-    """One model, its loop and what writes its prompts."""
+    """One model with its token loop, its prompt writer and its grammar compiler."""
 
     engine: Engine
     prompter: Prompter
@@ -107,7 +107,7 @@ class RunningModel:
         return self.maker.grammar(schema)
 
     def _fitted(self, parts: Parts, call: Call) -> tuple[list[Prompt], list[str]]:
-        """The prompt in its views, its narrative cut to the window if the config allows that; a note if it was cut."""
+        """The prompt in its views, and a note if its narrative was cut to the window, which `truncate` allows."""
         room = self.engine.window - call.max_new_tokens
         prompts = self._views(parts, call.views)
         kept = whole = len(parts.narrative)
@@ -120,7 +120,7 @@ class RunningModel:
         return prompts, [f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"]
 
     def _views(self, parts: Parts, count: int) -> list[Prompt]:
-        """One prompt a view; a single one where there is nothing to be seen."""
+        """One prompt for each view; a single one if the model sees no picture."""
         sees = parts.diagrams and self.prompter.loaded.prepare
         return [self.prompter.prompt(parts, view) for view in range(count if sees else 1)]
 
@@ -148,7 +148,7 @@ class RunningModel:
         )
 
     def _told(self, text: str, ends: Sequence[int], found: Answer) -> dict[str, float]:
-        """By path: how likely the evidence tells the value, of those that were a choice and whose kind has a head."""
+        """By path: the probability that the evidence tells the value, for chosen values whose field has a head."""
         places = {path: at for path, at in first_tokens(text, ends).items() if not found.forced[at]}
         heads = {path: head for path in places if (head := self.evidence_heads.get(name_of(path))) is not None}
         logits = {path: float(found.states[places[path]] @ head[:-1] + head[-1]) for path, head in heads.items()}
@@ -184,16 +184,15 @@ _LOCKS_LOCK = threading.Lock()
 
 
 def shared_model(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> RunningModel:
-    """What runs already under the same options, or is started now (see `start_model`).
+    """The model that runs already under the same options, or a new one (see `start_model`).
 
-    The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
-    prefix cache, and the last that lets go frees both. `stamp` tells folders (of weights, of an adapter) whose files
-    were replaced.
+    The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its prefix
+    cache, and the last user frees both. `stamp` changes if the files of a folder were replaced.
     """
     key = repr((stamp, name, revision, sorted(settings.items()), sorted(how.items())))
     with _LOCKS_LOCK:
         lock = _LOCKS[key]
-    with lock:  # a model that takes minutes keeps nobody waiting who asks another
+    with lock:  # loading one model for minutes does not block another
         running = _RUNNING.get(key)
         if running is None or running.engine.ended:
             running = _RUNNING[key] = start_model(name, revision, settings, **how)
@@ -213,7 +212,7 @@ def start_model(
     pictures_first: bool,
     adapter: str | None = None,
 ) -> RunningModel:
-    """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
+    """Loads a model, checks its batching and starts its loop. Raises ConfigError or MissingTool."""
     from plugins.backbone.engine.check import batching
     from plugins.backbone.engine.families import family_of
     from plugins.backbone.engine.faults import EngineFault

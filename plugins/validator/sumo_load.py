@@ -1,4 +1,4 @@
-"""Whether SUMO loads the network: libsumo in a worker process, whose death is a finding, not the end."""
+"""Checks that SUMO loads the network: libsumo runs in a worker process, whose death is a finding."""
 
 from __future__ import annotations
 
@@ -18,13 +18,16 @@ _WORKER = Worker("plugins.validator._sumo_worker:load")
 
 
 class SumoLoad(Validator):
-    """Starts SUMO on the .net.xml, about 10 ms once the worker runs (0.5 s)."""
+    """Starts SUMO on the .net.xml; about 10 ms after the first start of the worker (0.5 s).
+
+    timeout_s is the longest wait for SUMO.
+    """
 
     stage: ClassVar[str] = "road"
     timeout_s: float = 30.0
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Schema faults, else at most one finding; a network without .net.xml is passed over."""
+        """Schema faults, else at most one finding; none for a network without .net.xml."""
         if not isinstance(artifact, RoadNetwork) or artifact.net_xml is None:
             return []
         try:

@@ -1,8 +1,8 @@
-"""The start-up self-check: does a batch give the logits of separate forwards?
+"""The start-up self-check: a batch must give the logits of separate forward passes.
 
-transformers lets an architecture be batched and quietly compute something else (Mllama's row without a
-picture was off by most of its range). So before the first report, rows of both kinds are prefilled apart,
-stepped together and compared with one plain forward each, without cache. Knows no report and no decoder.
+Some architectures of transformers silently compute wrong logits in a batch (Mllama's row without a picture was off by
+most of its range). Before the first report, rows of both kinds are prefilled apart, stepped together and compared with
+one plain forward pass each, without cache. Knows no report and no decoder.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _BEHIND = (3, 1, 1)
 
 
 def batching(model: Any, family: Family, picture: Picture | None) -> bool:
-    """Whether rows with and without pictures must be kept apart. Raises WrongBatch if neither way is right."""
+    """Whether rows with and without pictures need separate batches. Raises WrongBatch if neither way is right."""
     prompts = check_prompts(family, picture)
     faults = []
     for apart in (False, True):
@@ -38,7 +38,7 @@ def batching(model: Any, family: Family, picture: Picture | None) -> bool:
 
 
 def tolerance(model: Any) -> float:
-    """Root mean square error over the logits' own spread: rounding is far below, a wrong mask far above."""
+    """Limit of the error over the logits' spread: rounding is far below it, a wrong mask far above."""
     return 1e-3 if model.dtype == torch.float32 else 0.05
 
 
@@ -97,7 +97,7 @@ def _tokens(family: Family, count: int, seed: int) -> list[int]:
 
 
 def _forget_positions(model: Any) -> None:
-    """The model keeps one batch's rope_deltas for the next: nobody may read another's."""
+    """Clears the model's rope_deltas, which it would otherwise use for the next batch."""
     core = getattr(model, "model", model)
     if hasattr(core, "rope_deltas"):
         core.rope_deltas = None

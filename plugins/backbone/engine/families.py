@@ -1,8 +1,8 @@
-"""What the loop must know of a model's architecture: positions, pictures, which rows may share a batch.
+"""The properties of a model's architecture that the loop needs: positions, pictures, rows that may share a batch.
 
-Two families cover the image-text models of transformers: those that put a picture's features in place of
-placeholder tokens (Qwen-VL with three-dimensional positions, LLaVA, Idefics3, ... and plain text models),
-and Mllama, whose pictures stand beside the text. Knows no cache and no decoder.
+Two families cover the image-text models of transformers: models that put a picture's features in place of placeholder
+tokens (Qwen-VL with three-dimensional positions, LLaVA, Idefics3, ... and plain text models), and Mllama, which attends
+to pictures in layers of its own. Knows no cache and no decoder.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Positions = Tensor
 
 
 class Family(ABC):
-    """One architecture's answers; the picture features it keeps are its only state."""
+    """One kind of architecture; the kept picture features are its only state."""
 
     cross_layers: Sequence[int] = ()
     dimensions = 1
@@ -61,15 +61,15 @@ class Family(ABC):
         return torch.arange(len(prompt.ids))[None], len(prompt.ids)
 
     def lane(self, prompt: Prompt) -> str:
-        """Rows of the same lane may share a batch even where the family's lanes are kept apart."""
+        """Name of the prompt's lane; rows of the same lane may share a batch even if lanes are separate."""
         return "pictures" if prompt.pictures else "text"
 
     def salt(self, prompt: Prompt) -> tuple[str, ...]:
-        """What a prompt's keys and values depend on besides the tokens before."""
+        """Digests of all that a prompt's keys and values depend on besides the tokens before."""
         return ()
 
     def features(self, picture: Picture) -> Any:
-        """The picture's features, encoded once; from any thread, since whoever writes a prompt counts them."""
+        """The picture's features, encoded once. Thread-safe: every thread that writes a prompt counts them."""
         with self.lock, torch.inference_mode():
             if picture.digest not in self.kept:
                 self.kept[picture.digest] = self.encode(picture)
@@ -155,9 +155,9 @@ class InlineFamily(Family):
 
 
 class CrossAttentionFamily(Family):
-    """Mllama: the text attends to the picture in layers of its own, and to all of it from anywhere.
+    """Mllama: the text attends to the whole picture in layers of its own.
 
-    A row without picture skips those layers, so it never shares a batch with one that has a picture.
+    A row without a picture skips those layers, so it never shares a batch with a row that has one.
     """
 
     def __init__(self, model: Any) -> None:
@@ -231,7 +231,7 @@ def _batched(name: str, value: Tensor) -> bool:
 
 
 def family_of(model: Any) -> Family:
-    """Which family a model belongs to. Raises TooLong for layers whose state is no list of keys and values."""
+    """The family of a model. Raises TooLong for layers whose state is no list of keys and values."""
     text = model.config.get_text_config()
     kinds = set(getattr(text, "layer_types", None) or ["full_attention"])
     if strange := kinds - {"full_attention", "sliding_attention", "cross_attention"}:
@@ -243,7 +243,7 @@ def family_of(model: Any) -> Family:
 
 
 def window_of(model: Any) -> int:
-    """How many tokens the model may hold: its trained positions, less where its attention slides."""
+    """The most tokens that the model can hold: its trained positions, or its sliding window if that is smaller."""
     text = model.config.get_text_config()
     found = int(getattr(text, "max_position_embeddings", 0) or 0) or 1 << 30
     if "sliding_attention" in (getattr(text, "layer_types", None) or ()):

@@ -1,7 +1,7 @@
 """One report while it is being answered: its rows, its place in the grammar, its tokens so far.
 
-A job turns what was decided into the next chunk to feed, and what the model said of the chunk into tokens.
-Knows no model and no batch.
+A job turns decided tokens into the next chunk to feed, and the model's result for the chunk into tokens. Knows no model
+and no batch.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ _CLUE = 3
 
 @dataclass
 class ChunkResult:
-    """What the model said of one chunk; position i is about the token behind chunk[i].
+    """The model's result for one chunk; position i is about the token after chunk[i].
 
-    Of the first `known` positions the token behind is in the chunk; then come the scored ones.
+    The first positions are about tokens that the chunk holds, the rest about picked ones. Log-probabilities in nats.
     """
 
     known_with: list[float]
@@ -40,7 +40,7 @@ class ChunkResult:
     picked_with: list[float]
     picked_without: list[float]
     states: Sequence[torch.Tensor] = ()
-    """Of the first row with context at every position, (hidden,); empty where nobody watches them."""
+    """States of the first row with context at every position, (hidden,); empty unless the loop watches them."""
 
 
 @dataclass(eq=False)
@@ -67,17 +67,17 @@ class Job:
     generator: torch.Generator | None = None
     begun: bool = False
     alone: bool = False
-    """To be answered by itself: a batch with it has failed."""
+    """True if it must be answered by itself, because a batch with it has failed."""
 
     def __post_init__(self) -> None:
         self.draft = Draft([token for token in self.request.draft if token not in self.request.eos])
 
     def is_cancelled(self) -> bool:
-        """True, once, if the caller has cancelled; whoever waits for it is told."""
+        """True, once, if the caller has cancelled; notifies waiters."""
         return self.future.cancelled() and not self.future.set_running_or_notify_cancel()
 
     def resolve(self, outcome: Answer | Exception) -> None:
-        """End the caller's wait, unless the caller has given up."""
+        """Ends the caller's wait with an answer or a fault, unless the caller has cancelled."""
         if not self.future.set_running_or_notify_cancel():
             return
         if isinstance(outcome, Exception):
@@ -87,7 +87,7 @@ class Job:
 
     # ------------------------------------------------------------------ before the step
     def begin(self) -> None:
-        """Start (or, after memory ran out, go on): the last known token is what the first step feeds."""
+        """Starts, or goes on after memory ran out: the first step feeds the last known token."""
         if not self.begun:
             self.begun = True
             self.track = self.request.grammar.track() if self.request.grammar else None
@@ -113,7 +113,7 @@ class Job:
         return self.answer.ids[: len(self.answer.with_context)]
 
     def chunk(self, guess_limit: int) -> list[int]:
-        """What to feed now: decided tokens, then guesses. A closing job's last token says nothing more."""
+        """The next tokens to feed: decided ones, then guesses. A closing job leaves out its last token."""
         if self.closing:
             return self.pending[:-1]
         room = self.request.max_new_tokens - len(self.answer.ids) - 1
@@ -138,17 +138,17 @@ class Job:
         return rows[: self.taken + 1]
 
     def forget_guesses(self) -> None:
-        """Take the guesses out of the grammar again, as far as they got there."""
+        """Removes the guesses from the grammar's state, as far as they were taken."""
         if self.track:
             self.track.back(self.taken)
         self.guesses, self.taken = [], 0
 
     # ------------------------------------------------------------------ after the step
     def take_result(self, result: ChunkResult, choices: Sequence[int]) -> None:
-        """Take the model's word for a chunk: note log-probabilities, accept tokens, force the next ones.
+        """Takes the result for a chunk: notes log-probabilities, accepts tokens, adds forced ones.
 
-        `choices` is how many tokens the grammar left at each scored position, empty without one. Raises
-        DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
+        `choices` is the number of tokens that the grammar left at each scored position, empty without a grammar. Raises
+        DoesNotFit at a dead end and if the limit of tokens is reached within a grammar.
         """
         known = len(result.known_with)
         self._note(result.known_with, result.known_without, result.states[:known])
@@ -192,7 +192,7 @@ class Job:
         return token in self.request.eos or self.track is None or self.track.take(token)
 
     def _go_on(self) -> None:
-        """Force what follows, or end."""
+        """Adds the forced tokens that follow, or ends the answer."""
         if self.answer.ids and self.answer.ids[-1] in self.request.eos:
             if self.track and not self.track.complete:
                 raise DoesNotFit("the text that must follow is an end token of this tokenizer", self.path())
@@ -254,7 +254,7 @@ class Draft:
         return self.earlier[self.at : self.at + min(self.length, max(0, limit))]
 
     def note(self, token: int) -> None:
-        """A token of the new answer: follow it, or look for the place anew after a difference."""
+        """Follows a token of the new answer; after a difference, searches the place again."""
         self.recent = [*self.recent[-(_CLUE - 1) :], token]
         if self.at < len(self.earlier) and self.earlier[self.at] == token:
             self.at += 1
@@ -262,12 +262,12 @@ class Draft:
             self.at = self._found() or min(self.at + 1, len(self.earlier))
 
     def judge(self, guessed: int, right: int) -> None:
-        """Guess further after success, less far after failure."""
+        """Makes the next guess longer after success, shorter after failure."""
         if guessed:
             self.length = min(2 * self.length, _LONGEST_GUESS) if right == guessed else max(right + 1, _SHORTEST_GUESS)
 
     def _found(self) -> int | None:
-        """Behind the occurrence of the last tokens that is nearest to the present place."""
+        """The place after the nearest occurrence of the last tokens; None if there is none."""
         if len(self.recent) < _CLUE:
             return None
         ends = [i + _CLUE for i in range(len(self.earlier) - _CLUE + 1) if self.earlier[i : i + _CLUE] == self.recent]

@@ -1,8 +1,8 @@
 """Continuous batching: one thread owns the model, reports enter and leave between two tokens.
 
-`submit` may be called from any thread; it hands the request to the owner and returns a future. When memory
-runs out the number of reports at once is halved and what was decided so far is kept. A decoder that raises costs
-its own report; a model that raises makes its reports go on one by one. Knows requests and rows; no prompt format.
+`submit` may be called from any thread; it queues the request and returns a future. If memory runs out, the number of
+reports at once is halved and the tokens so far are kept. A decoder that raises ends its own report; if the model
+raises, its reports go on one by one. Knows requests and rows; no prompt format.
 """
 
 from __future__ import annotations
@@ -57,16 +57,16 @@ class Engine:
         self.halved = 0
 
     def generate(self, request: Request) -> Answer:
-        """Answer one request; blocks. Raises an EngineFault, or what the decoder or the model raised."""
+        """Answers one request; blocks. Raises an EngineFault, or the exception of the decoder or the model."""
         future = self.submit(request)
         try:
             return future.result()
-        except BaseException:  # whoever stops waiting (Ctrl-C) frees the place
+        except BaseException:  # a caller that stops waiting (Ctrl-C) frees its place
             future.cancel()
             raise
 
     def submit(self, request: Request) -> Future[Answer]:
-        """Queue a request. Raises TooLong at once; every other fault comes out of the future.
+        """Queues a request. Raises TooLong at once; every other fault comes from the future.
 
         Cancelling the future ends the report before its next token.
         """
@@ -87,13 +87,13 @@ class Engine:
         return job.future
 
     def close(self) -> None:
-        """Stop after the present token; what was not answered is cancelled."""
+        """Stops after the present token; requests without an answer are cancelled."""
         self.end()
         if self.thread:
             self.thread.join()
 
     def end(self) -> None:
-        """Have the loop stop, without waiting for it (so that its own thread may ask for it too)."""
+        """Tells the loop to stop without waiting for it, so that its own thread may call this too."""
         with self.lock:
             self.ended = True
             self.arrivals.put(None)
@@ -110,7 +110,7 @@ class Engine:
             self._fail_unanswered(sys.exc_info()[1])
 
     def _collect_arrivals(self) -> bool:
-        """Take what has arrived, waiting if there is nothing else to do; False to stop."""
+        """Collects new requests, waiting if there is nothing else to do; False to stop."""
         idle = not (self.jobs or self.waiting)
         while idle or not self.arrivals.empty():
             job = self.arrivals.get()
@@ -121,7 +121,7 @@ class Engine:
         return True
 
     def _admit(self) -> None:
-        """Open waiting reports; one that is to be answered alone waits for an empty batch and keeps it."""
+        """Opens waiting reports; one that must be answered alone waits for an empty batch and keeps it."""
         while self.waiting and len(self.jobs) < self.limit:
             if self.jobs and (self.waiting[0].alone or self.jobs[0].alone):
                 return
@@ -145,7 +145,7 @@ class Engine:
         job.answer.model_calls += self.runner.calls - before
 
     def _step(self) -> None:
-        """One forward pass a lane for all jobs, and what follows from it for each."""
+        """Runs one forward pass for each lane and gives every job its result."""
         for job in [job for job in self.jobs if job.is_cancelled()]:
             self._close_job(job)
         jobs, results = list(self.jobs), list[ScoredChunk]()
@@ -198,16 +198,16 @@ class Engine:
         job.rows = []
 
     def _clear_slots(self, job: Job) -> None:
-        """NaN in a slot would reach the next row there through a weight of 0."""
+        """Clears the job's slots: NaN in a slot would reach the next row there through a weight of 0."""
         self.runner.prefixes.clear()
         for row in job.rows:
             row.lane.cache.clear(row.slot)
 
     def _restart(self, fault: Exception) -> None:
-        """What was computed for all has failed: forget it and go on from every report's tokens so far.
+        """Discards a failed computation of the batch and goes on from every report's tokens so far.
 
-        Where memory ran out the number of reports at once is halved. After any other fault nobody knows whose
-        it was, so each report goes on alone; one that was alone has had its chance.
+        If memory ran out, the number of reports at once is halved. After any other fault the report that caused it is
+        unknown, so each report goes on alone; a report that was alone ends with the fault.
         """
         jobs, self.jobs = self.jobs, []
         self.runner.reset()
@@ -226,7 +226,7 @@ class Engine:
             torch.cuda.empty_cache()
 
     def _fail_unanswered(self, fault: BaseException | None) -> None:
-        """The loop has ended: nobody waits for ever."""
+        """Ends every unanswered request with a fault after the loop has ended."""
         with self.lock:
             self.ended = True
             self.reason = f": {type(fault).__name__}: {fault}" if fault else ""

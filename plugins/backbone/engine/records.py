@@ -10,7 +10,7 @@ from plugins.backbone.engine.grammar import Grammar
 
 
 class Policy(Protocol):
-    """A decoder, as the loop sees it: `sgcad_core.interfaces.Decoder` is one."""
+    """The decoder's methods that the loop calls; `sgcad_core.interfaces.Decoder` has them."""
 
     def scores(self, with_context: Any, without_context: Any | None) -> Any:
         """Combine logits (rows, vocabulary); -inf excludes."""

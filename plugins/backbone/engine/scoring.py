@@ -1,8 +1,8 @@
 """From two rows of logits to a token: contrast, plausibility, grammar, temperature and top-p, pick.
 
-The first two are the decoder's `scores`, the last two its `draw`; the grammar stands between them and
-applies to the combined logits. All jobs come to the host at once. A decoder is others' code: what it raises,
-and scores that are none, cost its own report alone. Knows jobs and tensors; no model, no cache.
+The first two are the decoder's `scores`, the last two its `draw`; the grammar stands between them and applies to the
+combined logits. The results of all jobs come to the host at once. A decoder may be third-party code: its exceptions and
+invalid scores end only its own report. Knows jobs and tensors; no model, no cache.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _BLOCK = 8
 
 @dataclass
 class ScoredChunk:
-    """What one job is told of its chunk: `said`, or the fault that ends it."""
+    """The scores of one job's chunk: `result`, or the fault that ends the job."""
 
     choices: list[int] = field(default_factory=list)
     parts: list[Tensor] = field(default_factory=list)
@@ -36,7 +36,7 @@ class ScoredChunk:
 def score_chunks(
     jobs: Sequence[Job], with_context: Sequence[Tensor], without_context: Sequence[Tensor | None], words: int
 ) -> list[ScoredChunk]:
-    """Score every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
+    """Scores every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
     found = [ScoredChunk() for _ in jobs]
     for i, job in enumerate(jobs):
         prior = without_context[i]
@@ -77,7 +77,7 @@ class _Row:
 
     @classmethod
     def of(cls, logits: Tensor) -> _Row:
-        """On a CPU in blocks that stay in its cache."""
+        """The row with its mass, computed on a CPU in blocks that fit its cache."""
         blocks = [logits] if logits.is_cuda else torch.split(logits, _BLOCK)
         return cls(logits, torch.cat([block.float().logsumexp(-1) for block in blocks]))
 
@@ -88,7 +88,7 @@ class _Row:
 
 
 def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> None:
-    """Fill in what is known of a chunk, on the device."""
+    """Computes a chunk's log-probabilities and picks, on the device."""
     mask = job.masks(words)
     one.choices = choice_counts(mask).tolist() if mask is not None else []
     known = len(job.pending) - 1
@@ -106,7 +106,7 @@ def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> 
 def _all_picked(
     job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor
 ) -> tuple[Tensor, Tensor]:
-    """Whether the decoder was sound, and one token a position; where the grammar leaves one, nothing is scored."""
+    """Whether the decoder's scores are valid, and one token for each position; forced positions are not scored."""
     free = [i for i in range(len(rows[0])) if mask is None or left[i] != 1]
     if mask is None or len(free) == len(left):
         return _picked(job, rows, mask, free, finite)
@@ -120,7 +120,7 @@ def _all_picked(
 
 
 def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], finite: Tensor) -> tuple[Tensor, Tensor]:
-    """One token a position; where plausibility and grammar leave none, the most likely one with context."""
+    """One token for each position; if plausibility and grammar leave none, the most likely one with context."""
     full = [row.to(torch.float32, copy=True) for row in rows]
     scores = job.request.policy.scores(full[0], full[1] if len(full) > 1 else None)
     if not isinstance(scores, Tensor) or scores.shape != rows[0].shape:
@@ -145,7 +145,7 @@ def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], fi
 
 
 def _drawn(job: Job, scores: Tensor, free: list[int]) -> Tensor:
-    """One token a position, (positions,), each by the random numbers of its place in the answer."""
+    """One token for each position, (positions,), drawn with the random numbers of its place in the answer."""
     found = []
     for i, position in enumerate(free):
         job.place = len(job.answer.ids) + position

@@ -1,7 +1,7 @@
-"""The far end: puts up the walls and says so, reads the rules, runs one script, answers one JSON object.
+"""The sandbox's process: confines itself and reports that, checks the rules, runs one script, answers one JSON object.
 
-The script must leave an `xosc.Scenario` in its variable `scenario`. Nothing of the script is even parsed before
-the walls stand. Runs once and ends; knows nothing of the project.
+The script must leave an `xosc.Scenario` in its variable `scenario`. No part of the script is parsed before the
+confinement is in place. Runs once and ends; knows nothing of the project.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ RECURSION = 400
 
 
 def main(site: str, status: int) -> None:
-    """Serve the job on standard input, then end. `status` is the descriptor on which the walls are told."""
+    """Runs the job on standard input, then ends. `status` is the descriptor that reports the confinement."""
     job: Json = json.loads(sys.stdin.buffer.read())
     os.close(0)
     own = isolation.isolate((1, 2, status))
@@ -48,7 +48,7 @@ def main(site: str, status: int) -> None:
 
 
 def _tell(status: int, **what: object) -> None:
-    """Say what stands and close the channel: nothing that runs later can say it again."""
+    """Reports the confinement and closes the channel, so that nothing that runs later can report it again."""
     _write(status, json.dumps(what).encode())
     os.close(status)
 
@@ -70,7 +70,7 @@ def _run(source: str, modules: dict[str, ModuleType] | Any, printed: list[str]) 
 
 
 def _unchecked(source: str) -> Json:
-    """Run with every builtin and module at hand: what the walls hold when the rules are not asked."""
+    """Runs with every builtin and module, to test the confinement without the rules."""
     space: Json = {"__name__": "__main__"}
     exec(compile(source, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
     return {"ok": True, "xosc": str(space.get("found", ""))}

@@ -1,10 +1,10 @@
-"""The near end: a script goes over to a fresh interpreter and comes back as a scenario file or as one fault.
+"""Runs a script in a new interpreter and reads back a scenario file or one fault.
 
-The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its
-own that is killed as a whole. Two channels come back. *Status* says which walls stand: it is written before a line
-of the script is read and closed then, so a script cannot forge it. The *answer* is as untrusted as the script that
-may have written it: it is bounded, it opens with a secret of this run, and it is read by a strict model; one that
-does not fit is a fault of that script and of nothing else.
+The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its own
+that is killed as a whole. Two channels come back. *Status* names the walls (parts of the confinement) that are in place: it
+is written and closed before a line of the script is read, so a script cannot forge it. The *answer* is as untrusted as
+the script that may have written it: it is bounded, begins with a secret of this run, and is read by a strict model; an
+answer that does not fit is a fault of that script only.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Ran:
 
 
 class _Strict(BaseModel):
-    """Read from bytes that anybody may have written."""
+    """A model that reads bytes from an untrusted source."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -152,7 +152,7 @@ def _site() -> str:
 # ------------------------------------------------------------------ the process
 @dataclass
 class _Channels:
-    """What the process wrote on each channel; `cut` is why we stopped listening."""
+    """What the process wrote on each channel; `cut` is why reading stopped early."""
 
     status: bytearray = field(default_factory=bytearray)
     said: bytearray = field(default_factory=bytearray)
@@ -209,7 +209,7 @@ def _read_channels(process: subprocess.Popen[bytes], status: int, deadline: floa
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End the whole group; one that has closed its pipes gets a moment to leave its exit code."""
+    """Ends the process group; a process that has closed its pipes gets a moment to leave its exit code."""
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(0.1)
     with contextlib.suppress(ProcessLookupError, PermissionError):
