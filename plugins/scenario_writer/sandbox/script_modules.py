@@ -1,9 +1,9 @@
 """The modules that a script can import: fronts that hold public names only, made before the process is confined.
 
 A front prevents a script from reaching other modules through a module's own imports. scenariogeneration's xosc is
-loaded without its package's __init__ and without the schema library, which is not needed: 0.1 s instead of 0.8 s. Everything
-that turns a text into a name or into code is left out: dataclasses (which compile source made of field names),
-enumerations made by a call, and the library's parsers (which read attributes named in a file).
+loaded without its package's __init__ and without the schema library, which is not needed: 0.1 s instead of 0.8 s.
+Everything that turns a text into a name or into code is left out: dataclasses (which compile source made of field
+names), enumerations made by a call, and the library's parsers (which read attributes named in a file).
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Runs a script in a new interpreter and reads back a scenario file or one fault.
 
 The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its own
-that is killed as a whole. Two channels come back. *Status* names the walls (parts of the confinement) that are in place: it
-is written and closed before a line of the script is read, so a script cannot forge it. The *answer* is as untrusted as
-the script that may have written it: it is bounded, begins with a secret of this run, and is read by a strict model; an
-answer that does not fit is a fault of that script only.
+that is killed as a whole. Two channels come back. *Status* names the walls (parts of the confinement) in place:
+it is written and closed before a line of the script is read, so a script cannot forge it. The *answer* is as untrusted
+as the script that may have written it: it is bounded, begins with a secret of this run, and is read by a strict model;
+an answer that does not fit is a fault of that script only.
 """
 
 from __future__ import annotations
