@@ -17,10 +17,7 @@ from sgcad_core.interfaces import Driver
 
 
 class Aeb(Driver):
-    """Drives as the report's driver, with automatic emergency braking on the time to collision.
-
-    range_m is how far the sensor sees, metres.
-    """
+    """Drives as the report's driver, with automatic emergency braking on the time to collision."""
 
     ttc_s: float = Field(1.3, gt=0, le=5)
     """Braking is decided where boxes would touch within this time on present courses."""
@@ -31,6 +28,7 @@ class Aeb(Driver):
     half_view_deg: float = Field(50.0, gt=0, le=180)
     """To either side of ahead, seen from the front."""
     range_m: float = Field(80.0, gt=0, le=300)
+    """How far the sensor sees."""
 
     def take_over(self, task: Task) -> Seat:
         """The report's driver with the brake assistant."""

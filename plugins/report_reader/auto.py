@@ -17,10 +17,7 @@ READERS: dict[str, type[EvidenceReader]] = {".txt": Text, ".md": Text, ".xml": N
 
 
 class Auto(EvidenceReader):
-    """Reads a case folder, a text file, NHTSA case XML or a PDF; the kind and the suffix select the reader.
-
-    use_narrative, use_diagrams and use_coded_fields select the evidence.
-    """
+    """Reads a case folder, a text file, NHTSA case XML or a PDF; the kind and the suffix select the reader."""
 
     def read(self, source: Path) -> CrashReport:
         """Reads one case with the reader that fits. Raises BadInput that lists what can be read."""

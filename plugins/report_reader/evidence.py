@@ -44,7 +44,9 @@ class EvidenceReader(ReportReader, ABC):
     """A reader whose evidence can be narrowed for an ablation; each switch is a config field."""
 
     use_narrative: bool = True
+    """Use the narrative as evidence."""
     use_diagrams: bool = True
+    """Use the diagrams as evidence."""
     use_coded_fields: bool = False
     """Append NHTSA's coded fields to the narrative; no compared config does."""
     redact_persons: bool = True

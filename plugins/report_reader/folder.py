@@ -20,10 +20,7 @@ PICTURE_STEMS = ("diagram", "scene")
 
 
 class Folder(EvidenceReader):
-    """Reads report.txt or narrative.txt with diagram.png|jpg|..., else the folder's only XML, PDF or text file.
-
-    use_narrative, use_diagrams and use_coded_fields select the evidence.
-    """
+    """Reads report.txt or narrative.txt with diagram.png|jpg|..., else the folder's only XML, PDF or text file."""
 
     def read(self, source: Path) -> CrashReport:
         """Reads one folder. Raises BadInput that names the missing or wrong file."""

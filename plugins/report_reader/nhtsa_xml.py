@@ -50,10 +50,7 @@ class Case(NamedTuple):
 
 
 class NhtsaXml(EvidenceReader):
-    """Reads NMVCCS and CIREN case XML; coded fields become evidence only with use_coded_fields.
-
-    use_narrative and use_diagrams select the other evidence.
-    """
+    """Reads NMVCCS and CIREN case XML; coded fields become evidence only with use_coded_fields."""
 
     def read(self, source: Path) -> CrashReport:
         """Reads one case file. Raises BadInput for hostile, broken and foreign XML."""

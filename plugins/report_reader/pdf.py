@@ -22,10 +22,7 @@ MIN_PICTURE_PX = 200
 
 
 class Pdf(EvidenceReader):
-    """Reads a PDF with a text layer; its largest embedded picture is the crash diagram.
-
-    use_narrative and use_diagrams select the evidence.
-    """
+    """Reads a PDF with a text layer; its largest embedded picture is the crash diagram."""
 
     def read(self, source: Path) -> CrashReport:
         """Reads one PDF. Raises BadInput for scans, encrypted and broken files."""

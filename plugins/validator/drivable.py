@@ -17,14 +17,12 @@ from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 
 class Drivable(Validator):
-    """Doubts vehicles that exceed the limits of driving before their first contact, and boxes that overlap at rest.
-
-    odd is the severity of both.
-    """
+    """Doubts vehicles that exceed the limits of driving before their first contact, and boxes that overlap at rest."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "1"
     odd: Literal["doubt", "note"] = "doubt"
+    """Severity of both findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """One for each such vehicle, in the behavior's order, if no loss of control is told; one for an overlap."""

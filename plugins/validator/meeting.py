@@ -25,14 +25,12 @@ from sgcad_core.roads.lane_graph import LaneGraph
 
 
 class Meeting(Validator):
-    """Doubts contacts that happen only with skids, spins or maneuvers that the report does not tell.
-
-    odd is the severity of the finding.
-    """
+    """Doubts contacts that happen only with skids, spins or maneuvers that the report does not tell."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "2"
     odd: Literal["doubt", "note"] = "doubt"
+    """Severity of the finding."""
     odd_from: float = 0.5
     """Oddity (`Plan.oddity`) from which a contact is doubted."""
     try_others: bool = False

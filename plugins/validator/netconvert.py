@@ -14,12 +14,13 @@ _EMPTY = ("Success.", "Quitting (on error).")
 
 
 class Netconvert(Validator):
-    """Reports netconvert's errors and warnings; most is the largest number of findings."""
+    """Reports netconvert's errors and warnings."""
 
     stage: ClassVar[str] = "road"
     warnings: Literal["repair", "note", "off"] = "note"
     """Severity of warnings; most are about things that the model cannot see (smooth shapes, signal programs)."""
     most: int = 12
+    """Largest number of findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Errors if there is no network, then warnings."""

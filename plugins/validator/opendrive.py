@@ -10,10 +10,11 @@ from sgcad_core.interfaces import Validator
 
 
 class OpenDrive(Validator):
-    """Checks the .xodr against OpenDRIVE's schema and ASAM's rules; most is the largest number of findings."""
+    """Checks the .xodr against OpenDRIVE's schema and ASAM's rules."""
 
     stage: ClassVar[str] = "road"
     most: int = 20
+    """Largest number of findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """At most `most` findings; none for a network without .xodr, which the validator netconvert reports."""

@@ -18,15 +18,13 @@ _WORKER = Worker("plugins.validator._sumo_worker:trial")
 
 
 class Routes(Validator):
-    """Checks a scenario of SUMO routes by its schema and by a trial run in SUMO; skips OpenSCENARIO files.
-
-    timeout_s is the longest wait for SUMO.
-    """
+    """Checks a scenario of SUMO routes by its schema and by a trial run in SUMO; skips OpenSCENARIO files."""
 
     stage: ClassVar[str] = "scenario"
     longest_s: float = 60.0
     """Simulated seconds of the trial."""
     timeout_s: float = 60.0
+    """Longest wait for SUMO, seconds."""
     no_collision: Literal["repair", "note"] = "note"
     """Severity if SUMO's drivers avoid the declared crash."""
 

@@ -18,13 +18,11 @@ _WORKER = Worker("plugins.validator._sumo_worker:load")
 
 
 class SumoLoad(Validator):
-    """Starts SUMO on the .net.xml; about 10 ms after the first start of the worker (0.5 s).
-
-    timeout_s is the longest wait for SUMO.
-    """
+    """Starts SUMO on the .net.xml; about 10 ms after the first start of the worker (0.5 s)."""
 
     stage: ClassVar[str] = "road"
     timeout_s: float = 30.0
+    """Longest wait for SUMO, seconds."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Schema faults, else at most one finding; none for a network without .net.xml."""

@@ -26,14 +26,13 @@ _finding = Finder("topology")
 
 
 class Topology(Validator):
-    """Finds faults of a network that netconvert accepts: loose parts, nodes or roads on each other, dead directions.
-
-    min_edge_m is the shortest road between two junctions, min_node_gap_m the least distance of two nodes.
-    """
+    """Finds faults of a network that netconvert accepts: loose parts, nodes or roads on each other, dead directions."""
 
     stage: ClassVar[str] = "road"
     min_edge_m: float = 5.0
+    """Shortest road between two junctions."""
     min_node_gap_m: float = 6.0
+    """Least distance of two nodes."""
     min_angle_deg: float = 8.0
     """Least angle between two roads that leave a node; below it they lie on each other."""
     max_findings: int = 20
