@@ -12,9 +12,9 @@ from xml.sax.saxutils import quoteattr
 import libsumo
 
 from plugins.driver._sumo_messages import Begin, Habits, Mover, Order, Place, Step
+from plugins.sumo_session import AS_TOLD, QUIET, front_bumper, start, sumo_angle
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.formats.sumo.sumo_session import AS_TOLD, QUIET, front_bumper, start, sumo_angle
 
 _OPTIONS = ("--collision.action", "none", *AS_TOLD, *QUIET, "--no-warnings", "true")
 EGO = "ego"

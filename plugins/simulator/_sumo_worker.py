@@ -12,9 +12,7 @@ from typing import NamedTuple
 import libsumo
 import numpy as np
 
-from sgcad_core.case.records import Floats
-from sgcad_core.errors import SimulationFailed
-from sgcad_core.formats.sumo.sumo_session import (
+from plugins.sumo_session import (
     AS_TOLD,
     COLLISIONS,
     QUIET,
@@ -24,6 +22,8 @@ from sgcad_core.formats.sumo.sumo_session import (
     running,
     sumo_angle,
 )
+from sgcad_core.case.records import Floats
+from sgcad_core.errors import SimulationFailed
 
 _REPLAY = ("--collision.action", "none", *AS_TOLD, *QUIET, "--no-warnings", "true")
 EXACT_CLASS = "passenger"

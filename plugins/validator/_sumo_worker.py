@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import libsumo
 
-from sgcad_core.formats.sumo.sumo_session import AS_TOLD, COLLISIONS, FAULTS, QUIET, running
+from plugins.sumo_session import AS_TOLD, COLLISIONS, FAULTS, QUIET, running
 
 STEP_S = 0.05
 LOAD_STEPS = 2
