@@ -1,1 +1,1 @@
-"""How it is done: one folder per plugin kind, one file per choice. A kind never imports another kind."""
+"""The built-in plugins: one folder for each kind, one file for each plugin. A kind never imports another kind."""

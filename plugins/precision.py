@@ -1,4 +1,4 @@
-"""Which floating point a device is fast in. Loads torch only."""
+"""The floating-point type in which a device computes fast. Loads torch only."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import torch
 
 
 def native_dtype(device: str) -> torch.dtype:
-    """bf16 where a device has instructions for it, else fp32, which is then several times as fast.
+    """bf16 if the device has instructions for it, else fp32, which is then several times as fast.
 
-    x86 processors say so (AVX512-BF16, AMX) and so do CUDA cards; other processors are not asked and get fp32, other
-    accelerators bf16.
+    x86 processors (AVX512-BF16, AMX) and CUDA cards report it; other processors get fp32, other accelerators bf16.
     """
     if device.startswith("cpu"):
         able = torch.cpu._is_avx512_bf16_supported() or torch.cpu._is_amx_tile_supported()

@@ -34,9 +34,9 @@ Ask = Callable[[Context, Query], Generation]
 
 
 class Plugin(BaseModel, ABC):
-    """Fields are the configuration; unknown keys are errors."""
+    """Fields are the configuration; `sgcad plugins show` prints their docstrings. Unknown keys are errors."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     kind: ClassVar[str]
     version: ClassVar[str] = "1"

@@ -1,1 +1,1 @@
-"""Prompt -> tokens: owns the model, the token loop and its caches. One file per choice."""
+"""Backbones: from a prompt to tokens, with the model, the token loop and its caches. One file for each plugin."""

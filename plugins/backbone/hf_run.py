@@ -1,6 +1,6 @@
-"""A loaded model at work: prompts in, Generations out, the loop's faults as the project's errors.
+"""A loaded model: from prompts to Generations, with the loop's faults as the project's errors.
 
-Kept apart from the plugin class so that naming `hf_vision` in a YAML loads no torch. Knows no file.
+A module of its own, so that naming `hf_vision` in a YAML loads no torch. Knows no file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from sgcad_core.case.records import Finding, Generation, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 
 if TYPE_CHECKING:
-    from plugins.backbone.engine.grammar import Grammar, GrammarMaker
+    from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
     from plugins.backbone.engine.loop import Engine
     from plugins.backbone.engine.records import Answer, Policy, Prompt
     from plugins.backbone.hf_prompt import Prompter
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Call:
-    """One question as the loop needs it; `without_context` None = that row is not run."""
+    """One question for the loop; `without_context` None: that row is not run."""
 
     with_context: Parts
     without_context: Parts | None
@@ -45,20 +45,20 @@ class Call:
 
 
 @dataclass(frozen=True)
-class Running:
-    """One model, its loop and what writes its prompts."""
+class RunningModel:
+    """One model with its token loop, its prompt writer and its grammar compiler."""
 
     engine: Engine
     prompter: Prompter
-    maker: GrammarMaker
+    maker: GrammarCompiler
     eos: frozenset[int]
     name: str
-    told: Mapping[str, Any] = field(default_factory=dict)
-    """Heads of the model's own that say whether the evidence tells a value (`hf_load.Loaded.told`)."""
+    evidence_heads: Mapping[str, Any] = field(default_factory=dict)
+    """Heads of the model's own that say whether the evidence tells a value (`hf_load.Loaded.evidence_heads`)."""
 
     def answer(self, call: Call) -> tuple[Generation, tuple[int, ...]]:
         """The generation and its token ids. Raises the project's errors, see `HfVision.generate`."""
-        from plugins.backbone.engine import records
+        from plugins.backbone.engine import faults, records
 
         try:
             grammar = self._grammar(call.schema)
@@ -76,20 +76,20 @@ class Running:
                 views=views,
             )
             found = self.engine.generate(request)
-        except records.DoesNotFit as fault:
+        except faults.DoesNotFit as fault:
             finding = Finding(
                 source="backbone", what=str(fault), where=fault.path, remedy="answer shorter, or raise max_new_tokens"
             )
             raise InvalidOutput(f"{fault} (at {fault.path})", [finding]) from fault
-        except records.BadLogits as fault:
+        except faults.BadLogits as fault:
             raise InvalidOutput(f"{self.name}: {fault}; try dtype bfloat16 or float32") from fault
-        except records.BadScores as fault:
+        except faults.BadScores as fault:
             raise InvalidOutput(f"{self.name}: {fault}; mend the decoder") from fault
-        except records.TooLong as fault:
+        except faults.TooLong as fault:
             raise BadInput(f"{self.name}: {fault}; set backbone.truncate, or lower backbone.max_new_tokens") from fault
-        except records.TooBig as fault:
+        except faults.TooBig as fault:
             raise ConfigError(f"{self.name}: {fault}; use quantization, device_map or a smaller model") from fault
-        except records.EngineFault as fault:
+        except faults.EngineFault as fault:
             raise ConfigError(f"{self.name}: {fault}") from fault
         computed = f"computed in {str(self.engine.model.dtype).removeprefix('torch.')}"
         return self._generation(found, [*self.prompter.notes, *note, computed]), tuple(found.ids)
@@ -107,7 +107,7 @@ class Running:
         return self.maker.grammar(schema)
 
     def _fitted(self, parts: Parts, call: Call) -> tuple[list[Prompt], list[str]]:
-        """The prompt in its views, its narrative cut to the window if the config allows that; a note if it was cut."""
+        """The prompt in its views, and a note if its narrative was cut to the window, which `truncate` allows."""
         room = self.engine.window - call.max_new_tokens
         prompts = self._views(parts, call.views)
         kept = whole = len(parts.narrative)
@@ -120,7 +120,7 @@ class Running:
         return prompts, [f"the narrative was cut from {whole} to {kept} characters to fit {self.engine.window} tokens"]
 
     def _views(self, parts: Parts, count: int) -> list[Prompt]:
-        """One prompt a view; a single one where there is nothing to be seen."""
+        """One prompt for each view; a single one if the model sees no picture."""
         sees = parts.diagrams and self.prompter.loaded.prepare
         return [self.prompter.prompt(parts, view) for view in range(count if sees else 1)]
 
@@ -148,9 +148,9 @@ class Running:
         )
 
     def _told(self, text: str, ends: Sequence[int], found: Answer) -> dict[str, float]:
-        """By path: how likely the evidence tells the value, of those that were a choice and whose kind has a head."""
+        """By path: the probability that the evidence tells the value, for chosen values whose field has a head."""
         places = {path: at for path, at in first_tokens(text, ends).items() if not found.forced[at]}
-        heads = {path: head for path in places if (head := self.told.get(name_of(path))) is not None}
+        heads = {path: head for path in places if (head := self.evidence_heads.get(name_of(path))) is not None}
         logits = {path: float(found.states[places[path]] @ head[:-1] + head[-1]) for path, head in heads.items()}
         return {path: 1 / (1 + math.exp(-logit)) for path, logit in logits.items()}
 
@@ -178,30 +178,29 @@ def options(dtype: str, attention: str, device_map: str | dict[str, int | str] |
     return found | ({"device_map": device_map} if device_map is not None else {})
 
 
-_RUNNING: WeakValueDictionary[str, Running] = WeakValueDictionary()
+_RUNNING: WeakValueDictionary[str, RunningModel] = WeakValueDictionary()
 _LOCKS: defaultdict[str, threading.Lock] = defaultdict(threading.Lock)
-_LOOKING = threading.Lock()
+_LOCKS_LOCK = threading.Lock()
 
 
-def shared(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> Running:
-    """What runs already under the same options, or is started now (see `start`).
+def shared_model(stamp: str, name: str, revision: str | None, settings: Mapping[str, Any], **how: Any) -> RunningModel:
+    """The model that runs already under the same options, or a new one (see `start_model`).
 
-    The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its
-    prefix cache, and the last that lets go frees both. `stamp` tells folders (of weights, of an adapter) whose files
-    were replaced.
+    The arms of a study differ in their decoder, not in their model: they share one copy of the weights and its prefix
+    cache, and the last user frees both. `stamp` changes if the files of a folder were replaced.
     """
     key = repr((stamp, name, revision, sorted(settings.items()), sorted(how.items())))
-    with _LOOKING:
+    with _LOCKS_LOCK:
         lock = _LOCKS[key]
-    with lock:  # a model that takes minutes keeps nobody waiting who asks another
+    with lock:  # loading one model for minutes does not block another
         running = _RUNNING.get(key)
         if running is None or running.engine.ended:
-            running = _RUNNING[key] = start(name, revision, settings, **how)
+            running = _RUNNING[key] = start_model(name, revision, settings, **how)
             weakref.finalize(running, running.engine.end)
         return running
 
 
-def start(
+def start_model(
     name: str,
     revision: str | None,
     settings: Mapping[str, Any],
@@ -212,13 +211,13 @@ def start(
     prefix_bytes: int,
     pictures_first: bool,
     adapter: str | None = None,
-) -> Running:
-    """Load a model, check that batching it is right, start its loop. Raises ConfigError or MissingTool."""
+) -> RunningModel:
+    """Loads a model, checks its batching and starts its loop. Raises ConfigError or MissingTool."""
     from plugins.backbone.engine.check import batching
     from plugins.backbone.engine.families import family_of
-    from plugins.backbone.engine.grammar import GrammarMaker
+    from plugins.backbone.engine.faults import EngineFault
+    from plugins.backbone.engine.grammar import GrammarCompiler
     from plugins.backbone.engine.loop import Engine
-    from plugins.backbone.engine.records import EngineFault
     from plugins.backbone.hf_load import load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 
@@ -231,9 +230,9 @@ def start(
         raise ConfigError(f"backbone.model {name}: {fault}") from fault
     eos = _end_tokens(loaded.model, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
-    maker = GrammarMaker(loaded.tokenizer, vocabulary, sorted(eos))
-    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.told))
-    return Running(engine, prompter, maker, frozenset(eos), name, loaded.told)
+    maker = GrammarCompiler(loaded.tokenizer, vocabulary, sorted(eos))
+    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
+    return RunningModel(engine, prompter, maker, frozenset(eos), name, loaded.evidence_heads)
 
 
 def _end_tokens(model: Any, tokenizer: Any) -> set[int]:

@@ -7,6 +7,7 @@ Text models work too; they see no diagrams. Needs no torchvision.
 from __future__ import annotations
 
 import hashlib
+import re
 import threading
 from collections import OrderedDict
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from plugins.backbone import hf_gguf, hf_run, hf_size
+from plugins.backbone import hf_gguf, hf_run
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
@@ -22,11 +23,19 @@ from sgcad_core.interfaces import Backbone, Decoder
 
 _KEPT_ANSWERS = 256
 _WHOLE_BYTES = 1 << 24
-"""Files up to here are read whole for the fingerprint; of larger ones as much of either end."""
+"""Files up to this size are read whole for the fingerprint; of larger ones this many bytes of either end."""
+BYTES = {"float32": 4.0, "bfloat16": 2.0, "float16": 2.0, "native": 2.0, "auto": 2.0}
+QUANTIZED = {"int8": 1.1, "int4": 0.62}
+"""Bytes a parameter; what is kept in 16 bits (embeddings, norms, the vision tower) adds to a byte and a half byte."""
+_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 
 
 class HfVision(Backbone):
-    """A local model with logits, so every decoder may be paired with it."""
+    """Runs a local image-text model of transformers; it gives logits, so it works with every decoder.
+
+    revision is the version of a model named by its hub id. quantization needs bitsandbytes, attn_implementation is
+    transformers' own option, max_new_tokens is the limit of one answer.
+    """
 
     gives_logits: ClassVar[bool] = True
     version: ClassVar[str] = "2"
@@ -55,7 +64,7 @@ class HfVision(Backbone):
     always_ground: bool = Field(False, description="run the row without context for decoders that do not need it too")
 
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
-    _running: hf_run.Running | None = PrivateAttr(default=None)
+    _running: hf_run.RunningModel | None = PrivateAttr(default=None)
     _stamp: str | None = PrivateAttr(default=None)
     _answers: OrderedDict[str, tuple[str, tuple[int, ...]]] = PrivateAttr(default_factory=OrderedDict)
 
@@ -75,17 +84,17 @@ class HfVision(Backbone):
         return self
 
     def load(self) -> None:
-        """Import what runs the model and load its weights."""
+        """Imports the libraries and loads the weights now instead of at the first question."""
         self._loaded()
 
     def weights_gb(self) -> float | None:
-        """By the folder's files, else by the number of parameters in the name."""
+        """Memory of the weights, decimal GB, by the folder's files, else by the number of parameters in the name."""
         place = Path(self.model)
         folder = place if place.is_dir() else settings.ROOT / self.model
-        return hf_size.weights_gb(folder, self.model, self.dtype, self.quantization)
+        return weights_gb(folder, self.model, self.dtype, self.quantization)
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
-        """Answer a query; blocks until the loop has it.
+        """Answers a query; blocks until the token loop has finished the answer.
 
         Raises InvalidOutput (nothing valid fits, or the model gave NaN), BadInput (the prompt exceeds the
         window), ConfigError or MissingTool (the model cannot be loaded or batched).
@@ -118,12 +127,12 @@ class HfVision(Backbone):
             return None
         return parts(decoder.contrast_context(context), query)
 
-    def _loaded(self) -> hf_run.Running:
+    def _loaded(self) -> hf_run.RunningModel:
         stamp = self.stamp
         with self._lock:
             if self._running is None or self._running.engine.ended:
                 self._running = None  # a loop that has ended holds its model no longer
-                self._running = hf_run.shared(
+                self._running = hf_run.shared_model(
                     stamp,
                     str(hf_gguf.unpacked(self.model)) if hf_gguf.is_gguf(self.model) else self.model,
                     self.revision,
@@ -139,7 +148,7 @@ class HfVision(Backbone):
 
 
 def folder_stamp(model: str) -> str:
-    """A digest of a model folder's files but its notes (*.md); "" where there is no such folder."""
+    """A digest of the files of a model folder except its notes (*.md); "" if there is no such folder."""
     folder = next((p for p in (Path(model), settings.ROOT / model) if p.is_dir()), None)
     found = hashlib.sha256()
     for file in sorted(folder.iterdir()) if folder else ():
@@ -151,3 +160,17 @@ def folder_stamp(model: str) -> str:
                 opened.seek(max(0, size - _WHOLE_BYTES))
                 found.update(opened.read())
     return found.hexdigest()[:16] if folder else ""
+
+
+def weights_gb(folder: Path, name: str, dtype: str, quantization: str) -> float | None:
+    """Decimal gigabytes of weights in memory; None if neither the folder nor the name gives them.
+
+    The files of a folder are taken to be stored in 16 bits unless the weights are loaded as stored ("auto").
+    """
+    per_parameter = QUANTIZED.get(quantization, BYTES.get(dtype, 2.0))
+    stored = sum(file.stat().st_size for file in folder.glob("*.safetensors")) if folder.is_dir() else 0
+    if stored:
+        as_stored = dtype == "auto" and quantization == "none"
+        return stored / 1e9 * (1.0 if as_stored else per_parameter / 2.0)
+    found = _BILLIONS.findall(Path(name).name)
+    return float(found[-1]) * per_parameter if found else None

@@ -1,8 +1,8 @@
 """Any server that speaks OpenAI's chat completions: vLLM, llama.cpp, Ollama, SGLang, OpenAI itself.
 
-The diagram travels as a data URL, the answer's JSON schema as `response_format`. Such a server hands out
-no logits of the whole vocabulary, so contrastive decoders are refused before anything starts. Knows no
-model; whether the server obeyed the schema is for the writer to find out.
+The diagram is sent as a data URL, the answer's JSON schema as `response_format`. Such a server gives no logits of the
+whole vocabulary, so contrastive decoders are refused before anything starts. Knows no model; the writer checks whether
+the answer keeps the schema.
 """
 
 from __future__ import annotations
@@ -36,7 +36,11 @@ _SPECIAL = re.compile(
 
 
 class OpenAIChat(Backbone):
-    """One chat completion a query; retries where waiting helps, says what to mend where it does not."""
+    """Asks a server with OpenAI's chat completions, one request for each query; retries faults that may pass.
+
+    model is the server's name of the model, max_new_tokens the limit of one answer, timeout_s the longest wait for a
+    reply, retries the further tries after a fault that may pass.
+    """
 
     gives_logits: ClassVar[bool] = False
     base_url: str = Field("http://localhost:8000/v1", description="up to and with /v1")
@@ -51,7 +55,7 @@ class OpenAIChat(Backbone):
     )
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
-        """Ask the server.
+        """Asks the server.
 
         Raises InvalidOutput for an answer that is empty or cut off, Refused where the model declines,
         ConfigError for a request that the server rejects, MissingTool where no server answers.
@@ -166,9 +170,9 @@ class OpenAIChat(Backbone):
 
 
 def defused(text: str) -> str:
-    """Evidence without words that servers take for special tokens: a space breaks each one up, people still read it.
+    """Evidence in which a space breaks up each word that a server could take for a special token.
 
-    Which ones a server knows nobody tells, so all common forms count: <|...|>, <s>, </s>, [INST], <<SYS>>,
+    Servers do not list their special tokens, so all common forms count: <|...|>, <s>, </s>, [INST], <<SYS>>,
     <start_of_turn>, <image>, <think> and their ends.
     """
     return _SPECIAL.sub(lambda found: f"{found[0][0]} {found[0][1:]}", text)

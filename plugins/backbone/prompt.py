@@ -1,6 +1,6 @@
 """The parts of a prompt in their fixed order: task, passages | evidence | repair.
 
-The order serves prefix reuse: what many calls share stands first, what changes stands last. Knows no
+The order serves prefix reuse: the parts that many calls share stand first, those that change stand last. Knows no
 tokenizer, no chat format and no model.
 """
 
@@ -26,12 +26,12 @@ class Parts:
 
     @property
     def shared(self) -> str:
-        """What every attempt and both rows begin with."""
+        """The beginning that every attempt and both rows share."""
         return "\n\n".join(text for text in (self.task, *self.passages) if text)
 
 
 def parts(context: Context | None, query: Query) -> Parts:
-    """Split a call into its parts; `context` None is the context-free row: no narrative, no diagram."""
+    """The parts of a call; `context` None is the row without context: no narrative, no diagram."""
     return Parts(
         task=query.task.strip(),
         passages=tuple(f"[{p.kind} {p.id}] {p.text.strip()}" for p in query.passages),
@@ -42,12 +42,12 @@ def parts(context: Context | None, query: Query) -> Parts:
 
 
 def with_previous(known: Parts, answer: str) -> Parts:
-    """The same parts, knowing the answer before: as a turn of its own, its tokens need not be read again."""
+    """The same parts with the answer before as a turn of its own, whose tokens need not be computed again."""
     return replace(known, previous=answer) if answer and answer in known.repair else known
 
 
 def subject(context: Context, query: Query) -> str:
-    """A digest of all that the attempts of one stage share: whose earlier answer a repair starts from."""
+    """A digest of all that the attempts of one stage share, by which a repair finds the earlier answer."""
     found = hashlib.sha256()
     known = parts(context, query)
     for text in (known.shared, known.narrative):

@@ -1,4 +1,4 @@
-"""A backbone that answers from a list or a file: for tests, ours and yours, and for replaying a run.
+"""A backbone that answers from a list or a file, for tests and for replaying a run.
 
 An entry is a text, or a mapping with `answer` (a text or JSON) and any of these conditions:
 
@@ -58,7 +58,10 @@ class Answer(BaseModel):
 
 
 class Scripted(Backbone):
-    """Answers from `answers`, then from `file` (YAML list, or one JSON value a line in .jsonl)."""
+    """Answers from a script instead of a model, for tests and replays.
+
+    answers are entries in the config; file holds further ones (a YAML list, or one JSON value a line in .jsonl).
+    """
 
     gives_logits: ClassVar[bool] = False
     answers: tuple[Any, ...] = ()
@@ -80,7 +83,7 @@ class Scripted(Backbone):
         return tuple(_entry(value, i, self.file) for i, value in enumerate(raw, 1))
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
-        """The first entry whose conditions hold, else the next of the others; InvalidOutput when none is left."""
+        """The first entry whose conditions hold, else the next without any. Raises InvalidOutput if none is left."""
         if decoder.needs_prior:
             raise ConfigError(
                 f"decoder {type(decoder).__name__} needs logits; the scripted backbone gives none: use decoder 'greedy'"

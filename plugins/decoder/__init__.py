@@ -1,1 +1,1 @@
-"""Logit rows -> the row to pick from: pure functions. One file per choice."""
+"""Decoders: pure functions from two rows of logits to the row that tokens are picked from. One file for each plugin."""

@@ -4,7 +4,7 @@
     y_t ~ softmax[(1 + alpha_t) logit(y | c, x, y_<t) - alpha_t logit(y | x, y_<t)]
 
 Wang et al. 2025, "AdaCAD: Adaptively Decoding to Balance Conflicts between Contextual and Parametric
-Knowledge", arXiv:2409.07394, eq. 3-4. Where evidence and belief agree it is greedy decoding.
+Knowledge", arXiv:2409.07394, eq. 3-4. Where the two rows agree it is greedy decoding.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class AdaCad(Sampled):
-    """Contrast in proportion to the conflict; `scale` 1 is the published form."""
+    """Contrasts the two rows in proportion to their disagreement at each token; `scale` 1 is the published form."""
 
     needs_prior: ClassVar[bool] = True
     scale: float = Field(1.0, gt=0.0, le=10.0, description="factor on the divergence")

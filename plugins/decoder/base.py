@@ -1,4 +1,4 @@
-"""What the decoders share: sampling fields, the plausibility mask and the contrast of two rows.
+"""Base classes and functions of the decoders: sampling, the plausibility mask and the contrast of two rows.
 
 Knows tensors by their methods only, so that naming a decoder in a YAML does not load torch. Knows no
 model, no cache, no grammar: the backbone masks `scores` with the grammar before it calls `draw`.
@@ -7,7 +7,7 @@ model, no cache, no grammar: the backbone masks `scores` with the grammar before
 from __future__ import annotations
 
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Sampled(Decoder):
-    """A decoder that may sample: temperature 0 takes the best token, and is the default."""
+    """A decoder that may sample: temperature 0, the default, takes the most likely token."""
 
     temperature: float = Field(0.0, ge=0.0, le=5.0)
     top_p: float = Field(1.0, gt=0.0, le=1.0)
@@ -30,18 +30,36 @@ class Sampled(Decoder):
     )
 
     def at(self, attempt: int) -> Sampled:
-        """First attempts with `first_temperature`, the second with `temperature`, each one after it warmer."""
+        """The decoder of an attempt: first `first_temperature`, then `temperature`, then `warming` more each time."""
         cold = self.first_temperature
         wanted = cold if attempt == 1 and cold is not None else self.temperature + self.warming * max(0, attempt - 2)
         return self if wanted == self.temperature else self.model_copy(update={"temperature": wanted})
 
     def draw(self, scores: Any, generator: Any) -> Any:
-        """One token a row from masked logits (rows, vocabulary); see `sample`."""
+        """Picks one token for each row of masked logits (rows, vocabulary); see `sample`."""
         return sample(scores, self.temperature, self.top_p, generator)
 
 
+class FixedContrast(Sampled):
+    """A decoder that contrasts the two rows with the same alpha at every token."""
+
+    needs_prior: ClassVar[bool] = True
+    alpha: float = Field(0.7, ge=0.0, le=10.0)
+    beta: float = Field(0.0, ge=0.0, lt=1.0, description="plausibility: p >= beta * max p with context; 0 = off")
+
+    def reads_prior(self) -> bool:
+        """False at alpha 0, which is the row with context alone: the second row is then not run."""
+        return self.alpha > 0.0
+
+    def scores(self, with_context: Any, without_context: Any | None) -> Any:
+        """Contrast, then plausibility; rows (rows, vocabulary) in, the same shape out."""
+        if self.alpha == 0.0:
+            return plausible_only(with_context, with_context, self.beta)
+        return plausible_only(contrast(with_context, without_context, self.alpha), with_context, self.beta)
+
+
 def sample(scores: Tensor, temperature: float, top_p: float, generator: Any) -> Tensor:
-    """Draw one token index a row, (rows,), from logits (rows, vocabulary) in which -inf excludes.
+    """Draws one token index for each row, (rows,), from logits (rows, vocabulary) in which -inf excludes a token.
 
     Temperature divides the logits; top-p keeps the smallest set of most likely tokens whose mass
     reaches top_p (Holtzman et al. 2020, arXiv:1904.09751, eq. 2), the first token always.

@@ -10,26 +10,11 @@ the evidence makes unlikely can still win because the prior makes it less likely
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
-
-from pydantic import Field
-
-from plugins.decoder.base import Sampled, contrast, plausible_only
+from plugins.decoder.base import FixedContrast
 
 
-class Cad(Sampled):
-    """Amplifies what the evidence says over what the model believes anyway."""
+class Cad(FixedContrast):
+    """Amplifies what the report and its diagrams say over what the model would answer without them.
 
-    needs_prior: ClassVar[bool] = True
-    alpha: float = Field(0.7, ge=0.0, le=10.0)
-    beta: float = Field(0.0, ge=0.0, lt=1.0, description="plausibility: p >= beta * max p with context; 0 = off")
-
-    def reads_prior(self) -> bool:
-        """alpha 0 is the evidence row alone, so the second row is not run."""
-        return self.alpha > 0.0
-
-    def scores(self, with_context: Any, without_context: Any | None) -> Any:
-        """Contrast, then plausibility; rows (rows, vocabulary) in, the same shape out."""
-        if self.alpha == 0.0:
-            return plausible_only(with_context, with_context, self.beta)
-        return plausible_only(contrast(with_context, without_context, self.alpha), with_context, self.beta)
+    alpha is the strength of the contrast; 0 is greedy or sampled decoding of the row with context.
+    """

@@ -8,7 +8,7 @@ from sgcad_core.interfaces import Decoder
 
 
 class Greedy(Decoder):
-    """The most likely token at every step; the baseline of every ablation."""
+    """Takes the most likely token at every step; the baseline of every ablation."""
 
     needs_prior: ClassVar[bool] = False
 

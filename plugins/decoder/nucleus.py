@@ -15,12 +15,12 @@ from plugins.decoder.base import Sampled
 
 
 class Nucleus(Sampled):
-    """Plain sampling from the evidence row; reproducible, since the generator is seeded by the caller."""
+    """Samples from the row with context; reproducible, since the caller seeds the random generator."""
 
     needs_prior: ClassVar[bool] = False
     temperature: float = Field(0.7, ge=0.0, le=5.0)
     top_p: float = Field(0.9, gt=0.0, le=1.0)
 
     def scores(self, with_context: Any, without_context: Any | None) -> Any:
-        """The row with context, unchanged: the sampling stands in `draw`, behind the grammar."""
+        """The row with context, unchanged: `draw` samples, after the grammar."""
         return with_context

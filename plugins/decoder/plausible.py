@@ -17,7 +17,10 @@ from plugins.decoder.base import Sampled, plausible_only
 
 
 class Plausible(Sampled):
-    """alpha 0 with the mask of cad's `beta`."""
+    """Picks from the row with context without its implausible tokens: contrastive decoding without the contrast.
+
+    beta is the share of the largest probability below which a token is excluded.
+    """
 
     needs_prior: ClassVar[bool] = False
     beta: float = Field(0.1, gt=0.0, lt=1.0)

@@ -12,34 +12,25 @@ from __future__ import annotations
 
 import hashlib
 import io
-from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from pydantic import Field
 
-from plugins.decoder.base import Sampled, contrast, plausible_only
+from plugins.decoder.base import FixedContrast
 from sgcad_core.case.records import Context, Diagram
 
 
-class Vcd(Sampled):
-    """Amplifies what the diagram shows over what the narrative makes likely."""
+class Vcd(FixedContrast):
+    """Amplifies what the diagrams show over what the narrative alone makes likely.
 
-    needs_prior: ClassVar[bool] = True
+    alpha is the strength of the contrast; 0 is greedy or sampled decoding of the row with context.
+    """
+
     alpha: float = Field(1.0, ge=0.0, le=10.0)
     beta: float = Field(0.1, ge=0.0, lt=1.0, description="plausibility: p >= beta * max p with context; 0 = off")
     noise_step: int = Field(500, ge=1, le=1000, description="step T of 1,000: 1 hardly any noise, 1,000 noise alone")
-
-    def reads_prior(self) -> bool:
-        """alpha 0 is the evidence row alone, so the second row is not run."""
-        return self.alpha > 0.0
-
-    def scores(self, with_context: Any, without_context: Any | None) -> Any:
-        """Contrast, then plausibility; rows (rows, vocabulary) in, the same shape out."""
-        if self.alpha == 0.0:
-            return plausible_only(with_context, with_context, self.beta)
-        return plausible_only(contrast(with_context, without_context, self.alpha), with_context, self.beta)
 
     def contrast_context(self, context: Context) -> Context | None:
         """The same report, its diagrams noised; the noise follows from the picture, so it can be repeated."""

@@ -1,1 +1,1 @@
-"""Who drives the ego once a crash is handed over: one file a driver."""
+"""Drivers of the ego after the hand-over of a reconstructed crash. One file for each plugin."""

@@ -5,8 +5,8 @@ for vehicles": the risk is perceived where another vehicle's center has left its
 is evaluated for 0.4 s, is acted on 0.75 s after that, and 0.774 g is reached 0.6 s later (12.65 m/s3); what
 counts as a danger is a time to collision under 2 s. The regulation (its 01 series of amendments has it in Annex 3)
 speaks of lanes of a motorway.
-For crossing and oncoming traffic the lane stands for the strip that the ego sweeps on its way, and what comes towards
-it by 0.375 m is a risk; that step is ours.
+For crossing and oncoming traffic the lane is replaced by the strip that the ego sweeps on its way, and a road user that
+comes towards it by 0.375 m is a risk; the regulation does not contain this step.
 """
 
 from __future__ import annotations
@@ -31,43 +31,43 @@ class CarefulParameters:
 
 @dataclass
 class Careful:
-    """What such a driver has seen so far; `brake` says how hard he brakes, None: not (yet)."""
+    """The careful and competent driver's state: risks perceived so far, and whether braking is decided."""
 
     task: Task
-    say: CarefulParameters = field(default_factory=CarefulParameters)
+    config: CarefulParameters = field(default_factory=CarefulParameters)
     _came_m: dict[str, float] = field(default_factory=dict)
     _seen_s: dict[str, float] = field(default_factory=dict)
     _decided_s: float | None = None
     _braking_mps2: float = 0.0
 
     def brake(self, view: View) -> float | None:
-        """Deceleration until the next instant, m/s2, positive; None where the foot is not on the brake."""
+        """Deceleration until the next instant, m/s2, positive; None while the driver does not brake."""
         if self._decided_s is None and self._critical(view, self._perceived(view)):
             self._decided_s = view.t_s
-        if self._decided_s is None or view.t_s < self._decided_s + self.say.delay_s - 1e-9:
+        if self._decided_s is None or view.t_s < self._decided_s + self.config.delay_s - 1e-9:
             return None
-        self._braking_mps2 = min(self._braking_mps2 + self.say.jerk_mps3 * STEP_S, self.say.braking_mps2)
+        self._braking_mps2 = min(self._braking_mps2 + self.config.jerk_mps3 * STEP_S, self.config.braking_mps2)
         return self._braking_mps2
 
     def _perceived(self, view: View) -> set[str]:
-        """Whom he has evaluated as a risk for long enough."""
+        """Road users that have been a risk for at least the evaluation time."""
         risks = {a.user.actor for a in ahead(self.task, view) if self._risk(view, a)}
         self._seen_s = {name: self._seen_s.get(name, view.t_s) for name in risks}
-        return {n for n, since in self._seen_s.items() if view.t_s - since >= self.say.evaluation_s - 1e-9}
+        return {n for n, since in self._seen_s.items() if view.t_s - since >= self.config.evaluation_s - 1e-9}
 
     def _risk(self, view: View, a: Ahead) -> bool:
-        """In the ego's strip and slower, or come towards it by more than vehicles wander."""
+        """Whether a road user is in the ego's strip and slower, or has come towards it by more than vehicles wander."""
         name = a.user.actor
         self._came_m[name] = self._came_m.get(name, 0.0) + a.closing_mps * STEP_S if a.closing_mps > 0 else 0.0
         if a.aside_m <= 0:
             return a.along_mps < view.ego.speed_mps
-        return self._came_m[name] > self.say.wander_m
+        return self._came_m[name] > self.config.wander_m
 
     def _critical(self, view: View, perceived: set[str]) -> bool:
-        """A touch within 2 s as all move now; who goes along in the strip is taken to stay in it."""
+        """Whether boxes touch within 2 s on present courses; a vehicle that goes along in the strip stays in it."""
         if not perceived:
             return False
-        if any(m.user.actor in perceived for m in meetings(self.task, view, self.say.critical_s)):
+        if any(m.user.actor in perceived for m in meetings(self.task, view, self.config.critical_s)):
             return True
         return any(a.user.actor in perceived and self._closes_in(view, a) for a in ahead(self.task, view))
 
@@ -75,4 +75,4 @@ class Careful:
         """The regulation's time to collision, along the lane: gap over speed difference."""
         nearing = view.ego.speed_mps - a.along_mps
         stays = a.aside_m <= 0 and a.along_mps > abs(a.closing_mps)
-        return stays and 0 <= a.gap_m <= nearing * self.say.critical_s
+        return stays and 0 <= a.gap_m <= nearing * self.config.critical_s

@@ -1,4 +1,4 @@
-"""Two or more drivers in one seat: whoever brakes hardest is obeyed, whoever steers last in the list steers.
+"""Two or more drivers at once: the hardest braking counts, and the last driver in the list that steers.
 
 driver: {name: combined, of: [{name: reference}, {name: aeb}]}
 """
@@ -17,10 +17,10 @@ from sgcad_core.registry import plugin_class
 
 
 class Combined(Driver):
-    """Several drivers at once: the least acceleration of all counts."""
+    """Combines several drivers: the least acceleration of all counts, and the steering of the last one that steers."""
 
     of: tuple[dict[str, Any], ...] = Field(min_length=2, max_length=6)
-    """Drivers with their fields, as in `driver:`; a bare name will do."""
+    """Drivers with their fields, as in `driver:`; a name alone is enough."""
 
     @field_validator("of", mode="before")
     @classmethod
@@ -37,12 +37,12 @@ class Combined(Driver):
         return tuple(_built(entry) for entry in self.of)
 
     def take_over(self, task: Task) -> Seat:
-        """All of them."""
+        """A seat that asks all of them."""
         return _Seat([driver.take_over(task) for driver in self.drivers])
 
 
 def _built(entry: Any) -> Driver:
-    """A driver of its name and fields. Raises ValueError (told with the config's other faults)."""
+    """A driver from its name and fields. Raises ValueError, which is reported with the config's other faults."""
     if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
         raise ValueError(f"expected drivers with a name, found {entry!r}")
     try:
@@ -58,7 +58,7 @@ class _Seat(Seat):
         self._seats = seats
 
     def act(self, view: View) -> Command:
-        """Every driver is asked, so that each has seen everything."""
+        """Asks every driver, so that each has seen every instant."""
         asked = [seat.act(view) for seat in self._seats]
         posed = next((c for c in asked if c.pose is not None), None)
         steering = [c.steering_rad for c in asked if c.steering_rad is not None]
@@ -68,6 +68,6 @@ class _Seat(Seat):
         return Command(least, steering[-1] if steering else None)
 
     def leave(self) -> None:
-        """All of them go."""
+        """Ends the drive for every driver."""
         for seat in self._seats:
             seat.leave()

@@ -1,4 +1,4 @@
-"""Somebody else's driver: a Python callable, or a program behind a local socket, asked 20 times a second.
+"""A driver outside this project: a Python callable, or a program behind a local socket, asked 20 times a second.
 
 A callable `package.module:function` is called with what a socket would be sent and answers the same; a class is built
 once a drive. Over the socket goes one JSON object a line. First {"task": ...} (ego, way, friction), answered by any
@@ -29,7 +29,7 @@ Answer = Callable[[dict[str, Any]], Any]
 
 
 class External(Driver):
-    """A callable or a local socket; give one of both."""
+    """Lets a Python callable (target) or a program behind a local socket (host, port) drive; give one of the two."""
 
     target: str = Field("", pattern=r"^$|^[A-Za-z_][\w.]*:[A-Za-z_]\w*$")
     """package.module:function."""
@@ -37,7 +37,7 @@ class External(Driver):
     """Of a server on this machine."""
     host: str = "127.0.0.1"
     timeout_s: float = Field(5.0, gt=0, le=600)
-    """Longest wait for a whole answer, in however many pieces it comes."""
+    """Longest wait for a whole answer, seconds."""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> External:
@@ -46,7 +46,7 @@ class External(Driver):
         return self
 
     def take_over(self, task: Task) -> Seat:
-        """Tell it the task. Raises ConfigError (no such callable), SimulationFailed (nobody answers)."""
+        """Sends the task. Raises ConfigError (no such callable), SimulationFailed (no answer)."""
         answer, close = (_callable(self.target), _nothing) if self.target else _connected(self)
         seat = _Seat(answer, close)
         answer({"task": _task(task)})
@@ -58,7 +58,7 @@ class _Seat(Seat):
         self._answer, self._close = answer, close
 
     def act(self, view: View) -> Command:
-        """What it answers. Raises SimulationFailed for an answer that is none."""
+        """The command that the driver answers. Raises SimulationFailed for an invalid answer."""
         said = self._answer({"view": _view(view)})
         try:
             return _command(said)
@@ -69,7 +69,7 @@ class _Seat(Seat):
             ) from fault
 
     def leave(self) -> None:
-        """Tell it that the drive is over."""
+        """Tells the driver that the drive is over."""
         self._close()
 
 
@@ -90,22 +90,22 @@ def _callable(target: str) -> Answer:
     return answer
 
 
-def _connected(say: External) -> tuple[Answer, Callable[[], None]]:
-    where = f"{say.host}:{say.port}"
+def _connected(config: External) -> tuple[Answer, Callable[[], None]]:
+    where = f"{config.host}:{config.port}"
     try:
-        door = socket.create_connection((say.host, say.port or 0), timeout=say.timeout_s)
+        door = socket.create_connection((config.host, config.port or 0), timeout=config.timeout_s)
     except OSError as fault:
         raise SimulationFailed(
             f"driver external: nobody listens at {where} ({fault}); start the driver first"
         ) from fault
-    line = _Line(door, say.timeout_s)
+    line = _Line(door, config.timeout_s)
 
     def answer(message: dict[str, Any]) -> Any:
         try:
             said = line.asked(json.dumps(message).encode())
         except TimeoutError as fault:
             raise SimulationFailed(
-                f"the external driver at {where} has not answered within timeout_s = {say.timeout_s:g} s"
+                f"the external driver at {where} has not answered within timeout_s = {config.timeout_s:g} s"
             ) from fault
         except OSError as fault:
             raise SimulationFailed(f"the external driver at {where} has hung up ({fault})") from fault
@@ -121,13 +121,13 @@ def _connected(say: External) -> tuple[Answer, Callable[[], None]]:
 
 
 class _Line:
-    """Lines over a socket. The limit is for a whole question and its answer, in however many pieces they go."""
+    """Lines over a socket; the limit is for a whole question with its answer."""
 
     def __init__(self, door: socket.socket, timeout_s: float) -> None:
         self._door, self._timeout_s, self._read = door, timeout_s, bytearray()
 
     def asked(self, question: bytes) -> bytes:
-        """The line that comes back. Raises TimeoutError (not within the limit), OSError (hung up)."""
+        """The line that comes back. Raises TimeoutError (not within the limit), OSError (connection closed)."""
         until = time.monotonic() + self._timeout_s
         self._door.settimeout(self._timeout_s)
         self._door.sendall(question + b"\n")
@@ -142,7 +142,7 @@ class _Line:
         return said
 
     def close(self) -> None:
-        """Say that the drive is over, if anybody still listens."""
+        """Sends the end of the drive if the connection is still open."""
         with self._door, contextlib.suppress(OSError):
             self._door.settimeout(self._timeout_s)
             self._door.sendall(b'{"leave": true}\n')

@@ -1,4 +1,4 @@
-"""The reference driver of UN R157: drives as the report's driver did until he sees the danger, then brakes.
+"""The reference drivers of UN R157: drive as the report's driver did until the danger is perceived, then brake.
 
 Two models: `careful`, the careful and competent human driver (`_careful`), and `fuzzy`, the fuzzy safety model
 (`_fuzzy`). Neither steers, as the regulation's do not.
@@ -15,12 +15,15 @@ from sgcad_core.interfaces import Driver
 
 
 class Reference(Driver):
-    """UN R157's careful and competent human driver, or its fuzzy safety model."""
+    """Drives as the report's driver and brakes as a reference driver of UN R157 does.
+
+    model: careful, the careful and competent human driver, or fuzzy, the fuzzy safety model.
+    """
 
     model: Literal["careful", "fuzzy"] = "careful"
 
     def take_over(self, task: Task) -> Seat:
-        """A reference driver who sees everybody, through nothing."""
+        """A reference driver that sees every road user, whatever stands between."""
         return _Seat(task, Careful(task) if self.model == "careful" else Fuzzy(task))
 
 
@@ -29,7 +32,7 @@ class _Seat(Seat):
         self._task, self._mind = task, mind
 
     def act(self, view: View) -> Command:
-        """Brake as the model says, else drive on as the report's driver."""
+        """The model's braking, else the acceleration of the report's driver."""
         brake = self._mind.brake(view)
         onward = followed(self._task, view)
         return Command(onward if brake is None else min(-brake, onward))

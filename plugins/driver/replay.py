@@ -1,4 +1,4 @@
-"""A trajectory given beforehand: the ego goes where the file says, whatever happens.
+"""A trajectory from a file: the ego follows it whatever happens.
 
 The file is a CSV with t_s, x_m, y_m, heading_rad and, if wanted, speed_mps; of one with a column actor the ego's rows
 count (a `trajectories.csv`). Times are from the hand-over on; behind the last one the ego goes on straight.
@@ -21,13 +21,13 @@ _NEEDED = ("t_s", "x_m", "y_m", "heading_rad")
 
 
 class Replay(Driver):
-    """Replays a given trajectory of the ego."""
+    """Replays a trajectory of the ego from a CSV file."""
 
     file: Path
     """CSV; a relative path is looked for where the command is run. `{case}` stands for the case's name."""
 
     def take_over(self, task: Task) -> Seat:
-        """The trajectory. Raises ConfigError for a file that is none."""
+        """A driver on the file's trajectory. Raises ConfigError for a file without a usable one."""
         place = Path(str(self.file).replace("{case}", task.case))
         return _Seat(_table(place, task.ego.actor))
 
@@ -37,7 +37,7 @@ class _Seat(Seat):
         self._table = table
 
     def act(self, view: View) -> Command:
-        """Where the file has the ego at the next instant."""
+        """The pose of the file at the next instant."""
         t = view.t_s + STEP_S
         at = min(t, float(self._table[-1, 0]))
         x, y, heading, speed = (float(np.interp(at, self._table[:, 0], self._table[:, i])) for i in range(1, 5))

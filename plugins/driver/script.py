@@ -1,6 +1,6 @@
-"""The report's driver again, in closed loop: accelerations from the script at the place where the ego is.
+"""The report's driver in closed loop: accelerations from the script at the place where the ego is.
 
-Meets the same crash by construction of the relative triggers; what it does not meet, they lost.
+By construction of the relative triggers it has the same crash; a crash that it misses is lost by them.
 """
 
 from __future__ import annotations

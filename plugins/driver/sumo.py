@@ -1,10 +1,10 @@
-"""SUMO's own driver in the ego's seat: its car following, its right of way at junctions.
+"""SUMO's own driver model for the ego: its car following, its right of way at junctions.
 
-The outside counterpart of `idm`, whose formulas are ours: here SUMO decides (P. Alvarez Lopez et al., Microscopic
-traffic simulation using SUMO, ITSC 2018), with the intelligent driver model or Krauss's. Each step the others are put
-where they are, and SUMO's speed for the ego is what the ego drives on its own way; the free speed is the report's
-driver's at that place. Whom nobody can know yet to turn is taken to go straight on. SUMO's lane changes are left out:
-the ego keeps to its way.
+The external counterpart of `idm`: SUMO decides (P. Alvarez Lopez et al., Microscopic traffic simulation using SUMO,
+ITSC 2018), with the intelligent driver model or Krauss's. Each step the others are put on their places, and the ego
+drives on its own way at the speed that SUMO gives it; the free speed is that of the report's driver at that place. A
+road user whose turn cannot be known yet is taken to go straight on. SUMO's lane changes are left out: the ego keeps to
+its way.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plugins.driver._sumo_orders import Begin, End, Habits, Mover, Place, Step
+from plugins.driver._sumo_messages import Begin, End, Habits, Mover, Place, Step
 from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -31,12 +31,15 @@ _IN_THE_WAY_M = 0.2
 
 @functools.cache
 def _worker() -> Worker:
-    """One SUMO process for all drives of this process: its start is what costs."""
-    return Worker("plugins.driver._sumo_traffic:obey")
+    """One SUMO process for all drives of this process, since its start takes half a second."""
+    return Worker("plugins.driver._sumo_worker:obey")
 
 
 class Sumo(Driver):
-    """SUMO drives the ego at the report's driver's speeds, follows and gives way."""
+    """Lets SUMO drive the ego: at the speeds of the report's driver, following and giving way as SUMO does.
+
+    model is SUMO's car-following model; the other fields are its parameters.
+    """
 
     model: Literal["IDM", "Krauss"] = "IDM"
     acceleration_mps2: float = Field(2.6, gt=0, le=5)
@@ -49,7 +52,7 @@ class Sumo(Driver):
     """Longest wait for one step."""
 
     def take_over(self, task: Task) -> Seat:
-        """A SUMO vehicle on the ego's way. Raises SimulationFailed where the way is on no lane."""
+        """A SUMO vehicle on the ego's way. Raises SimulationFailed if the way is on no lane."""
         graph = _graph(task.net_xml)
         route = route_of(graph, poses_of(task.way.pose))
         if not route:
@@ -62,15 +65,10 @@ class Sumo(Driver):
         _worker().call(Begin(task.net_xml, _place(task.ego), route, habits), timeout_s=self.timeout_s)
         return _Seat(self, task, graph)
 
-    @property
-    def _habits(self) -> Habits:
-        braking = self.braking_mps2, self.hardest_mps2
-        return Habits(self.model, self.acceleration_mps2, *braking, self.headway_s, self.gap_m)
-
 
 class _Seat(Seat):
-    def __init__(self, say: Sumo, task: Task, graph: LaneGraph) -> None:
-        self._say, self._task, self._graph = say, task, graph
+    def __init__(self, config: Sumo, task: Task, graph: LaneGraph) -> None:
+        self._config, self._task, self._graph = config, task, graph
         self._routes: dict[str, tuple[str, ...]] = {}
 
     def act(self, view: View) -> Command:
@@ -80,7 +78,7 @@ class _Seat(Seat):
             self._leader(view, before[u.actor]) if u.actor in before else self._mover(u) for u in view.others
         )
         free = self._task.way.speed_at(view.script_s + STEP_S)
-        speed = _worker().call(Step(movers, view.ego.speed_mps, free), timeout_s=self._say.timeout_s)
+        speed = _worker().call(Step(movers, view.ego.speed_mps, free), timeout_s=self._config.timeout_s)
         return Command((speed - view.ego.speed_mps) / STEP_S)
 
     def _mover(self, user: RoadUser) -> Mover:
@@ -92,7 +90,7 @@ class _Seat(Seat):
     def _leader(self, view: View, a: Ahead) -> Mover:
         """A box that reaches into the ego's strip, however it stands there, as one on the ego's way.
 
-        SUMO takes a vehicle to be where the middle of its front bumper is: of a car across the lane it sees nothing.
+        SUMO locates a vehicle by the middle of its front bumper, so it would not see a car that stands across the lane.
         """
         user = a.user
         station = view.station_m + view.ego.length_m / 2 + a.gap_m + user.length_m / 2
@@ -104,8 +102,8 @@ class _Seat(Seat):
         return self._mover(user)._replace(place=place, known=False)
 
     def leave(self) -> None:
-        """SUMO is closed; its process stays for the next drive."""
-        _worker().call(End(), timeout_s=self._say.timeout_s)
+        """Closes SUMO; its process stays for the next drive."""
+        _worker().call(End(), timeout_s=self._config.timeout_s)
 
 
 @functools.lru_cache(maxsize=4)

@@ -1,4 +1,4 @@
-"""Picks the reader by what the source is. The default of every config."""
+"""Selects the reader by the kind of the source. The default of every config."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ READERS: dict[str, type[EvidenceReader]] = {".txt": Text, ".md": Text, ".xml": N
 
 
 class Auto(EvidenceReader):
-    """A case folder, a bare text, NHTSA case XML or a PDF, told apart by kind and suffix."""
+    """Reads a case folder, a text file, NHTSA case XML or a PDF; the kind and the suffix select the reader."""
 
     def read(self, source: Path) -> CrashReport:
-        """Read one case with the reader that fits. Raises BadInput naming what would fit."""
+        """Reads one case with the reader that fits. Raises BadInput that lists what can be read."""
         if source.is_symlink() and not leads_inside(source, source.parent):
             raise BadInput(f"{source}: leads out of its folder: give the file or folder itself")
         if source.is_dir():

@@ -3,11 +3,11 @@
     full                as read
     semantic_noise      every number leaves the text, in digits and words, with its unit
     blur_weak|medium|strong   Gaussian blur of the diagrams (sigma 1, 3 and 6 px at 512 px width)
-    modal_conflict      compass words and sides of the text are turned round; the diagram stays
+    modal_conflict      compass words and sides of the text are exchanged; the diagram stays
     critical_depletion  sentences with directions, sides or the contact leave the text
     total_sparsity      "A collision occurred." and no diagram
 
-What was done stands in the report's notes. Knows no folder and no format.
+The report's notes name what was done. Knows no folder and no format.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def degrade(report: CrashReport, level: Level) -> CrashReport:
 
 
 def _without_numbers(text: Traced) -> tuple[Traced, str]:
-    """Actor numbers (V1, Vehicle #2, vehicle one) stay: without them nothing could be told apart."""
+    """Removes numbers except those of actors (V1, Vehicle #2, vehicle one), which identify them."""
     digits = len(_DIGITS.findall(text.text))
     bare = text.sub(_DIGITS, "")
     words = len(_SPELLED.findall(bare.text))
@@ -89,7 +89,7 @@ _TEXT = {
 
 
 def _blurred(picture: Diagram, sigma_px: float) -> Diagram:
-    """Sigma grows with the picture, so that every diagram loses the same detail."""
+    """The diagram blurred; sigma grows with its width, so that every diagram loses the same detail."""
     image = Image.open(io.BytesIO(picture.png))
     radius = sigma_px * picture.width_px / REFERENCE_WIDTH_PX
     out = io.BytesIO()

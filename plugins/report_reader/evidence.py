@@ -1,4 +1,4 @@
-"""What every reader shares: decoding text, guarding pictures, and the switches of the evidence.
+"""The base of every reader: decoding of text, checks of pictures, and the switches of the evidence.
 
 Knows no folder layout and no XML. Limits are generous for real reports and small for attacks.
 """
@@ -33,46 +33,20 @@ UNREADABLE = (
     OSError, SyntaxError, EOFError, ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError,
     RuntimeError, MemoryError, struct.error, zlib.error,
 )  # fmt: skip
-"""What Pillow and pypdf raise for broken files, beside errors of their own: the file is at fault, not the program."""
-_FUNCTION_WORDS = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "of",
-        "in",
-        "on",
-        "at",
-        "to",
-        "and",
-        "was",
-        "were",
-        "is",
-        "it",
-        "that",
-        "by",
-        "with",
-        "for",
-        "from",
-        "as",
-        "this",
-        "which",
-        "had",
-        "not",
-        "no",
-        "has",
-        "be",
-        "or",
-        "both",
-    ]
-)
+"""Errors that Pillow and pypdf raise for broken files, beside their own error classes."""
+_FUNCTION_WORDS = frozenset((
+    "the", "a", "an", "of", "in", "on", "at", "to", "and", "was", "were", "is", "it", "that", "by", "with", "for",
+    "from", "as", "this", "which", "had", "not", "no", "has", "be", "or", "both",
+))  # fmt: skip
 
 
 class EvidenceReader(ReportReader, ABC):
     """A reader whose evidence can be narrowed for an ablation; each switch is a config field."""
 
     use_narrative: bool = True
+    """Use the narrative as evidence."""
     use_diagrams: bool = True
+    """Use the diagrams as evidence."""
     use_coded_fields: bool = False
     """Append NHTSA's coded fields to the narrative; no compared config does."""
     redact_persons: bool = True
@@ -88,7 +62,7 @@ class EvidenceReader(ReportReader, ABC):
         coded: dict[str, object] | None = None,
         notes: tuple[str, ...] = (),
     ) -> CrashReport:
-        """Assemble a report as the switches ask. Raises BadInput if nothing is left to read."""
+        """Assembles a report by the switches. Raises BadInput if no evidence is left."""
         text = checked_narrative(Traced.of(narrative), source) if self.use_narrative else Traced.of("")
         text = redacted(text) if self.redact_persons else text
         if self.use_coded_fields and coded:
@@ -109,7 +83,7 @@ class EvidenceReader(ReportReader, ABC):
 
 
 def _appended(text: Traced, more: str, end: int) -> Traced:
-    """The text with more that nobody wrote, placed at the narrative's end."""
+    """The text with an addition of the program, placed at the narrative's end."""
     nowhere = [end] * len(more)
     return joined([text, Traced(more, nowhere, nowhere)])
 
@@ -153,7 +127,7 @@ def checked_narrative(text: Traced, source: Path) -> Traced:
 
 
 def diagram(raw: bytes, source: Path) -> Diagram:
-    """A picture, re-encoded as RGB PNG of at most 2048 px a side. Raises BadInput for anything else."""
+    """A picture, encoded again as RGB PNG of at most 2048 px a side. Raises BadInput if it cannot be read."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the limit below is stricter than Pillow's
@@ -179,7 +153,7 @@ def diagram(raw: bytes, source: Path) -> Diagram:
 
 
 def _on_white(picture: Image.Image) -> Image.Image:
-    """RGB; transparent parts become paper, 16 bits a pixel become 8."""
+    """The picture as RGB; transparent parts become white, 16 bits a pixel become 8."""
     if picture.mode.startswith("I"):
         deep = np.asarray(picture).astype(np.int64)
         return Image.fromarray((deep >> 8).clip(0, 255).astype(np.uint8)).convert("RGB")

@@ -1,5 +1,7 @@
-"""A case folder: report.txt (or narrative.txt, XML, PDF) and a diagram. Text and picture are the evidence;
-XML beside a text is read for its coded fields alone, and only when asked."""
+"""A case folder: report.txt (or narrative.txt, XML, PDF) and a diagram, the evidence of a case.
+
+XML beside a text is read only for its coded fields, and only with use_coded_fields.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,10 @@ PICTURE_STEMS = ("diagram", "scene")
 
 
 class Folder(EvidenceReader):
-    """Reads report.txt or narrative.txt with diagram.png|jpg|...; falls back to the folder's only XML or PDF."""
+    """Reads report.txt or narrative.txt with diagram.png|jpg|..., else the folder's only XML, PDF or text file."""
 
     def read(self, source: Path) -> CrashReport:
-        """Read one folder. Raises BadInput naming the file that is missing or wrong."""
+        """Reads one folder. Raises BadInput that names the missing or wrong file."""
         try:
             files_below(source)
             files = sorted(f for f in source.iterdir() if is_regular(f))

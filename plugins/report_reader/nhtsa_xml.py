@@ -1,7 +1,7 @@
 """NHTSA case XML as published: NMVCCS and CIREN, narrative and coded fields.
 
-The published files carry CR line ends, Latin-1 bytes under a UTF-8 header and control characters;
-all are mended on reading. DOCTYPEs are refused whole, so no entity is ever expanded. Knows no folder.
+The published files have CR line ends, Latin-1 bytes under a UTF-8 header and control characters; all are corrected on
+reading. Files with a DOCTYPE are refused, so no entity is ever expanded. Knows no folder.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ class Case(NamedTuple):
 
 
 class NhtsaXml(EvidenceReader):
-    """Reads NMVCCS and CIREN case XML; coded fields reach the evidence with use_coded_fields alone."""
+    """Reads NMVCCS and CIREN case XML; coded fields become evidence only with use_coded_fields."""
 
     def read(self, source: Path) -> CrashReport:
-        """Read one case file."""
+        """Reads one case file. Raises BadInput for hostile, broken and foreign XML."""
         case = parse_case(read_regular(source), source)
         return self.evidence(source, case.narrative, (), case.coded)
 

@@ -15,17 +15,17 @@ from sgcad_core.system.report_files import read_regular
 
 MAX_PAGES = 60
 MAX_DRAWN_BYTES = 8_000_000
-"""Of what all pages draw, uncompressed: a page of text has 20 kB, a scene diagram some 200 kB."""
+"""Limit of the uncompressed drawing of all pages: a page of text has 20 kB, a scene diagram some 200 kB."""
 MAX_DRAWN = 100_000
-"""Drawing operators of all pages: what is drawn again and again from one place counts each time. So many take 1.5 s."""
+"""Limit of the drawing operators of all pages; a repeated drawing counts each time. So many take 1.5 s."""
 MIN_PICTURE_PX = 200
 
 
 class Pdf(EvidenceReader):
-    """Reads a PDF with a text layer; its largest embedded picture is taken for the crash diagram."""
+    """Reads a PDF with a text layer; its largest embedded picture is the crash diagram."""
 
     def read(self, source: Path) -> CrashReport:
-        """Read one PDF. Raises BadInput for scans, encrypted and broken files."""
+        """Reads one PDF. Raises BadInput for scans, encrypted and broken files."""
         pages = self._pages(source)
         try:
             text = _text(pages, source)
@@ -51,7 +51,7 @@ class Pdf(EvidenceReader):
 
 
 def _text(pages: list, source: Path) -> str:  # type: ignore[type-arg]
-    """The text layer of all pages. Raises BadInput where it takes more drawing than a report has."""
+    """The text layer of all pages. Raises BadInput if the pages draw more than a report does."""
     found: list[str] = []
     drawn = drawn_bytes = 0
 

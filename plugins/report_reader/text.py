@@ -1,4 +1,4 @@
-"""A bare text file: one narrative. Knows no pictures."""
+"""A text file that holds one narrative. Knows no pictures."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from sgcad_core.system.report_files import read_regular
 
 
 class Text(EvidenceReader):
-    """Reads a .txt file as a narrative."""
+    """Reads a .txt file as one narrative, without diagrams."""
 
     def read(self, source: Path) -> CrashReport:
-        """Read one narrative; Latin-1, BOM and CR line ends are understood."""
+        """Reads one narrative; accepts Latin-1, a BOM and CR line ends."""
         return self.evidence(source, decode(read_regular(source), source))

@@ -1,1 +1,1 @@
-"""A query -> passages. One file per choice."""
+"""Retrievers: from a text to passages. One file for each plugin."""

@@ -17,7 +17,6 @@ from pydantic import Field, PrivateAttr
 from plugins.retriever.knowledge.chunk import KINDS, TASKS, Chunk, Kind, Task
 from plugins.retriever.knowledge.embedders import Embedder, Name, make
 from plugins.retriever.knowledge.manifest import Manifest, read_manifest
-from plugins.retriever.knowledge.topics import topics
 from sgcad_core.case.records import Passage
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Retriever
@@ -27,9 +26,32 @@ if TYPE_CHECKING:
     from plugins.retriever.knowledge.sources import OnSkip
     from plugins.retriever.knowledge.store import Progress
 
+TOPICS: dict[tuple[Kind, Task], tuple[str, ...]] = {
+    ("xml", "road"): (
+        "edge of a road: numLanes, speed, priority, shape, from node, to node",
+        "node of a junction: x, y, type priority traffic_light priority_stop",
+        "connection from edge to edge, fromLane, toLane",
+    ),
+    ("xml", "scenario"): (
+        "vehicle with depart, departLane, departPos, departSpeed and route",
+        "vType length width minGap tau decel junction model ignore foe",
+        "route edges",
+    ),
+    ("api", "scenario"): (
+        "xosc.FollowTrajectoryAction with a trajectory",
+        "xosc.Trajectory and xosc.Polyline with times and positions",
+        "xosc.Vehicle name vehicle_type boundingbox frontaxle rearaxle",
+        "xosc.TeleportAction in Init",
+        "xosc.StoryBoard, Story, Act, ManeuverGroup, Event with a trigger",
+    ),
+    ("snippet", "scenario"): ("drive along a timed trajectory of world positions", "a whole scenario of two vehicles"),
+}
+"""Queries beside the narrative, most needed first. A writer of XML or Python needs these pieces for every crash, but a
+narrative says "vehicle" and "lane" in every sentence and never "trajectory" or "connection"."""
+
 
 class LanceDB(Retriever):
-    """Passages by full text and, with an embedder, by meaning; `sgcad index build` makes the folder."""
+    """Finds passages by full text and, with an embedder, by meaning, in an index that `sgcad index build` makes."""
 
     folder: Path = Path("knowledge")
     """Where the index lies; relative to the working directory."""
@@ -52,7 +74,7 @@ class LanceDB(Retriever):
     _guard: threading.Lock = PrivateAttr(default_factory=threading.Lock)
 
     def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
-        """The best of each kind, kinds in the order of the field. Raises ConfigError: no index to read."""
+        """The best passages of each kind, kinds in the field's order. Raises ConfigError if there is no index."""
         if task not in TASKS:
             raise ConfigError(f"retriever 'lancedb' serves the tasks {', '.join(TASKS)}, not {task!r}")
         own = self.road_kinds if task == "road" else self.scenario_kinds
@@ -61,8 +83,8 @@ class LanceDB(Retriever):
         return tuple(Passage(id=hit.id, kind=hit.kind, text=hit.text, score=hit.score, data=hit.data) for hit in found)
 
     def _of_kind(self, text: str, kind: Kind, task: Task) -> list[Hit]:
-        """The best of one kind. Of a language's pieces: those of the task's own topics in turn, then the text's."""
-        asked = (*topics(kind, task), text)
+        """The best of one kind, taken in turn from the hits of the task's topics and of the text."""
+        asked = (*TOPICS.get((kind, task), ()), text)
         lists = [self.search(words, self.per_kind, (kind,), task) for words in asked]
         in_turn = (hit for rank in zip_longest(*lists) for hit in rank if hit is not None)
         return list({hit.id: hit for hit in in_turn}.values())[: self.per_kind]
@@ -72,7 +94,7 @@ class LanceDB(Retriever):
         return self._index().search(text, k, kinds, task)
 
     def search_checked(self, text: str, k: int, kinds: Sequence[str], task: str | None) -> list[Hit]:
-        """`search` with names from a command line. Raises ConfigError naming what there is."""
+        """`search` with names from a command line. Raises ConfigError that lists the known names."""
         for name, known in [*((kind, KINDS) for kind in kinds), *([(task, TASKS)] if task else [])]:
             if name not in known:
                 raise ConfigError(f"unknown {name!r}; there are {', '.join(known)}")
@@ -88,7 +110,7 @@ class LanceDB(Retriever):
         return read_manifest(self.folder)
 
     def chunks(self, files: Sequence[Path], builtin: bool, on_skip: OnSkip) -> Iterator[Chunk]:
-        """What the project brings, if wanted, then each file's. Raises ConfigError before anything is read."""
+        """The project's own chunks, if wanted, then each file's. Raises ConfigError before anything is read."""
         from plugins.retriever.knowledge import sources
 
         for file in files:
@@ -97,13 +119,13 @@ class LanceDB(Retriever):
         return chain(own, chain.from_iterable(sources.file_chunks(file, on_skip) for file in files))
 
     def build(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
-        """Write the index anew from chunks. Raises ConfigError, MissingTool."""
+        """Writes a new index from chunks. Raises ConfigError, MissingTool."""
         from plugins.retriever.knowledge import store
 
         return store.build(self.folder, chunks, self._embedder, progress)
 
     def add(self, chunks: Iterable[Chunk], progress: Progress) -> Manifest:
-        """Add what is new or changed. Raises ConfigError, MissingTool."""
+        """Adds new and changed chunks. Raises ConfigError, MissingTool."""
         from plugins.retriever.knowledge import store
 
         return store.add(self.folder, chunks, self._embedder, progress)

@@ -7,7 +7,7 @@ from sgcad_core.interfaces import Retriever
 
 
 class NoRetrieval(Retriever):
-    """Gives no passages."""
+    """Retrieves nothing: the model sees only the task and the evidence."""
 
     def retrieve(self, text: str, task: str) -> tuple[Passage, ...]:
         """Always empty."""

@@ -1,1 +1,1 @@
-"""Evidence -> RoadNetwork. One file per choice."""
+"""Road writers: from evidence to a road network. One file for each plugin."""

@@ -1,7 +1,7 @@
-"""Existing maps only: the map of a library that is most like what the report tells of its roads.
+"""Existing maps only: the map of a library that is nearest to the roads of the report.
 
-No model: the roads are read off the narrative by rules. Nothing is drawn for the report, so what a map lacks stays
-lacking. Knows the narrative's road facts and the library.
+No model: rules read the roads from the narrative. Nothing is drawn for the report, so a feature that no map has is
+missing from the network. Knows the narrative's road facts and the library.
 """
 
 from __future__ import annotations
@@ -10,29 +10,23 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from plugins.road_writer._maps import compiled, library, nearest
+from plugins.road_writer._map_search import compiled, library, nearest
+from plugins.road_writer._told_layout import told_layout
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
-from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
-from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 
 
 class MapLibrary(RoadWriter):
-    """The nearest map by legs, lanes, shape and control, turned so that its legs lie as told."""
+    """Takes the map that is nearest to the report's roads by legs, lanes, shape and control, and turns it to fit."""
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
     folder: Path | None = None
-    """Maps of your own (.net.xml, .xodr); the project's twenty where none is named."""
+    """Folder of maps (.net.xml, .xodr); the project's own twenty if it is not set."""
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Choose, turn, compile. Raises Refused on a text without a crash, ConfigError for a folder without maps."""
-        facts = context.reading.roads
-        if not facts.crash.vehicles and not facts.roads:
-            missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
-            raise Refused("the narrative names neither a vehicle nor a road", missing)
-        refuse_unsupported(facts.junction.unsupported)
-        return compiled(*nearest(library(self.folder), layout_of_facts(facts, Defaults())))
+        """Chooses, turns and compiles a map. Raises Refused (a text without a crash), ConfigError (no maps)."""
+        wanted = told_layout(context)
+        return compiled(*nearest(library(self.folder), wanted))

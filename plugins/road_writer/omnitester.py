@@ -1,8 +1,7 @@
-"""OmniTester's road half: an interpreter thinks aloud and describes the scene, a net generator writes SUMO XML from it.
+"""OmniTester's road half: an interpreter reasons about the scene and describes it, a net generator writes SUMO XML.
 
-The description alone, not the report, reaches the generator, beside real junctions that an index finds for it; faults
-of the schemas, of netconvert and of SUMO come back through the refinement loop. Knows no index but through the
-retriever that it names.
+The generator gets the description and similar real junctions from an index, but not the report; faults of the schemas,
+of netconvert and of SUMO come back through the refinement loop. Reads the index through the retriever only.
 """
 
 from __future__ import annotations
@@ -11,10 +10,11 @@ import json
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar, Literal, cast
+from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
+from plugins.road_writer._told_layout import Embedder, junction_index
 from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
 from sgcad_core.asking.case_cache import OncePerCase
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
@@ -22,24 +22,26 @@ from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwor
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.records.specs import Spec
-from sgcad_core.registry import plugin_class
 
 
 class RoadInterpretation(Spec):
-    """What the interpreter answers; the thinking stands first, so that it is done first."""
+    """The interpreter's answer; the reasoning is the first field, so that it is written first."""
 
     reasoning: str = Field(description="step by step: junction, legs, headings, lanes, control, shape")
     roads: str = Field(min_length=1, description="the whole scene in plain sentences for somebody who draws it")
 
 
 class OmnitesterRoad(RoadWriter):
-    """Interpreter, retrieval of real junctions, net generator."""
+    """Asks a model twice: for a description of the scene, then for SUMO XML made from it and from real junctions.
+
+    form is how the XML is answered (a JSON envelope or fenced blocks); embedder, model and base_url are the index's.
+    """
 
     asks_model: ClassVar[bool] = True
     form: Literal["envelope", "fenced"] = "fenced"
     folder: Path | None = None
     """An index of real junctions (`sgcad index build EXTRACT --out FOLDER`); none: nothing is retrieved."""
-    embedder: Literal["none", "minilm", "sentence_transformers", "openai"] = "none"
+    embedder: Embedder = "none"
     model: str = ""
     base_url: str = ""
     junctions: int = Field(2, ge=1, le=5)
@@ -48,13 +50,13 @@ class OmnitesterRoad(RoadWriter):
 
     @property
     def stamp(self) -> str:
-        """That of the index, if any. Raises ConfigError where there is none."""
+        """The index's fingerprint, "" without a folder. Raises ConfigError if the folder holds no index."""
         return self._retriever.stamp if self._retriever else ""
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Interpret (once a case), retrieve, generate, compile. Raises InvalidOutput, Refused, ConfigError."""
+        """Interprets (once a case), retrieves, generates and compiles. Raises InvalidOutput, Refused, ConfigError."""
         scene = self._seen.of(context, attempt, lambda: _interpret(context, ask, attempt))
         query = Query(
             task=load_prompt("omnitester_net", answer=load_prompt(f"plain_xml_{self.form}")),
@@ -73,9 +75,7 @@ class OmnitesterRoad(RoadWriter):
     def _retriever(self) -> Retriever | None:
         if self.folder is None:
             return None
-        fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
-        kinds = {"kinds": ("junction",), "per_kind": self.junctions}
-        return cast("Retriever", plugin_class("retriever", "lancedb")(**fields, **kinds))
+        return junction_index(self.folder, self.embedder, self.model, self.base_url, self.junctions)
 
 
 def _interpret(context: Context, ask: Ask, attempt: int) -> RoadInterpretation:

@@ -1,8 +1,8 @@
-"""Direct retrieval (OSM-Direct): the nearest real junction to what the report tells of its roads, and nothing drawn.
+"""Direct retrieval (OSM-Direct): the real junction nearest to the roads of the report; nothing is drawn.
 
-No model: the template's road facts are put in the words in which an index describes junctions, and the first one found
-is turned so that its legs lie as told, and compiled. A report of a plain road gets a junction too: an index of
-junctions holds nothing else. Knows no index but through the retriever that it names.
+No model: the narrative's road facts are described in the index's words, and the first junction found is turned to fit
+and compiled. A report of a plain road gets a junction too, since the index holds nothing else. Reads the index through
+the retriever only.
 """
 
 from __future__ import annotations
@@ -12,34 +12,35 @@ import math
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Literal, cast
+from typing import Any, ClassVar
 
 from pydantic import Field
 
+from plugins.road_writer._told_layout import Embedder, junction_index, told_layout
 from sgcad_core.case.records import Context, Finding, Passage, PlainXml, RoadNetwork
-from sgcad_core.errors import ConfigError, Refused
+from sgcad_core.errors import ConfigError
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
-from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 from sgcad_core.records.specs import RoadLayout
-from sgcad_core.registry import plugin_class
 from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, layout_legs
 from sgcad_core.roads.layout import LEG_M
 
 
 class OsmDirect(RoadWriter):
-    """The nearest junction of an index that `sgcad index build EXTRACT --out FOLDER` made."""
+    """Takes the real junction nearest to the report's roads from an index (`sgcad index build EXTRACT --out FOLDER`).
+
+    model and base_url are those of the embedder, as in the retriever `lancedb`.
+    """
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
 
     folder: Path = Path("knowledge")
     """The index; relative to the working directory."""
-    embedder: Literal["none", "minilm", "sentence_transformers", "openai"] = "none"
+    embedder: Embedder = "none"
     """none: full text over the words of a description, which junctions of equal legs and lanes share."""
     model: str = ""
     base_url: str = ""
@@ -52,19 +53,14 @@ class OsmDirect(RoadWriter):
 
     @property
     def stamp(self) -> str:
-        """That of the index. Raises ConfigError where there is none."""
+        """The index's fingerprint. Raises ConfigError if the folder holds no index."""
         return self._retriever.stamp
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Describe, look up, turn, compile. Raises Refused (a text of no crash), ConfigError (no junctions)."""
-        facts = context.reading.roads
-        if not facts.crash.vehicles and not facts.roads:
-            missing = ["the road or junction of the crash", "the vehicles and how they traveled"]
-            raise Refused("the narrative names neither a vehicle nor a road", missing)
-        refuse_unsupported(facts.junction.unsupported)
-        layout = layout_of_facts(facts, Defaults())
+        """Searches, turns and compiles. Raises Refused (a text without a crash), ConfigError (no junctions)."""
+        layout = told_layout(context)
         found, data = self._nearest(layout)
         legs = _legs(data)
         turn = best_turn(legs, layout_legs(layout))[0] if self.turn else 0.0
@@ -86,9 +82,7 @@ class OsmDirect(RoadWriter):
 
     @cached_property
     def _retriever(self) -> Retriever:
-        fields = {"folder": self.folder, "embedder": self.embedder, "model": self.model, "base_url": self.base_url}
-        found = plugin_class("retriever", "lancedb")(**fields, kinds=("junction",), per_kind=self.among)  # type: ignore[call-arg]
-        return cast("Retriever", found)
+        return junction_index(self.folder, self.embedder, self.model, self.base_url, self.among)
 
 
 def _legs(data: dict[str, Any]) -> list[JunctionLeg]:

@@ -1,6 +1,6 @@
 """The model writes SUMO's plain XML itself (nodes, edges, connections); netconvert compiles it.
 
-The paper's own way. Nothing is mended: faults of the answer, of SUMO's schemas and of netconvert go back as
+The paper's own method. Nothing is repaired here: faults of the answer, of SUMO's schemas and of netconvert go back as
 findings. The XML is taken from a JSON envelope or from blocks in a free answer, whichever the model gives.
 """
 
@@ -35,7 +35,7 @@ class PlainAnswer(Spec):
 
 
 class PlainXmlRoad(RoadWriter):
-    """Asks for SUMO XML as a JSON envelope (a grammar or server can hold a model to it) or as fenced blocks."""
+    """Asks a model for SUMO XML: form envelope for one JSON object, which a grammar can enforce, or fenced blocks."""
 
     asks_model: ClassVar[bool] = True
     form: Literal["envelope", "fenced"] = "envelope"
@@ -45,7 +45,7 @@ class PlainXmlRoad(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Ask, read, compile. Raises InvalidOutput where a document is missing, Refused where the model declines."""
+        """Asks, reads and compiles. Raises InvalidOutput (a document is missing), Refused (the model declines)."""
         enveloped = self.form == "envelope"
         query = Query(
             task=load_prompt(self.prompt, answer=load_prompt(f"{self.prompt}_{self.form}")),
@@ -74,7 +74,7 @@ def _missing(part: str) -> Finding:
 
 
 def _without_hints(text: str) -> str:
-    """Without schema locations, which would send a reader elsewhere; what is no XML stays for the schema to judge."""
+    """The text without schema locations, which would point a parser elsewhere; invalid XML stays for the validators."""
     try:
         root = parse_xml(text, "plain_xml") if text else None
     except InvalidOutput:

@@ -29,7 +29,10 @@ USUAL_LEGS = 4
 
 
 class SpecRoad(RoadWriter):
-    """Asks for a `RoadSpec` (any network), or for a `RoadLayout` (one hub and its legs: for small models)."""
+    """Asks a model for a description of the roads, which code draws and compiles.
+
+    form: road asks for a `RoadSpec` (any network), layout for a `RoadLayout` (one hub and its legs, for small models).
+    """
 
     asks_model: ClassVar[bool] = True
     version: ClassVar[str] = "2"
@@ -42,7 +45,7 @@ class SpecRoad(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Ask, read, draw, compile. Raises InvalidOutput with findings, Refused where the model declines."""
+        """Asks, reads, draws and compiles. Raises InvalidOutput with findings, Refused if the model declines."""
         query = Query(
             task=self._task(),
             passages=tuple(passages),

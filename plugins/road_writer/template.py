@@ -1,7 +1,7 @@
 """Road networks from templates: the narrative's stated roads, completed by parameters, without a model.
 
-The rival that a model has to beat, and the writer that always works: narrative -> facts -> layout -> spec ->
-netconvert. Reads no diagram and no passages; findings cannot change its answer.
+The baseline without a model: narrative -> facts -> layout -> spec -> netconvert. Reads no diagram and no passages;
+findings cannot change its answer.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from plugins.road_writer._told_layout import no_crash
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
 from sgcad_core.errors import Refused
 from sgcad_core.formats.sumo.netconvert import compile_network
@@ -27,7 +28,7 @@ _CRASH_WORDS = rule("report.crash_words")
 
 
 class Template(RoadWriter):
-    """Scale, lane and speed parameters stand for what a report leaves out."""
+    """Draws the roads that the narrative states; parameters fill in lanes, lengths and limits that it leaves out."""
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "2"
@@ -42,8 +43,7 @@ class Template(RoadWriter):
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Write the network; `log` begins with what had to be assumed. Raises Refused on a text without
-        a crash and on a place that cannot be drawn."""
+        """Writes the network; its `log` begins with the assumptions. Raises Refused (no crash, or no drawing)."""
         gap = context.reading.crash.gap
         if gap and gap.roads_too:
             raise Refused(gap.reason, list(gap.missing))
@@ -52,10 +52,7 @@ class Template(RoadWriter):
     def network_of(self, narrative: str, facts: RoadFacts) -> RoadNetwork:
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
         if not (facts.crash.vehicles or facts.roads or _CRASH_WORDS.search(narrative)):
-            raise Refused(
-                "the narrative names neither a vehicle nor a road",
-                ["the road or junction of the crash", "the vehicles and how they traveled"],
-            )
+            raise no_crash()
         refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         layout = layout_of_facts(facts, defaults)

@@ -1,6 +1,6 @@
-"""The first level of a hierarchical reading, the scene's layout: the model parses it, a rule makes it a map query.
+"""The first level of a hierarchical reading, the scene's layout: a model fills in a form, rules make a map query of it.
 
-Existing maps only: the nearest map of a library is taken as it is. Rule templates turn the parse (a kind of place, its
+Existing maps only: the nearest map of a library is taken unchanged. Rule templates turn the form (a kind of place, its
 main road, lanes, control) into legs; the model writes neither roads nor coordinates. Knows no behavior.
 """
 
@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from plugins.road_writer._maps import compiled, library, nearest
+from plugins.road_writer._map_search import compiled, library, nearest
 from sgcad_core import kinds
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork
@@ -44,18 +44,21 @@ class SceneLayout(Spec):
 
 
 class Text2ScenarioRoad(RoadWriter):
-    """Asks for a `SceneLayout` (or, for small models, for a `RoadLayout`) and takes the nearest map."""
+    """Asks a model for the scene's layout and takes the nearest map of a library.
+
+    form: scene asks for a `SceneLayout`, layout for a `RoadLayout` (for small models); prompt names the prompt file.
+    """
 
     asks_model: ClassVar[bool] = True
     folder: Path | None = None
-    """Maps of your own (.net.xml, .xodr); the project's twenty where none is named."""
+    """Folder of maps (.net.xml, .xodr); the project's own twenty if it is not set."""
     form: Literal["scene", "layout"] = "scene"
     prompt: str = Field("text2scenario_scene", pattern=r"^[\w-]+$")
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
-        """Ask, read, choose, compile. Raises InvalidOutput, Refused, ConfigError for a folder without maps."""
+        """Asks, reads, chooses and compiles. Raises InvalidOutput, Refused, ConfigError (a folder without maps)."""
         maps = library(self.folder)
         query = Query(
             task=load_prompt(self.prompt),
@@ -118,5 +121,5 @@ def _ramp(scene: SceneLayout, bearing: Compass) -> Leg:
 
 
 def _bearing(scene: SceneLayout, default: int) -> Compass:
-    """Where the joining road lies: as told, else at the right of who drives in main_heading."""
+    """Where the joining road lies: the answer's bearing, else to the right of traffic in main_heading."""
     return scene.cross_bearing or COMPASS[(COMPASS.index(scene.main_heading) + default) % 8]

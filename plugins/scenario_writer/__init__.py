@@ -1,1 +1,1 @@
-"""Evidence and network -> Scenario. One file per choice."""
+"""Scenario writers: from evidence and a road network to a scenario. One file for each plugin."""

@@ -1,7 +1,7 @@
 """The model writes Python on scenariogeneration; it runs in the sandbox, and its scenario is the .xosc.
 
-The paper's own way. Beside the code the model declares actors and contacts as JSON, so that what happens can be
-compared with what it meant. An exception goes back with its line and the nearest entry of the API.
+The paper's own method. Beside the code the model declares actors and contacts as JSON, so that the execution can be
+compared with the intention. An exception goes back with its line and the nearest entry of the API.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from plugins.scenario_writer.api import nearest_entry
-from plugins.scenario_writer.lanes import lane_lines
-from plugins.scenario_writer.sandbox.outside import Fault, Limits, run_script
+from plugins.scenario_writer._api_hint import nearest_entry
+from plugins.scenario_writer._network_words import lane_lines
+from plugins.scenario_writer.sandbox.script_runner import Fault, Limits, run_script
 from sgcad_core.asking.fenced_blocks import fenced_blocks
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
@@ -35,7 +35,7 @@ class CodedActor(Spec):
 
 
 class Declaration(Spec):
-    """Who takes part and who strikes whom, contacts in order."""
+    """The actors, and the contacts in order of time."""
 
     actors: tuple[CodedActor, ...] = Field(min_length=1, max_length=12)
     contacts: tuple[Contact, ...] = Field((), max_length=8)
@@ -48,7 +48,10 @@ class CodeAnswer(Declaration):
 
 
 class Code(ScenarioWriter):
-    """Asks for a script and a declaration, as two fenced blocks or as one JSON envelope, and runs the script."""
+    """Asks a model for a Python script and a declaration of actors and contacts, and runs the script in the sandbox.
+
+    form is how they are answered (fenced blocks or a JSON envelope); cpu_s, wall_s and memory_mb limit the script.
+    """
 
     asks_model: ClassVar[bool] = True
     form: Literal["fenced", "envelope"] = "fenced"
@@ -69,7 +72,7 @@ class Code(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Ask, read, run. Raises InvalidOutput with findings, Refused, ConfigError where nothing isolates a script."""
+        """Asks, reads and runs. Raises InvalidOutput with findings, Refused, ConfigError (no isolation)."""
         query = Query(
             task=self._task(network),
             passages=tuple(passages),

@@ -1,8 +1,8 @@
-"""OmniTester's vehicle half: an interpreter describes who drives how, a vehicle generator writes SUMO routes.
+"""OmniTester's vehicle half: an interpreter describes the actors' driving, a vehicle generator writes SUMO routes.
 
-The scenario is a .rou.xml that SUMO's own driver models execute, so a crash comes about only where they are told to
-look away. Beside it the model declares actors and contact. Faults come back through the refinement loop. Knows the
-lane graph, no planner.
+The scenario is a .rou.xml that SUMO's own driver models execute, so a crash happens only if their parameters make them
+ignore other vehicles. Beside it the model declares actors and contact. Faults come back through the refinement loop.
+Knows the lane graph, no planner.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr
 
+from plugins.scenario_writer._network_words import edge_lines
 from plugins.scenario_writer.code import CodedActor, Declaration
-from plugins.scenario_writer.edges import edge_lines
 from sgcad_core.asking.case_cache import OncePerCase
 from sgcad_core.asking.fenced_blocks import xml_document
 from sgcad_core.asking.prompts import MAX_ANSWER, answer_schema, load_prompt, parse_answer
@@ -26,7 +26,7 @@ from sgcad_core.records.specs import SIZE_M, Spec
 
 
 class VehicleInterpretation(Spec):
-    """What the interpreter answers; the thinking stands first, so that it is done first."""
+    """The interpreter's answer; the reasoning is the first field, so that it is written first."""
 
     reasoning: str = Field(description="step by step: who, from where to where, how fast, what happens when")
     vehicles: str = Field(min_length=1, description="every actor and the contact in plain sentences")
@@ -39,7 +39,10 @@ class RoutesAnswer(Declaration):
 
 
 class OmnitesterVehicles(ScenarioWriter):
-    """Interpreter, then vehicle generator."""
+    """Asks a model twice: for a description of the actors and the contact, then for SUMO routes made from it.
+
+    form is how the routes are answered (fenced blocks or a JSON envelope).
+    """
 
     asks_model: ClassVar[bool] = True
     form: Literal["envelope", "fenced"] = "fenced"
@@ -54,7 +57,7 @@ class OmnitesterVehicles(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Interpret (once a case), generate, read. Raises InvalidOutput with findings, Refused."""
+        """Interprets (once for each case), generates and reads. Raises InvalidOutput with findings, Refused."""
         if network.net_xml is None:
             raise InvalidOutput("the road network has no net.xml: no edge to drive on")
         edges = edge_lines(parse_net(network.net_xml))
@@ -82,7 +85,7 @@ def _interpret(context: Context, ask: Ask, attempt: int, edges: str) -> VehicleI
 
 def _actor(actor: CodedActor, size: tuple[float | None, float | None]) -> ActorInfo:
     usual = SIZE_M[actor.kind]
-    length, width = size[0] or usual[0], size[1] or usual[1]  # a size that is not told is a finding of its own
+    length, width = size[0] or usual[0], size[1] or usual[1]  # a missing size is a finding of its own
     return ActorInfo(id=actor.id, type=actor.kind, length_m=length, width_m=width, maneuver=actor.maneuver)
 
 

@@ -1,7 +1,6 @@
 """Scenarios by rules: the narrative's facts placed on the network and planned, without a model.
 
-The rival that a model has to beat, and the writer that always works. Reads the narrative only: no diagram,
-no passages; findings cannot change its answer.
+The baseline without a model. Reads the narrative only: no diagram, no passages; findings cannot change its answer.
 """
 
 from __future__ import annotations
@@ -9,14 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
+from plugins.scenario_writer._planned import PlannedWriter, roads_of
 from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario
-from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.plan_score import least_doubted
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
-from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import Reading
@@ -24,17 +21,14 @@ from sgcad_core.reading.reading_with_edits import holds
 from sgcad_core.records.specs import RoadSpec
 
 
-class Rules(ScenarioWriter):
-    """Vehicles, headings, maneuvers and contacts as the text states them, completed by inference."""
+class Rules(PlannedWriter):
+    """Plans vehicles, headings, maneuvers and contacts as the narrative states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
     version: ClassVar[str] = "3"
-    openscenario: Version = DEFAULT_VERSION
-    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
-    encoding: Encoding = DEFAULT_ENCODING
-    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
+
     try_others: bool = True
-    """Plan readings that differ in one weak fact where our own checks doubt the first, and keep the least doubted."""
+    """If the checks doubt the first plan: plan readings that differ in one weak fact, and keep the least doubted."""
 
     def write(
         self,
@@ -45,8 +39,8 @@ class Rules(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Write the scenario. Raises Refused without vehicles, InvalidOutput without a network."""
-        spec = network.spec or _read_back(network)
+        """Plans and writes the scenario. Raises Refused (no vehicles), InvalidOutput (no network)."""
+        spec = roads_of(network)
         reading = context.reading
         scenario = self._compiled(reading.crash, spec, network, reading)
         said: list[str] = []
@@ -73,15 +67,8 @@ class Rules(ScenarioWriter):
         )
 
 
-def _read_back(network: RoadNetwork) -> RoadSpec:
-    """The roads of a network that was drawn from no spec."""
-    if network.net_xml is None:
-        raise InvalidOutput("the road network has no net.xml: no road to place an actor on")
-    return spec_of_graph(parse_net(network.net_xml))
-
-
 def _inferred(facts: CrashFacts) -> Iterator[str]:
-    """What the text does not tell outright."""
+    """Notes on facts that the text does not state."""
     for v in facts.vehicles:
         if not v.heading_stated:
             yield f"{v.id}'s heading is not told: inferred as {v.heading}" if v.heading else f"{v.id}'s heading is open"

@@ -1,6 +1,6 @@
-"""The model says who drives where and who strikes whom; code plans and writes the scenario.
+"""The model describes the actors' driving and the contacts; code plans and writes the scenario.
 
-The roads stand in the query, the crash evidence in the context, so that contrast amplifies the evidence only.
+The roads are part of the query, the crash evidence is the context, so that contrast amplifies the evidence only.
 """
 
 from __future__ import annotations
@@ -10,34 +10,29 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from plugins.scenario_writer._planned import PlannedWriter
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
-from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import as_read
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.roads.describe import describe_network, road_ids
 
 
-class SpecScenario(ScenarioWriter):
-    """Asks for a `BehaviorSpec` whose roads are those of the network."""
+class SpecScenario(PlannedWriter):
+    """Asks a model for a `BehaviorSpec` on the roads of the network, and plans the scenario from it."""
 
     asks_model: ClassVar[bool] = True
     prompt: str = Field("behavior", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
     roads: Literal["described", "layout"] = "described"
-    """What fills the slot: the network in words, or the layout's JSON as it was answered (for small models)."""
+    """Content of that slot: the network in words, or the layout's JSON as it was answered (for small models)."""
 
     near_crashes: bool = False
     """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
-
-    openscenario: Version = DEFAULT_VERSION
-    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
-    encoding: Encoding = DEFAULT_ENCODING
-    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -48,7 +43,7 @@ class SpecScenario(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Ask, read, plan, write. Raises InvalidOutput with findings, Refused where the model declines."""
+        """Asks, reads, plans and writes. Raises InvalidOutput with findings, Refused if the model declines."""
         roads = _roads(network)
         ids = road_ids(roads)
         query = Query(

@@ -1,8 +1,8 @@
 """The further levels of a hierarchical reading: roles and temporal events, parsed by the model, placed by templates.
 
-The model fills in a form (who comes from where, what happens in which order); rule templates make maneuvers, sides of
-contact and places on the map of it, and the planner drives. It never names a road, a lane line or a coordinate. Knows
-no map library: whatever network is written will do.
+The model fills in a form (the actors with their origins, the events in order); rule templates make maneuvers, sides of
+contact and places on the map of it, and the planner drives. The model never names a road, a lane line or a coordinate.
+Knows no map library: any network will do.
 """
 
 from __future__ import annotations
@@ -13,15 +13,13 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from plugins.scenario_writer._planned import PlannedWriter, roads_of
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.findings import Finder
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
-from sgcad_core.formats.sumo.graph_spec import spec_of_graph
-from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.interfaces import Ask, ScenarioWriter
+from sgcad_core.interfaces import Ask
 from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
@@ -36,7 +34,6 @@ from sgcad_core.records.specs import (
     Contact,
     Light,
     Maneuver,
-    RoadSpec,
     Spec,
     SpeedMph,
     Surface,
@@ -87,16 +84,12 @@ class Representation(Spec):
     surface: Surface | None = None
 
 
-class Text2Scenario(ScenarioWriter):
-    """Asks for roles and events; templates and the planner make the scenario of them."""
+class Text2Scenario(PlannedWriter):
+    """Asks a model for roles and events; rule templates and the planner make the scenario from them."""
 
     asks_model: ClassVar[bool] = True
     prompt: str = Field("text2scenario_events", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
-    openscenario: Version = DEFAULT_VERSION
-    """The version to write: 1.0 (which CARLA's runner reads) to 1.3."""
-    encoding: Encoding = DEFAULT_ENCODING
-    """timed: polylines that every player replays alike; events: maneuvers and triggers that people edit by hand."""
 
     def write(
         self,
@@ -107,8 +100,8 @@ class Text2Scenario(ScenarioWriter):
         attempt: int,
         network: RoadNetwork,
     ) -> Scenario:
-        """Ask, read, fill the templates, plan. Raises InvalidOutput with findings, Refused."""
-        spec = network.spec or _read_back(network)
+        """Asks, reads, fills the templates and plans. Raises InvalidOutput with findings, Refused."""
+        spec = roads_of(network)
         query = Query(
             task=load_prompt(self.prompt, roads=describe_network(spec)),
             passages=tuple(passages),
@@ -127,12 +120,6 @@ class Text2Scenario(ScenarioWriter):
         return compile_scenario(
             behavior.model_copy(update=changed), network, self.openscenario, self.encoding, may_skid=lost
         )
-
-
-def _read_back(network: RoadNetwork) -> RoadSpec:
-    if network.net_xml is None:
-        raise InvalidOutput("the road network has no net.xml: no road to place an actor on")
-    return spec_of_graph(parse_net(network.net_xml))
 
 
 def _faults(parsed: Representation) -> list[Finding]:
@@ -212,7 +199,7 @@ def _side(striker: Role, struck: Role) -> Area:
         return "back"
     if abs(across) >= _OPPOSITE:
         return "front"
-    return "right" if across > 0 else "left"  # who travels to the left of my heading comes from my right
+    return "right" if across > 0 else "left"  # a vehicle that heads to the left of the striker comes from its right
 
 
 def _contact(c: ContactFacts) -> Contact:

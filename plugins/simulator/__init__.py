@@ -1,1 +1,1 @@
-"""Scenario -> Execution. One file per choice."""
+"""Simulators: from a scenario to its execution. One file for each plugin."""

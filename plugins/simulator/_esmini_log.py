@@ -1,7 +1,7 @@
-"""esmini's CSV log and its messages, as trajectories of box centers and as complaints. Starts no process.
+"""Reads esmini's CSV log as trajectories of box centers, and its messages as complaints. Starts no process.
 
-The log has seven lines of head, one of column names and one row a step; a row holds a block of columns for every
-entity, with the pose of the entity's origin and the center of its box from there.
+The log has seven header lines, one line of column names and one row for each step; a row holds a block of columns for
+every entity, with the pose of the entity's origin and the offset of its box center.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def complaints(said: str) -> tuple[str, ...]:
 
 
 def trajectories(text: str, actors: Sequence[str], dt_s: float) -> list[Trajectory]:
-    """Box centers of the actors every dt_s from 0. Raises SimulationFailed on a log that cannot be understood."""
+    """Box centers of the actors every dt_s from 0. Raises SimulationFailed if the log cannot be read."""
     rows = list(csv.reader(io.StringIO(text), skipinitialspace=True))
     table = list(dropwhile(lambda row: not row or not row[0].startswith("Index"), rows))
     if len(table) < 3:

@@ -1,4 +1,4 @@
-"""CARLA through its client package: reads the map offline; replays our playing on a user's server.
+"""CARLA through its client package: reads the map offline; replays the player's trajectories on a user's server.
 
 The map is parsed by the client's own class, without a server: a second OpenDRIVE reader. The replay needs a running
 server and HAS NEVER BEEN RUN by this project (no server was at hand); it is kept thin for those who have one. CARLA's
@@ -30,10 +30,13 @@ _BLUEPRINTS = {
 
 
 class Carla(Simulator):
-    """Reads the .xodr with CARLA's client; with `host` given, also replays on that server (never tried)."""
+    """Reads the .xodr with CARLA's client; with `host` set, also replays on that server (never tried).
+
+    port is the server's, timeout_s the longest wait for an answer, seconds.
+    """
 
     host: str = ""
-    """A running server; empty: the map is read, and what is returned is our own playing."""
+    """A running server; empty: the map is read, and the trajectories are those of the project's player."""
     port: int = Field(2000, ge=1, le=65535)
     timeout_s: float = Field(30.0, gt=0, le=600)
 
@@ -42,7 +45,7 @@ class Carla(Simulator):
         client()
 
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
-        """Read the map, play the .xosc and, on a server, replay it. Raises MissingTool, SimulationFailed."""
+        """Reads the map, plays the .xosc and, with a server, replays it. Raises MissingTool, SimulationFailed."""
         if not network.xodr:
             raise SimulationFailed("CARLA needs an .xodr: compile the road network first")
         told = f"CARLA's client reads {waypoints(network.xodr)} waypoints"
@@ -60,7 +63,7 @@ def client() -> Any:
 
 
 def waypoints(xodr: str) -> int:
-    """How many places to drive on the client's own map class finds, 2 m apart. Raises MissingTool, SimulationFailed."""
+    """Number of waypoints, 2 m apart, that the client's map class finds. Raises MissingTool, SimulationFailed."""
     carla = client()
     try:
         found = carla.Map("road", xodr).generate_waypoints(APART_M)

@@ -1,7 +1,7 @@
-"""Plays the scenario file in esmini, a player that others wrote: what it shows is not ours to believe.
+"""Plays the scenario file in esmini, an independent player.
 
 The binary is the user's: named by `path`, by the variable ESMINI, or found on PATH. It runs without a window, in a
-folder of its own, with limits. Knows nothing of its log's form (`_esmini_log`).
+folder of its own, with limits. `_esmini_log` reads its log.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MEMORY_MB = 4_000
 
 
 class Esmini(Simulator):
-    """Executes in esmini with a fixed step of 0.05 s; needs a binary of the user's."""
+    """Executes the scenario in esmini with a fixed step of 0.05 s; needs a binary that the user installs."""
 
     path: str = ""
     """The binary; without it the variable ESMINI, else `esmini` on PATH."""
@@ -39,7 +39,7 @@ class Esmini(Simulator):
 
     @property
     def stamp(self) -> str:
-        """The binary by size and time: another build is another judge."""
+        """The binary's size and time: results of another build are not reused."""
         with suppress(MissingTool, OSError):
             about = self._binary().stat()
             return f"{about.st_size}-{about.st_mtime_ns}"
@@ -65,7 +65,7 @@ class Esmini(Simulator):
         return execution.model_copy(update={"complaints": complaints(said)})
 
     def _run(self, folder: Path) -> str:
-        """What it said. Raises SimulationFailed."""
+        """esmini's messages. Raises SimulationFailed."""
         command = [str(self._binary()), "--osc", "scenario.xosc", "--headless", "--disable_log"]
         command += ["--fixed_timestep", f"{DT_S:g}", "--csv_logger", LOG, *self.options]
         try:

@@ -1,4 +1,4 @@
-"""Plays the scenario file with the project's own player, in process: nothing to install, nothing to die."""
+"""Plays the scenario file with the project's own player, in this process; needs no installation."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from sgcad_core.interfaces import Simulator
 
 
 class Kinematic(Simulator):
-    """The scenario's own motion; no physics and no driver model."""
+    """Plays the scenario's own motion, without physics and without a driver model."""
 
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
-        """Play the .xosc. Raises SimulationFailed where it cannot be played."""
+        """Plays the .xosc. Raises SimulationFailed if it cannot be played."""
         return execution_of("kinematic", scenario, played(scenario, network))

@@ -1,7 +1,6 @@
 """Replays scenarios in SUMO: every actor is put on its played pose and read back, step by step.
 
-libsumo runs in a worker process: a network that kills it ends the execution, not the batch. Knows nothing
-of what happens over there (`_sumo_replay`, `_sumo_routes`).
+libsumo runs in a worker process (`_sumo_worker`): a network that kills it ends the execution, not the batch.
 """
 
 from __future__ import annotations
@@ -12,8 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from plugins.simulator._exchange import Driven, Mover, Replayed
-from sgcad_core.case.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.records import Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.execution.contact import poses
 from sgcad_core.execution.playback import execution_of, played
@@ -28,14 +26,14 @@ TOLERANCE_M = 0.01
 
 @functools.cache
 def _worker(function: str) -> Worker:
-    """One SUMO process for all simulators of this process: its start is what costs."""
-    return Worker(f"plugins.simulator.{function}")
+    """One SUMO process for all simulators of this process, since its start takes half a second."""
+    return Worker(f"plugins.simulator._sumo_worker:{function}")
 
 
 class LibSumo(Simulator):
-    """Scenario files are replayed: SUMO holds every pose to within 1 cm, or the execution fails.
+    """Replays scenario files in SUMO, which must hold every pose to within 1 cm, and runs route files.
 
-    Route files are run with SUMO's own driver models.
+    Route files are driven by SUMO's own driver models.
     """
 
     timeout_s: float = Field(60.0, gt=0, le=3600)
@@ -55,8 +53,11 @@ class LibSumo(Simulator):
 
     def _replay(self, scenario: Scenario, network: RoadNetwork, net_xml: str) -> Execution:
         wanted = played(scenario, network)
-        movers = [_mover(actor, t) for actor, t in zip(scenario.actors, wanted, strict=True)]
-        back: Replayed = self._call("_sumo_replay:replay", net_xml, movers, DT_S)
+        movers = [
+            (actor.id, actor.length_m, actor.width_m, np.column_stack((poses(t), t.speed_mps)))
+            for actor, t in zip(scenario.actors, wanted, strict=True)
+        ]
+        back = self._call("replay", net_xml, movers, DT_S)
         seen = [_seen(t, rows) for t, rows in zip(wanted, back.poses, strict=True)]
         worst = max(_deviation(a, b) for a, b in zip(wanted, seen, strict=True))
         return execution_of("libsumo", scenario, seen, "\n".join([*back.notes, f"largest deviation {worst:.1e} m"]))
@@ -67,7 +68,7 @@ class LibSumo(Simulator):
         except InvalidOutput as fault:
             raise SimulationFailed(str(fault)) from fault
         ids = [actor.id for actor in scenario.actors]
-        back: Driven = self._call("_sumo_routes:drive", net_xml, routes_xml, ids, self.longest_s, DT_S)
+        back = self._call("drive", net_xml, routes_xml, ids, self.longest_s, DT_S)
         seen = [_driven(name, rows) for name, rows in zip(ids, back.poses, strict=True)]
         return execution_of("libsumo", scenario, seen, "\n".join(back.notes))
 
@@ -83,10 +84,6 @@ class LibSumo(Simulator):
 def _driven(name: str, rows: Floats) -> Trajectory:
     t_s, heading = np.arange(len(rows)) * DT_S, np.unwrap(rows[:, 2])
     return Trajectory(actor=name, t_s=t_s, x_m=rows[:, 0], y_m=rows[:, 1], heading_rad=heading, speed_mps=rows[:, 3])
-
-
-def _mover(actor: ActorInfo, t: Trajectory) -> Mover:
-    return Mover(actor.id, actor.length_m, actor.width_m, np.column_stack((poses(t), t.speed_mps)))
 
 
 def _seen(wanted: Trajectory, rows: Floats) -> Trajectory:

@@ -1,1 +1,1 @@
-"""What happened -> a place where it can be compared. One file per choice."""
+"""Trackers: log cases where they can be compared. One file for each plugin."""

@@ -1,7 +1,7 @@
-"""What trackers log of a case: flat parameters, flat figures, attempts as steps. Knows the run folder only.
+"""The parameters and figures that trackers log of a case, flat, with attempts as steps. Knows the run folder only.
 
-Figures are joined with "_" ("paper_ice", "seconds_road"), so that a search needs no quotes; only finite numbers are
-figures, truth values are 0 or 1. Parameters are called as the YAML and `--set` call them ("decoder",
+Names of figures are joined with "_" ("paper_ice", "seconds_road"), so that a search needs no quotes; only finite
+numbers are figures, truth values are 0 or 1. Parameters have the names of the YAML and of `--set` ("decoder",
 "decoder.alpha"). docs/mlflow.md lists the names.
 """
 
@@ -18,7 +18,7 @@ from typing import Any
 
 STATUSES = ("generated", "refused", "exhausted", "failed")
 OF_ONE_CASE = ("attempt_", "grounding_", "system/")
-"""Figures that have no mean: steps of attempts, fields that only some specs have, the machine."""
+"""Prefixes of figures without a mean: steps of attempts, fields that only some specs have, the machine."""
 
 
 def flat(tree: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -90,7 +90,7 @@ def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _driven(drivers: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Role -> figures of the one driver that a config has: arms with different drivers bear the same names."""
+    """Figures by role of the config's only driver, so that arms with different drivers use the same names."""
     return next(iter(drivers.values())) if len(drivers) == 1 else {}
 
 
@@ -108,9 +108,9 @@ def attempt_figures(case_dir: Path) -> Iterator[tuple[int, dict[str, float]]]:
 
 
 def means(cases: Iterable[Mapping[str, float]]) -> dict[str, float]:
-    """Every figure's mean over the cases that have it, under its own name, and how many cases ended how.
+    """Every figure's mean over the cases that have it, under its own name, and the number of cases by status.
 
-    Takes 8 bytes a figure and case, since arms of 10,000 cases are asked for theirs again and again.
+    Uses 8 bytes for each figure and case: the means of arms of 10,000 cases are computed often.
     """
     columns: dict[str, array[float]] = defaultdict(lambda: array("d"))
     count = 0
@@ -125,5 +125,5 @@ def means(cases: Iterable[Mapping[str, float]]) -> dict[str, float]:
 
 
 def read_json(path: Path) -> Any:
-    """Content of a JSON file; None where there is none."""
+    """Content of a JSON file; None if there is no such file."""
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None

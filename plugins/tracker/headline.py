@@ -31,13 +31,13 @@ HEADLINE: Mapping[str, str] = {
 
 
 def headline(figures: Mapping[str, float]) -> dict[str, float]:
-    """The copies of those that there are."""
+    """Copies of the headline figures that are present, under names that sort first."""
     there = ((number, name) for number, name in enumerate(HEADLINE, 1) if name in figures)
     return {f"{GROUP}/{number:02d}_{name}": figures[name] for number, name in there}
 
 
 def experiment_note() -> str:
-    """What an experiment's page says about its figures."""
+    """The description of an experiment: its runs and its headline figures."""
     lines = [f"| `{name}` | {meaning} |" for name, meaning in HEADLINE.items()]
     return "\n".join([
         "An arm (a config over a set of reports) is a run, its cases are the runs in it; an arm's figures are means.",
@@ -47,14 +47,14 @@ def experiment_note() -> str:
 
 
 def arm_note(config: str, figures: Mapping[str, float]) -> str:
-    """What an arm's page says: its headline with meanings."""
+    """The description of an arm: its headline figures with their meanings."""
     rows = [f"| `{name}` | {figures[name]:.4g} | {meaning} |" for name, meaning in HEADLINE.items() if name in figures]
     head = f"**{_plain(config)}** over {figures.get('cases', 0):.0f} cases; figures are means of the cases."
     return "\n".join([head, "", "| figure | mean | meaning |", "|---|---|---|", *rows])
 
 
 def case_note(case_dir: Path, result: Mapping[str, Any], page: str) -> str:
-    """What a case's page says: how it ended, what lacks, where to look. `page` is the run's own address."""
+    """The description of a case: its status, what the scenario lacks, and links. `page` is the run's own address."""
     account = result.get("account") or {}
     lacks = [item["text"] for item in account.get("items") or () if item["kind"] == "lacks"]
     lines = [f"**{_plain(result['status'])}** {_plain(str(result.get('reason') or ''))[:500]}".rstrip()]
@@ -69,7 +69,7 @@ def case_note(case_dir: Path, result: Mapping[str, Any], page: str) -> str:
 
 
 def prefect_links(case_dir: Path) -> dict[str, str]:
-    """Where the case is to be seen in Prefect, of its links.json: whole addresses only."""
+    """The case's pages in Prefect, from its links.json; complete addresses only."""
     try:
         kept = json.loads((case_dir / "links.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -80,5 +80,5 @@ def prefect_links(case_dir: Path) -> dict[str, str]:
 
 
 def _plain(text: str) -> str:
-    """Words as markdown shows them."""
+    """The text with markdown's special characters escaped."""
     return re.sub(r"([\\`*_\[\]<>|#!])", r"\\\1", " ".join(text.split()))

@@ -1,4 +1,4 @@
-"""One JSON line a case: the tracker that needs nothing installed and that any script can read."""
+"""One JSON line for each case: needs no further library, and any script can read it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sgcad_core.interfaces import Tracker
 
 
 class Jsonl(Tracker):
-    """Appends to `cases.jsonl` and `calls.jsonl` beside the config folders, or in `folder`.
+    """Appends one line for each case to `cases.jsonl` and, with `folder` set, one for each model call to `calls.jsonl`.
 
     A line is written by one `write` in append mode, so several processes may share the files.
     """
@@ -22,7 +22,7 @@ class Jsonl(Tracker):
     folder: Path | None = Field(None, description="where the files lie; default: the output folder")
 
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
-        """Append {"config", "params", "figures", "result", "case_dir"}."""
+        """Appends {"config", "params", "figures", "result", "case_dir"} to cases.jsonl."""
         line = {
             "config": config_name,
             "case_dir": str(case_dir),
@@ -33,7 +33,7 @@ class Jsonl(Tracker):
         self._append(self.folder or case_dir.parent.parent, "cases.jsonl", line)
 
     def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
-        """Append the call to calls.jsonl where `folder` is set; without it a call has no place."""
+        """Appends the call to calls.jsonl if `folder` is set."""
         if self.folder is not None:
             line: dict[str, Any] = {"config": config_name, "case": case, "query": query.model_dump()}
             line |= {"text": generation.text, "seconds": generation.seconds, "grounding": dict(generation.grounding)}

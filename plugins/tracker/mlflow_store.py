@@ -1,8 +1,8 @@
 """One MLflow experiment: its client, and the parent run of every arm with the runs of its cases.
 
 Uses the client with explicit run ids (the fluent API's active run is thread-local and a re-entered parent would be
-marked finished). A case has one run a parent: logged again, it takes the place of the one before. Knows MLflow; no
-run folder and no config.
+marked finished). A case has one run in each parent: logged again, it replaces the run before. Knows MLflow; no run
+folder and no config.
 """
 
 from __future__ import annotations
@@ -19,34 +19,33 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-from plugins.tracker import mlflow_ready
-from plugins.tracker.mlflow_database import make_database
-from plugins.tracker.mlflow_ready import ELSEWHERE
+from plugins.tracker import mlflow_database
+from plugins.tracker.mlflow_database import ELSEWHERE, make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from sgcad_core.system.locks import alone
 
 MAX_VALUE = 500
-"""Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
-MAX_METRICS, MAX_PARAMS, MAX_RUNS = 1000, 100, 50
-"""MLflow's limits of a batch, and of a page of runs."""
+"""Limit of the characters of a parameter's value: MLflow's own is 6,000, a table shows far fewer."""
+MAX_RUNS = 50
+"""Runs that are read at a time."""
 LEVEL, CASE, CONFIG, BATCH, PARENT = "sgcad.level", "sgcad.case", "sgcad.config", "sgcad.batch", "mlflow.parentRunId"
-"""Tags that runs are found by; the last one is what MLflow's pages nest runs by."""
+"""Tags that runs are found by; MLflow's pages nest runs by the last one."""
 
 NOTE, KIND = "mlflow.note.content", "mlflow.experimentKind"
-"""MLflow's tags for the description of a run or an experiment, in markdown, and for what an experiment is about."""
+"""MLflow's tags for the description of a run or an experiment, in markdown, and for the kind of an experiment."""
 
 
 @cache
 def store_of(uri: str, experiment: str, artifacts: str) -> Store:
-    """The experiment's store, one a process: arms of a study share it."""
+    """The experiment's store, shared by all arms of a study in this process."""
     return Store(uri, experiment, artifacts)
 
 
 class Store:
     """One experiment behind one address: sqlite:///<file>, postgresql://..., http://...
 
-    `artifacts` is the address where files go; empty: beside a sqlite file, else where the server keeps them.
+    `artifacts` is the address of the files; empty: beside a sqlite file, else the server's own place.
     """
 
     def __init__(self, uri: str, experiment: str, artifacts: str = "") -> None:
@@ -75,25 +74,25 @@ class Store:
             client.get_experiment("0")
         except (OSError, SQLAlchemyError, mlflow.MlflowException) as fault:
             if self._file and isinstance(fault, OSError | SQLAlchemyError):
-                mlflow_ready.check_file(self._file)  # says it in plain words, if it finds it too
+                mlflow_database.check_file(self._file)  # gives a clearer message if it finds the same fault
             place = self._file or _no_password(self.uri)
-            if mlflow_ready.is_full(fault):
-                raise ConfigError(f"{place}: {mlflow_ready.reason(fault)}; make room, {ELSEWHERE}") from fault
+            if mlflow_database.is_full(fault):
+                raise ConfigError(f"{place}: {mlflow_database.reason(fault)}; make room, {ELSEWHERE}") from fault
             raise ConfigError(
                 f"{place}: cannot be used as MLflow's database ({_first_line(fault)}); move it away, {ELSEWHERE}"
             ) from fault
         return client
 
     def identity(self) -> str:
-        """Which experiment of which database this is, without starting MLflow; empty where that cannot be told.
+        """Number and creation time of the experiment, read without starting MLflow; empty if they cannot be read.
 
-        A database made anew at the same place has another one, so that nobody takes its runs for logged already.
+        A new database at the same place has another identity, so its cases do not count as logged already.
         """
         if not self._file or not self._file.is_file():
             return ""
         with (
             contextlib.suppress(sqlite3.Error),
-            contextlib.closing(sqlite3.connect(self._file, timeout=mlflow_ready.LOCKED_S)) as found,
+            contextlib.closing(sqlite3.connect(self._file, timeout=mlflow_database.LOCKED_S)) as found,
         ):
             asked = "SELECT experiment_id, creation_time FROM experiments WHERE name = ?"
             row = found.execute(asked, (self.experiment,)).fetchone()
@@ -124,7 +123,7 @@ class Store:
 
     # -------------------------------------------------------------- runs
     def parent(self, config: str, params: Mapping[str, str]) -> Parent:
-        """The parent run of a config with these parameters; found again when a batch is resumed."""
+        """The parent run of a config with these parameters; found again if a batch is resumed."""
         key = hashlib.sha256(json.dumps([config, params], sort_keys=True).encode()).hexdigest()[:16]
         if key not in self.parents:
             _ = self.experiment_id  # made before the lock is taken, which making a database takes as well
@@ -133,7 +132,7 @@ class Store:
         return self.parents[key]
 
     def _found_or_made(self, config: str, key: str, params: Mapping[str, str]) -> str:
-        """The oldest of the key: of processes that begin together, one makes the run that stays."""
+        """The oldest run of the key: of runs that several processes make at once, only the oldest stays."""
         if found := self.run_tagged(BATCH, key):
             return found
         tags = {BATCH: key, CONFIG: config, LEVEL: "config", **source_tags()}
@@ -154,27 +153,26 @@ class Store:
         return str(found[0].info.run_id) if found else None
 
     def log(self, run: str, steps: Mapping[int, Mapping[str, float]], params: Mapping[str, str] | None = None) -> None:
-        """Figures by step and parameters, in as few transactions as MLflow allows."""
+        """Logs figures by step and parameters; MLflow's client splits them into batches."""
         from mlflow.entities import Metric, Param
 
         now = int(time.time() * 1000)
         metrics = [Metric(plain(k), v, now, step) for step, figures in steps.items() for k, v in figures.items()]
         entries = [Param(plain(name), value[:MAX_VALUE]) for name, value in (params or {}).items()]
-        while metrics or entries:
-            part = entries[:MAX_PARAMS]
-            room = MAX_METRICS - len(part)
-            self.client.log_batch(run, metrics=metrics[:room], params=part)
-            metrics, entries = metrics[room:], entries[MAX_PARAMS:]
+        if metrics or entries:
+            self.client.log_batch(run, metrics=metrics, params=entries)
 
     def tag(self, run: str, tags: Mapping[str, str]) -> None:
-        """Set tags of a run."""
+        """Sets tags of a run."""
         from mlflow.entities import RunTag
 
         self.client.log_batch(run, tags=[RunTag(plain(name), value[: 10 * MAX_VALUE]) for name, value in tags.items()])
 
     def describe(self, note: str) -> None:
-        """The experiment's description and the pages that it opens on (runs and charts; MLflow would take it for a chat
-        application because of its traces), unless it has them: people set them too."""
+        """Sets the experiment's description and kind unless they are set already, possibly by a user.
+
+        The kind makes MLflow open on runs and charts; because of the traces it would assume a chat application.
+        """
         there = self.client.get_experiment(self.experiment_id).tags
         for tag, value in ((NOTE, note), (KIND, "custom_model_development")):
             if tag not in there:
@@ -195,7 +193,7 @@ class Parent:
 
     @cached_property
     def runs(self) -> dict[str, str]:
-        """Run ids by case; those of an earlier batch are there from the start."""
+        """Run ids by case, including those of an earlier batch."""
         return {case: str(run.info.run_id) for case, run in self._newest()}
 
     def _newest(self) -> Iterator[tuple[str, Any]]:
@@ -218,7 +216,7 @@ class Parent:
             token = page.token or None
 
     def new_case(self, case: str, tags: Mapping[str, str], started_s: float) -> Any:
-        """A fresh run of a case, which began at a Unix time; the one before, if any, goes to MLflow's bin."""
+        """A new run of a case that began at a Unix time; deletes the case's run before, if any."""
         before = self.runs.get(case)
         about = {PARENT: self.run, LEVEL: "case", CASE: case, **source_tags(), **self.tags, **tags}
         client = self.store.client
@@ -229,7 +227,7 @@ class Parent:
         return made
 
     def begin(self, about: Mapping[str, str], shared: Mapping[str, str], dataset: Mapping[str, str]) -> None:
-        """Running from now on, with tags, those shared with the cases' runs, and the data set."""
+        """Marks the run as running and logs its tags, those shared with the cases' runs, and the data set."""
         from mlflow.entities import Dataset, DatasetInput, InputTag
 
         client, self.tags = self.store.client, dict(shared)
@@ -238,7 +236,7 @@ class Parent:
         client.log_inputs(self.run, [DatasetInput(Dataset(**dataset), [InputTag("mlflow.data.context", "evaluation")])])
 
     def watch(self, interval_s: float) -> None:
-        """Log MLflow's own system metrics into the parent until `end`; 0: none."""
+        """Logs MLflow's own system metrics into the parent until `end`; 0: none."""
         if self._monitor is None and interval_s > 0:
             from mlflow.system_metrics.system_metrics_monitor import SystemMetricsMonitor
 
@@ -248,7 +246,7 @@ class Parent:
             self._monitor.start()
 
     def log_means(self, figures: Mapping[str, float]) -> None:
-        """The arm's figures at this time; the step is seconds since the arm's very first begin."""
+        """Logs the arm's present figures; the step is the seconds since the arm's first begin."""
         self.store.log(self.run, {max(0, int(time.time() - self.started)): figures})
 
     def figures(self) -> Iterator[dict[str, float]]:
@@ -256,11 +254,11 @@ class Parent:
         return (run.data.metrics for _, run in self._newest())
 
     def tag(self, tags: Mapping[str, str]) -> None:
-        """Set tags of the arm's run."""
+        """Sets tags of the arm's run."""
         self.store.tag(self.run, tags)
 
     def end(self, status: str) -> None:
-        """Stop watching; FINISHED, KILLED after an interruption, or FAILED where a fault ended the batch."""
+        """Stops the system metrics and sets the status: FINISHED, KILLED (interrupted) or FAILED (a fault)."""
         if self._monitor is not None:
             self._monitor.finish()
             self._monitor = None
@@ -268,12 +266,12 @@ class Parent:
 
 
 def source_tags() -> dict[str, str]:
-    """What MLflow's pages show as a run's source."""
+    """Tags that MLflow's pages show as a run's source."""
     return {"mlflow.source.name": "sgcad", "mlflow.source.type": "LOCAL"}
 
 
 def plain(name: str) -> str:
-    """A name as MLflow takes it: at most 250 letters, digits, "_", "-", ".", "/"."""
+    """A name that MLflow accepts: at most 250 letters, digits, "_", "-", ".", "/"."""
     return re.sub(r"[^\w./-]", "_", name, flags=re.ASCII).strip("./")[:250] or "_"
 
 

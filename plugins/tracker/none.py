@@ -1,4 +1,4 @@
-"""No tracking: what a case left on disk is all there is."""
+"""No tracking: a case leaves only its files."""
 
 from __future__ import annotations
 
@@ -12,4 +12,4 @@ class NoTracker(Tracker):
     """Logs nothing."""
 
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
-        """Does nothing."""
+        """Logs nothing."""

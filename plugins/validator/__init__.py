@@ -1,1 +1,1 @@
-"""An artifact -> findings. One file per choice."""
+"""Validators: from a network or a scenario to findings. One file for each plugin."""

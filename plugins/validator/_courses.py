@@ -1,4 +1,4 @@
-"""Where an actor may start and leave, as a validator's finding holds it. Reads ways of a road spec; knows no report."""
+"""The starts and exits that an actor may take, as a finding holds them. Reads ways of a road spec; knows no report."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from sgcad_core.records.specs import Maneuver, RoadSpec
 from sgcad_core.roads.layout import OUTER
 
 _TURN_RAD = math.radians(30)
-"""A change of heading that is a turn."""
+"""A larger change of heading is a turn."""
 _NEAR_RAD = math.radians(50)
-"""A way within this of a told heading goes that way."""
+"""A way within this angle of a stated heading goes in that direction."""
 SIDES: Mapping[Maneuver, int] = {"turn_left": 1, "turn_right": -1}
 """Signs of the change of heading that a turn to a side is, counterclockwise."""
 _NUMBERS = range(1, 10)
@@ -24,7 +24,7 @@ Course = Mapping[str, tuple[str, ...]]
 
 
 def course(way: Way, ways: Sequence[Way], maneuver: Maneuver) -> dict[str, tuple[str, ...]]:
-    """A start, with the exits that a turn leaves; other maneuvers leave the exit open."""
+    """A start, with the exits that a turn may take; other maneuvers leave the exit open."""
     start: dict[str, tuple[str, ...]] = {"road": (way.road.id,), "direction": (way.direction,)}
     side = SIDES.get(maneuver)
     if side is None:
@@ -40,20 +40,20 @@ def straight_on(way: Way, ways: Sequence[Way]) -> str | None:
 
 
 def _onward(way: Way, ways: Sequence[Way]) -> list[Way]:
-    """Exits that no turn takes."""
+    """Exits that are reached without a turn."""
     return [w for w in exits(way, ways) if abs(turn_of(way, w)) <= _TURN_RAD]
 
 
 def heading(ways: Sequence[Way], wanted_rad: float) -> tuple[Way, ...]:
-    """Those that go that way, by what a report calls their direction of travel."""
+    """The ways that go in a stated direction of travel."""
     return tuple(w for w in ways if apart(w.heading_rad, wanted_rad) < _NEAR_RAD)
 
 
 def approaches(ways: Sequence[Way], spec: RoadSpec) -> tuple[Way, ...]:
-    """Without those that begin at a junction and lead away, or that others lead straight into, if there are others: who
-    drives there came through these.
+    """The ways on which a drive may start: a vehicle on any other way came through one of these.
 
-    A leg's piece from an access on towards the hub stays: small models know the leg by this name only.
+    Leaves out ways that begin at a junction and lead away, and ways that another one leads straight into; all ways if
+    none is left. A leg's piece from an access to the hub stays, since small models know the leg by this name only.
     """
     split = {road.id.removesuffix(OUTER) for road in spec.roads if road.id.endswith(OUTER)}
     inner = [w for w in ways if w.direction == "forward" and w.road.id in split]

@@ -1,4 +1,4 @@
-"""Whether a behavior tells a near crash where the narrative does: nobody touches, and the told pair is in conflict."""
+"""Checks that a behavior declares a near crash if the narrative tells one: no contact, the pair in conflict."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _finding = Finder("behavior_narrative")
 
 
 def near_crash_findings(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
-    """At most one. What the text does not tell outright is a note."""
+    """At most one finding; a note if the text does not state the near crash."""
     near = facts.near_crash
     if near is None:
         if behavior.near_crash is not None and any(c.stated for c in facts.contacts):

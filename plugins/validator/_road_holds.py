@@ -1,4 +1,4 @@
-"""What the next layout is held to where a narrative tells its roads: bearings, directions and lanes of legs."""
+"""Holds on the next layout from the roads of a narrative: bearings, directions and lanes of legs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from sgcad_core.records.specs import Compass
 
 
 def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
-    """Each leg in its place, clockwise from north (of a list of which any may be repeated some would be).
+    """Each leg at its bearing, clockwise from north and each at its own index, so that none is repeated.
 
-    Only where the told paths use every leg; without a diagram a road that is used goes on to both sides, and of four
-    legs that are told the others cross it.
+    Only if the paths of the narrative use every leg. Without a diagram a used road continues to both sides, and of four
+    stated legs the others cross it.
     """
     used, legs = set(legs_used(facts, faced=True)), {leg.bearing for leg in layout_of_facts(facts).legs}
     four = junction_kind(facts.junction.kind).crossing and facts.junction.stated and len(legs) == 4 and bool(used)
@@ -28,7 +28,7 @@ def laid(facts: RoadFacts, pictured: bool) -> tuple[Hold, ...]:
 
 
 def carrying(way: Compass) -> tuple[Hold, ...]:
-    """Lanes that way on both legs that may lie along it."""
+    """Lanes in that direction on both legs that may lie along it."""
     return (
         Hold(items="legs", key="bearing", values=(turned(way, 180),), either=({"lanes_in": SOME_LANES},)),
         Hold(items="legs", key="bearing", values=(way,), either=({"lanes_out": SOME_LANES},)),
@@ -36,14 +36,14 @@ def carrying(way: Compass) -> tuple[Hold, ...]:
 
 
 def totals(road: RoadFact, allowed: set[int]) -> Hold:
-    """Lanes of a leg, both ways, that add up to what the text allows."""
+    """Lanes of a leg in both directions that add up to a total that the text allows."""
     pairs = [(n, tuple(total - n for total in sorted(allowed) if total - n in SOME_LANES)) for n in SOME_LANES]
     either = tuple({"lanes_in": (n,), "lanes_out": away} for n, away in pairs if away)
     return along(road, either)
 
 
 def along(road: RoadFact, either: tuple[Mapping[str, tuple[str | int, ...]], ...]) -> Hold:
-    """Each leg that lies along a road is one of these."""
+    """Each leg that lies along a road is one of the alternatives."""
     return Hold(items="legs", key="bearing", values=ends(road), either=either)
 
 

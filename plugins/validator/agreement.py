@@ -1,4 +1,4 @@
-"""Whether scenario, net.xml and xodr agree, and whether the crash that is declared is the one that happens."""
+"""Checks that scenario, net.xml and xodr agree, and that the declared crash is the one that happens."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _OFF_ROAD = ("parked", "departing_road_left", "departing_road_right")
 
 
 class Agreement(Validator):
-    """Compares the three files of a case with each other and with the declared contact."""
+    """Checks that the three files of a case agree with each other and with the declared contact or near crash."""
 
     stage: ClassVar[str] = "scenario"
     unrealised: Literal["repair", "note"] = "repair"
-    """Severity where another contact than the declared one comes first."""
+    """Severity if another contact than the declared one comes first."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Disagreements; what another validator finds unreadable is passed over."""
+        """Disagreements; files that another validator reports as unreadable are skipped."""
         if not isinstance(artifact, Scenario) or artifact.xosc is None:
             return []
         network = evidence.network
@@ -57,7 +57,7 @@ class Agreement(Validator):
         return [*found, *self._contact(artifact.declared, contact), *self._near_crash(artifact, motions, contact)]
 
     def _contact(self, declared: Contact | None, seen: ObservedContact | None) -> Iterator[Finding]:
-        """Nothing where the declared contact is the first; without a declared one any contact is noted."""
+        """Nothing if the declared contact is the first; without a declared one, a note on any contact."""
         if declared is None and seen is not None:  # of a near crash `_near_crash` says more
             yield _finding("a contact happens that is not declared", "contacts", _seen(seen), "declare it", "note")
         elif declared is not None and not realised(declared, seen):
@@ -68,7 +68,7 @@ class Agreement(Validator):
     def _near_crash(
         self, scenario: Scenario, motions: Sequence[Trajectory], seen: ObservedContact | None
     ) -> Iterator[Finding]:
-        """Nothing where nobody touches and the pair comes as near as declared."""
+        """Nothing if there is no contact and the pair comes as near as declared."""
         near = scenario.near_crash
         if near is None:
             return

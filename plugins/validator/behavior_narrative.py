@@ -1,8 +1,8 @@
-"""Whether a scenario's behavior says what the narrative states for sure.
+"""Compares a scenario's behavior with what the narrative states.
 
-Vehicles, initial headings, maneuvers, exits of turns and the first contact. Only what the text tells outright is asked
-again; where the reading is inferred a note is all, and of a corner the side that the told paths make likely is a doubt.
-Reads no diagram.
+Vehicles, initial headings, maneuvers, exits of turns and the first contact. Only what the text states is asked again;
+an inferred fact gives a note, and of a corner the side that the stated paths make likely gives a doubt. Reads no
+diagram.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _finding = Finder("behavior_narrative")
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""
 _HARDLY_RAD = math.radians(20)
-"""A turn of less is none; onto a ramp one turns by 28 degrees."""
+"""A smaller change of heading is no turn; a turn onto a ramp has 28 degrees."""
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
@@ -37,15 +37,15 @@ _Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
 
 
 class BehaviorNarrative(Validator):
-    """Compares a behavior spec with the narrative's stated facts."""
+    """Checks that a scenario's behavior has the vehicles, headings, maneuvers and first contact of the narrative."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "4"
 
     areas: Literal["repair", "note"] = "repair"
-    """Severity where a declared side is none that the text allows."""
+    """Severity if the text does not allow a declared side of contact."""
     maneuvers: Literal["repair", "note"] = "repair"
-    """Severity where a told turn, stop or straight course is missed."""
+    """Severity if a stated turn, stop or straight course is missed."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Contradictions, vehicles first; nothing for scenarios without a behavior or texts without vehicles."""
@@ -67,7 +67,7 @@ class BehaviorNarrative(Validator):
 
 # ------------------------------------------------------------------ vehicles
 def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
-    """Everybody whom the report tells of is an actor and no other number is."""
+    """Every vehicle of the report is an actor, and no other vehicle number is."""
     told = [v.id for v in facts.vehicles]
     acting = [a.id for a in behavior.actors if a.id.startswith("V") or a.id in told]
     for v in facts.vehicles:
@@ -85,7 +85,7 @@ def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
 
 
 def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
-    """Behind the places of the numbered vehicles the invented one is something else; before, any that there is."""
+    """Behind the places of the numbered vehicles the actor gets another kind of id; before them, any known id."""
     at = next(i for i, actor in enumerate(behavior.actors) if actor.id == name)
     if at >= len(told):
         return Hold(items="actors", at=at, either=({"id": UNNUMBERED},))
@@ -101,7 +101,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
         wanted = angle_of(fact.heading) - square_rad(fact, way)
         along = (way.start_rad, way.end_rad, way.heading_rad)
         off = min(apart(h, wanted) for h in along)
-        if goes_tail_first(fact):  # it may be written as facing along its way, or as going along it tail first
+        if goes_tail_first(fact):  # it may face along its way or go along it backward
             off = min(off, *(apart(h, wanted + math.pi) for h in along))
         if off > _FAR_RAD:
             yield _finding(
@@ -113,7 +113,7 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
 
 
 def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
-    """A told rear-end crash of two that do not turn: both head the same way."""
+    """In a stated rear-end crash of two vehicles that do not turn, both head the same way."""
     told = _stated_contact(facts)
     if told is None or (told.striker_area, told.struck_area) != ("front", "back"):
         return
@@ -157,7 +157,7 @@ def _maneuvers(
 
 
 def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
-    """A told turn that goes straight on or to the other side where its way ends; what lies beyond is not judged."""
+    """A stated turn that goes straight on or to the other side at the end of its way; later turns are not judged."""
     every = tuple(ways.values())
     for actor in behavior.actors:
         fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
@@ -180,13 +180,13 @@ def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Way
 
 
 def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
-    """The starts, exits and maneuvers that the report leaves a vehicle, as far as it states heading and maneuver."""
+    """The starts, exits and maneuvers that a vehicle's stated heading and maneuver allow."""
     choices = _choices(fact, spec)
     return (held(fact.id, choices),) if choices != [{}] else ()
 
 
 def _choices(fact: VehicleFacts, spec: RoadSpec | None) -> list[dict[str, tuple[str, ...]]]:
-    """Those courses; [{}] where nothing of them is stated."""
+    """Those courses; [{}] if neither heading nor maneuver is stated."""
     does: dict[str, tuple[str, ...]] = {"maneuver": (fact.maneuver,)} if fact.maneuver_stated else {}
     every = ways_of(spec) if spec is not None else ()
     ways = every
@@ -202,7 +202,7 @@ def _choices(fact: VehicleFacts, spec: RoadSpec | None) -> list[dict[str, tuple[
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:
-    """Another turn than told, standing instead of moving, or a turn where none is told."""
+    """Whether it is another turn than stated, standing instead of moving, or a turn although none is stated."""
     if told in _TURNS or said in _TURNS:
         return said != told
     if told in _STILL or said in _STILL:
@@ -231,25 +231,25 @@ def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repai
 
 
 def _stated_contact(facts: CrashFacts) -> ContactFacts | None:
-    """The first contact that the text tells; of a near crash none."""
+    """The first contact that the text states; None for a near crash."""
     return None if facts.near_crash else next((c for c in facts.contacts if c.stated), None)
 
 
 def _cornered(said: Contact, told: ContactFacts) -> bool:
-    """Whether every side that differs is one of a told corner's two."""
+    """Whether every side that differs is one of the two sides of a stated corner."""
     sides = _sides(told)
     return all(len(_allowed(told)[name]) == 2 for name, side in _sides(said).items() if side != sides[name])
 
 
 def _moves_as_told(told: ContactFacts, behavior: BehaviorSpec, facts: CrashFacts) -> bool:
-    """Whether both vehicles do what the text tells: which side of a corner was hit follows from that."""
+    """Whether both vehicles move as stated: the side of a corner that was hit follows from that."""
     does = {actor.id: actor.maneuver for actor in behavior.actors}
     known = {name: facts.vehicle(name) for name in (told.striker, told.struck)}
     return all(v is not None and v.heading_stated and does[name] == v.maneuver for name, v in known.items())
 
 
 def _first(told: ContactFacts, decided: bool = False) -> tuple[Hold, ...]:
-    """The first contact with the sides that the words allow; `decided`: of a corner the one that the paths suggest."""
+    """The first contact with the sides that the text allows; `decided`: of a corner the side that the paths suggest."""
     sides: dict[str, tuple[Area, ...]] = {"striker_area": told.striker_may, "struck_area": told.struck_may}
     if decided:
         likely: dict[str, Area] = {"striker_area": told.striker_area, "struck_area": told.struck_area}
@@ -259,7 +259,7 @@ def _first(told: ContactFacts, decided: bool = False) -> tuple[Hold, ...]:
 
 
 def _allowed(told: ContactFacts) -> dict[str, tuple[Area, ...]]:
-    """Sides of each that the words allow: "left front" may be either."""
+    """Sides of each vehicle that the text allows: "left front" may be either."""
     return {told.striker: told.striker_may, told.struck: told.struck_may}
 
 

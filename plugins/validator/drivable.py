@@ -1,8 +1,8 @@
-"""Whether planned motions can be driven up to the contact: sideways acceleration, yaw rate, slip at the rear axle.
+"""Checks that planned motions can be driven up to the contact: lateral acceleration, yaw rate, slip at the rear axle.
 
-A declared contact whose sides no steering brings about is planned all the same, with boxes that slide or with more
-sideways acceleration than the surface gives; a report that tells no loss of control seldom means that. Knows limits
-(`sgcad_core.metrics.thresholds`) and the trajectories; not which fact was misread.
+A contact whose sides no steering brings about is still planned, with boxes that slide or with more lateral acceleration
+than the surface allows; a report that tells no loss of control seldom means that. Knows limits
+(`sgcad_core.metrics.thresholds`) and the trajectories, but not which fact was misread.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 
 class Drivable(Validator):
-    """Doubts on vehicles that leave the limits of driving before anything touches them, and on boxes in each other."""
+    """Doubts vehicles that exceed the limits of driving before their first contact, and boxes that overlap at rest."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "1"
     odd: Literal["doubt", "note"] = "doubt"
+    """Severity of both findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """One a vehicle, in the behavior's order, where no loss of control is told; one for an overlap at rest."""
+        """One for each such vehicle, in the behavior's order, if no loss of control is told; one for an overlap."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or not artifact.planned:
             return []
         rest = self._at_rest(artifact, artifact.behavior)
@@ -38,7 +39,7 @@ class Drivable(Validator):
         ] + rest  # fmt: skip
 
     def _at_rest(self, scenario: Scenario, behavior: BehaviorSpec) -> list[Finding]:
-        """At most one: boxes that lie in each other where all have come to rest."""
+        """At most one finding: boxes that overlap after all have come to rest."""
         depth, pair = deepest(scenario.planned, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
         what, remedy = "two boxes overlap at rest", "let them push each other apart"
         found = Finding(
@@ -48,7 +49,7 @@ class Drivable(Validator):
 
 
 def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Actor, tuple[str, ...]]]:
-    """Vehicles with what is over its limit before their own first touch, in words with value and limit."""
+    """Vehicles with each quantity over its limit before their first contact, as text with value and limit."""
     sizes = {a.id: size_m(a) for a in behavior.actors}
     touches = first_touches(scenario.planned, sizes)
     motions = {m.actor: m for m in scenario.planned}

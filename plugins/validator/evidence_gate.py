@@ -1,9 +1,9 @@
-"""Refuses an answer that the evidence does not carry, naming what the report would have to tell.
+"""Refuses an answer that the evidence does not support, and names what the report would have to tell.
 
 For a group of fields the grounding is summed: S = sum log p(y|c,x) - log p(y|x), in nats, the logarithm of the
 factor by which the report makes that part of the answer more likely than the model believed anyway. Below the
 group's threshold the model has guessed. Only generations with both rows have a grounding (decoder cad, adacad
-or vcd, or backbone.always_ground); others, and writers that ask no model, are passed over.
+or vcd, or backbone.always_ground); others, and writers that ask no model, are skipped.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from sgcad_core.interfaces import Validator
 
 @dataclass(frozen=True)
 class Group:
-    """Fields that stand and fall together, and what a report must tell to carry them."""
+    """Fields that are judged together, and what a report must tell to support them."""
 
     name: str
     paths: re.Pattern[str]
@@ -60,14 +60,14 @@ SCENARIO = (
 
 
 GROUPS: dict[str, tuple[Group, ...]] = {"road": ROAD, "scenario": SCENARIO}
-"""What is judged in which stage; a group's threshold is the field of its name."""
+"""The groups judged in each stage; a group's threshold is the field of its name."""
 
 
 class EvidenceGate(Validator):
-    """A threshold a group, in nats; null leaves a group out. Judges both stages unless `at` names one.
+    """Refuses an answer whose fields the report makes hardly more likely: a threshold in nats for each group of fields.
 
-    The defaults only catch what the report makes no likelier at all: a model's own thresholds come from
-    `python -m research.benchmarks.decoding.gate`.
+    null leaves a group out; `at` names the stage or both. The defaults only find answers that the report makes no more
+    likely at all; `python -m research.benchmarks.decoding.gate` finds a model's own thresholds.
     """
 
     at: Literal["road", "scenario", "both"] = "both"
@@ -78,11 +78,11 @@ class EvidenceGate(Validator):
 
     @property
     def stage(self) -> str:  # type: ignore[override]
-        """The stage named by `at`: the gate is the one validator that may stand in either or in both."""
+        """The stage named by `at`: this validator may judge either stage or both."""
         return self.at
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """A refusal a group that is not grounded, weakest first; [] where nothing is known of the grounding."""
+        """A refusal for each group below its threshold, weakest first; [] if the answer has no grounding."""
         ground = evidence.generation.grounding if evidence.generation else {}
         judged = GROUPS["road" if isinstance(artifact, RoadNetwork) else "scenario"]
         wanted = ((group, self.threshold(group)) for group in judged)

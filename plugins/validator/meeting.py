@@ -1,8 +1,8 @@
-"""Whether the declared contact comes about in ordinary driving, and if not, what was most likely misread.
+"""Checks that the declared contact happens in ordinary driving, and finds the fact that was most likely misread.
 
-A behavior whose vehicles must skid, spin or leave the road to meet as declared can be planned, yet a report that tells
-no loss of control seldom means it. What the narrative leaves open (a start, a maneuver) is tried in turn; the finding
-holds further answers to what meets in ordinary driving.
+A behavior whose vehicles must skid, spin or leave the road to meet as declared can be planned, but a report that tells
+no loss of control seldom means it. Facts that the narrative leaves open (a start, a maneuver) are tried in turn; the
+finding holds further answers to those that meet in ordinary driving.
 """
 
 from __future__ import annotations
@@ -25,18 +25,19 @@ from sgcad_core.roads.lane_graph import LaneGraph
 
 
 class Meeting(Validator):
-    """Doubts on contacts that only skids, spins and made-up ways bring about."""
+    """Doubts contacts that happen only with skids, spins or maneuvers that the report does not tell."""
 
     stage: ClassVar[str] = "scenario"
     version: ClassVar[str] = "2"
     odd: Literal["doubt", "note"] = "doubt"
+    """Severity of the finding."""
     odd_from: float = 0.5
     """Oddity (`Plan.oddity`) from which a contact is doubted."""
     try_others: bool = False
-    """Plan what the narrative leaves open and hold what meets in ordinary driving; of use with `hold_findings` only."""
+    """Plan the open starts and maneuvers, and hold those that meet in ordinary driving; needs `hold_findings`."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """At most one; nothing where control was lost, or unless two vehicles meet as declared."""
+        """At most one finding; none if control was lost or the contact is not between two vehicles."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or artifact.declared is None:
             return []
         if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
@@ -69,7 +70,7 @@ class _Trials:
     odd_from: float
 
     def holds(self, facts: CrashFacts) -> tuple[Hold, ...]:
-        """What is open and, changed alone, meets in ordinary driving: starts before maneuvers."""
+        """The open fact that, changed alone, meets in ordinary driving: starts before maneuvers."""
         pair = [a for a in self.behavior.actors if a.id in (self.contact.striker, self.contact.struck)]
         known = [(a, v) for a in pair if (v := facts.vehicle(a.id)) is not None]
         starts = [(a, v, a.maneuver) for a, v in known if not (v.heading_stated and v.heading)]
@@ -105,7 +106,7 @@ class _Trials:
         return planned.realised and planned.oddity < self.odd_from
 
     def _starts(self, ways: Sequence[Way], fact: VehicleFacts) -> tuple[Way, ...]:
-        """Ways on which a vehicle may come, as far as its heading is told."""
+        """Ways on which a vehicle may start, by its heading if it is stated."""
         if fact.heading is not None and fact.heading_stated:
             ways = heading(ways, angle_of(fact.heading))
         return approaches(ways, self.spec)

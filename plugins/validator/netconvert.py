@@ -1,4 +1,4 @@
-"""What netconvert said: its errors when it compiled nothing, its warnings as notes."""
+"""netconvert's messages as findings: errors if it wrote no network, warnings as notes."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ _EMPTY = ("Success.", "Quitting (on error).")
 
 
 class Netconvert(Validator):
-    """Turns the compiler's log into findings."""
+    """Reports netconvert's errors and warnings."""
 
     stage: ClassVar[str] = "road"
     warnings: Literal["repair", "note", "off"] = "note"
-    """Severity of warnings; most tell of things that the model cannot see (smooth shapes, signal programs)."""
+    """Severity of warnings; most are about things that the model cannot see (smooth shapes, signal programs)."""
     most: int = 12
+    """Largest number of findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Errors if there is no network, then warnings."""

@@ -1,4 +1,4 @@
-"""Whether the .xodr is valid OpenDRIVE 1.7: schema, references, lane links, lengths, gaps, signals and stop lines."""
+"""Checks that the .xodr is valid OpenDRIVE 1.7: schema, references, lane links, lengths, gaps, signals, stop lines."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from sgcad_core.interfaces import Validator
 
 
 class OpenDrive(Validator):
-    """Checks what ASAM's rules demand of a road network."""
+    """Checks the .xodr against OpenDRIVE's schema and ASAM's rules."""
 
     stage: ClassVar[str] = "road"
     most: int = 20
+    """Largest number of findings."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """At most `most` findings; a network without .xodr is passed over (netconvert's validator tells)."""
+        """At most `most` findings; none for a network without .xodr, which the validator netconvert reports."""
         if not isinstance(artifact, RoadNetwork) or artifact.xodr is None:
             return []
         return xodr_findings(artifact.xodr)[: self.most]

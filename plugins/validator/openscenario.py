@@ -10,7 +10,7 @@ from sgcad_core.interfaces import Validator
 
 
 class OpenScenario(Validator):
-    """What `sgcad_core.formats.openscenario.check` finds; scenarios without .xosc are passed over."""
+    """Checks the .xosc against its schema, its references and the project's player; skips scenarios without one."""
 
     stage: ClassVar[str] = "scenario"
 

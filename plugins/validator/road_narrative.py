@@ -1,8 +1,7 @@
-"""A written network against what the narrative states of the roads: lanes, legs, one-way, limits, directions.
+"""Compares a network with the roads of the narrative: lanes, legs, one-way, limits, directions.
 
-Only statements that the text makes in so many words are held against a network, and each with the readings
-that it allows ("four-lane" with or without turn lanes, where a diagram may show them): a false alarm costs an
-attempt. Reads the compiled network; compass is north up.
+Only explicit statements of the text count, each with the readings that it allows ("four-lane" with or without turn
+lanes, if a diagram may show them): a false alarm costs an attempt. Reads the compiled network; north is up.
 """
 
 from __future__ import annotations
@@ -33,19 +32,20 @@ _ORDER = ("refuse", "repair", "doubt", "note")
 
 
 class RoadNarrative(Validator):
-    """Findings on lanes, legs, one-way roads and missing directions ask again; limits and guesses are notes.
+    """Checks a network's lanes, legs, one-way roads and directions against the narrative; limits are notes.
 
-    A crash at a place that cannot be drawn is refused, or noted where the road of it can be.
+    A crash at a place that cannot be drawn is refused, or noted if its road can be drawn. limit_tolerance_mph is the
+    allowed difference of a speed limit.
     """
 
     stage: ClassVar[str] = "road"
     version: ClassVar[str] = "7"
     tolerance_deg: float = 35.0
-    """Between a road as drawn and the compass direction that the report names."""
+    """Allowed angle between a drawn road and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Worst first; a network that did not compile and a report that states nothing are passed over."""
+        """Worst first; none for a network that did not compile or a report that states nothing."""
         if not isinstance(artifact, RoadNetwork) or artifact.net_xml is None:
             return []
         try:
@@ -83,9 +83,9 @@ class RoadNarrative(Validator):
             yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
 
     def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
-        """Legs that vehicles come from or turn into; a junction that has none there lies the wrong way round.
+        """Legs that vehicles come from or turn into and that the junction lacks.
 
-        Where only the sides that touched tell a leg, that is a doubt.
+        A leg that follows only from the sides of contact gives a doubt.
         """
         drawn = [leg for legs in junctions if len(legs) > 2 for leg in legs]
         if not junction_kind(facts.junction.kind).meets:
@@ -106,7 +106,7 @@ class RoadNarrative(Validator):
     def _nowhere_to_turn(
         self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool
     ) -> Iterator[Finding]:
-        """A plain road where a vehicle leaves or enters a driveway or side road that the report names."""
+        """A plain road although a vehicle leaves or enters a driveway or side road that the report names."""
         junction = facts.junction
         missing = self._without(legs_used(facts), [leg for legs in junctions for leg in legs])
         named = junction.stated if junction.kind in (DRIVEWAY, ALLEY) else junction.stem_stated and not junction.stated
@@ -119,7 +119,7 @@ class RoadNarrative(Validator):
         yield _finding(what, "junction", "no junction", f"lay a leg {where} a junction", severity, holds)
 
     def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
-        """Bearings at which nothing is drawn."""
+        """Bearings at which no leg is drawn."""
         return [leg for leg in legs if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
 
     # -------------------------------------------------------------- directions of travel
@@ -137,14 +137,14 @@ class RoadNarrative(Validator):
             yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
 
     def _carries(self, road: DrawnRoad, way: Compass, divided: bool) -> bool:
-        """Whether traffic may head that way; of a divided road one carriageway may stand for both."""
+        """Whether traffic may head that way; one carriageway of a divided road may stand for both."""
         tolerance = self.tolerance_deg + 15
         return bool(road.lanes_towards(way, tolerance)) or (divided and road.along(way, tolerance, either=True))
 
     # -------------------------------------------------------------- one-way
     def _one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
         if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
-            return  # nobody knows which of the roads is meant
+            return  # it is not known which of the roads is meant
         for road in facts.streets:
             here, name = self._on_axis(road, drawn), AXIS_NAMES[road.axis or "N"]
             if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
@@ -176,10 +176,10 @@ class RoadNarrative(Validator):
             yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
 
     def _lanes_one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
-        """Lanes of one direction: those that the text counts, and at least as many as the lane that one drives in.
+        """Lanes of one direction: those that the text counts, and at least the number of a vehicle's stated lane.
 
-        Where the layout that the rules read has other lanes there, the text tells two things, and nobody knows which of
-        them is wrong.
+        If the layout that the rules read has other lanes there, the text contradicts itself, and it is not known which
+        statement is wrong: no finding.
         """
         read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
         told = [(way, n, n) for road in facts.streets if _adds_up(road) for way, n in road.ways]
@@ -217,14 +217,14 @@ class RoadNarrative(Validator):
 
 
 def _alone(facts: RoadFacts) -> bool:
-    """Whether nothing told needs a fourth leg: no driveway beside the roads, nobody from off the road."""
+    """Whether no statement needs a fourth leg: no driveway beside the roads, no vehicle from off the road."""
     vehicles = facts.crash.vehicles
     through = {*legs_used(facts), *ahead(vehicles)}
     return len(through) <= 3 and len(facts.streets) == len(facts.roads) and not any(v.origin for v in vehicles)
 
 
 def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:
-    """Whether the text says that traffic goes both ways, of a street at a junction: both its carriageways are drawn."""
+    """Whether the text tells two-way traffic of a street at a junction, both of whose carriageways are then drawn."""
     lanes = road.lanes
     told = lanes.one_way is False or lanes.each_way or len(lanes.toward) == 2
     crossing = road.kind == "road" and junction_kind(facts.junction.kind).meets
@@ -232,12 +232,12 @@ def _both_ways(road: RoadFact, facts: RoadFacts) -> bool:
 
 
 def _driven(road: RoadFact, facts: RoadFacts) -> set[Compass]:
-    """Headings told of vehicles that come along a road's axis."""
+    """Stated headings of vehicles that drive along a road's axis."""
     return {v.heading for v in facts.crash.vehicles if v.heading and v.heading_stated and v.heading in ends(road)}
 
 
 def _adds_up(road: RoadFact) -> bool:
-    """Whether lanes told way by way are those of the told total, a center lane counted or not."""
+    """Whether the lanes stated for each direction add up to the stated total, with or without a center lane."""
     named, total = sum(road.lanes.toward.values()), road.lanes.total
     return total is None or (total - named in (0, 1) if len(road.lanes.toward) > 1 else named < total)
 
@@ -247,14 +247,14 @@ def _ids(roads: list[DrawnRoad]) -> str:
 
 
 def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
-    """A finding on every place of the crash that cannot be drawn."""
+    """A finding for every place of the crash that cannot be drawn."""
     for kind in facts.junction.unsupported:
         record = unsupported_kind(kind)
         yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
 
 
 def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Finding]:
-    """A finding where the report tells a roundabout and the network has none."""
+    """A finding if the report tells a roundabout and the network has none."""
     record = junction_kind(facts.junction.kind)
     if record.round and facts.junction.stated and not graph.circles:
         what = f"the crash happened at {record.called}, and the network has none"

@@ -1,4 +1,4 @@
-"""Whether a route file is one that SUMO runs: schema, references, then SUMO itself in a worker process."""
+"""Checks that SUMO runs a route file: schema, references, then SUMO itself in a worker process."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from sgcad_core.system.worker_process import Worker
 
 _finding = Finder(SOURCE, where="routes")
 
-_WORKER = Worker("plugins.validator._sumo_routes:trial")
+_WORKER = Worker("plugins.validator._sumo_worker:trial")
 
 
 class Routes(Validator):
-    """For scenarios of SUMO routes; an OpenSCENARIO file is passed over."""
+    """Checks a scenario of SUMO routes by its schema and by a trial run in SUMO; skips OpenSCENARIO files."""
 
     stage: ClassVar[str] = "scenario"
     longest_s: float = 60.0
     """Simulated seconds of the trial."""
     timeout_s: float = 60.0
+    """Longest wait for SUMO, seconds."""
     no_collision: Literal["repair", "note"] = "note"
-    """Severity where SUMO's drivers avoid the declared crash."""
+    """Severity if SUMO's drivers avoid the declared crash."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Schema faults, else references, else what SUMO says of a run: errors, who never drives, no collision."""
+        """Schema faults, else wrong references, else SUMO's errors, actors that never drive, and no collision."""
         network = evidence.network
         if not isinstance(artifact, Scenario) or artifact.routes_xml is None or not network or not network.net_xml:
             return []
@@ -57,7 +58,7 @@ class Routes(Validator):
         return self._contact(artifact, hits)
 
     def _contact(self, artifact: Scenario, hits: list[tuple[str, str]]) -> list[Finding]:
-        """Nothing where SUMO sees the declared pair collide."""
+        """Nothing if the declared pair collides in SUMO."""
         declared = artifact.declared
         if declared is None or any({declared.striker, declared.struck} == set(pair) for pair in hits):
             return []

@@ -1,4 +1,4 @@
-"""Whether SUMO loads the network: libsumo in a worker process, whose death is a finding, not the end."""
+"""Checks that SUMO loads the network: libsumo runs in a worker process, whose death is a finding."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from sgcad_core.system.worker_process import Worker
 
 _finding = Finder("sumo_load")
 
-_WORKER = Worker("plugins.validator._sumo_start:start")
+_WORKER = Worker("plugins.validator._sumo_worker:load")
 
 
 class SumoLoad(Validator):
-    """Starts SUMO on the .net.xml, about 10 ms once the worker runs (0.5 s)."""
+    """Starts SUMO on the .net.xml; about 10 ms after the first start of the worker (0.5 s)."""
 
     stage: ClassVar[str] = "road"
     timeout_s: float = 30.0
+    """Longest wait for SUMO, seconds."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Schema faults, else at most one finding; a network without .net.xml is passed over."""
+        """Schema faults, else at most one finding; none for a network without .net.xml."""
         if not isinstance(artifact, RoadNetwork) or artifact.net_xml is None:
             return []
         try:
@@ -35,29 +36,21 @@ class SumoLoad(Validator):
             said = self._load(artifact.net_xml)
         except InvalidOutput as fault:
             return list(fault.findings)
-        except ProcessDied as fault:
-            if fault.from_outside:  # says nothing of the network: the case fails, and is tried on the next run
+        except SimulationFailed as fault:
+            if isinstance(fault, ProcessDied) and fault.from_outside:  # tells nothing of the network: try it next run
                 raise
             return [_finding(f"SUMO died of the network: {fault}", remedy="simplify the network")]
-        except SimulationFailed as fault:
-            return [_finding(f"SUMO died of the network: {fault}", remedy="simplify the network")]
-        return (
-            [_finding(f"SUMO does not load the network: {_details(said)}", remedy="mend what SUMO names")]
-            if said
-            else []
-        )
+        what = f"SUMO does not load the network: {_details(said)}"
+        return [_finding(what, remedy="mend what SUMO names")] if said else []
 
     def _load(self, net_xml: str) -> str:
-        """SUMO's words about the network, "" where it loads; once more where somebody killed the process."""
+        """SUMO's message about the network, "" if it loads; asked once more if the process was killed from outside."""
         try:
-            return self._said(net_xml)
+            said: str = _WORKER.call(net_xml, timeout_s=self.timeout_s)
         except ProcessDied as fault:
             if not fault.from_outside:
                 raise
-            return self._said(net_xml)
-
-    def _said(self, net_xml: str) -> str:
-        said: str = _WORKER.call(net_xml, timeout_s=self.timeout_s)
+            said = _WORKER.call(net_xml, timeout_s=self.timeout_s)
         return said
 
 

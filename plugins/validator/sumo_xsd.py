@@ -1,4 +1,4 @@
-"""Whether the plain XML keeps SUMO's own schemas; asked before netconvert, which lets faults pass or crashes."""
+"""Checks the plain XML against SUMO's own schemas, before netconvert, which accepts or crashes on some faults."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from sgcad_core.interfaces import Validator
 
 
 class SumoXsd(Validator):
-    """Validates nodes, edges and connections against the XSDs that come with SUMO."""
+    """Checks nodes, edges and connections against the schemas that come with SUMO."""
 
     stage: ClassVar[str] = "road"
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """One finding a schema fault; a network without plain XML is passed over."""
+        """One finding for each schema fault; none for a network without plain XML."""
         if not isinstance(artifact, RoadNetwork) or artifact.plain is None:
             return []
         return xsd_findings(artifact.plain)

@@ -1,4 +1,4 @@
-"""Faults of a network that netconvert accepts in silence: crossings without a node, slivers, loose parts.
+"""Faults of a network that netconvert accepts without a warning: crossings without a node, short rests, loose parts.
 
 Judges the compiled network (and the spec's turn lists where there is a spec), not the report.
 """
@@ -26,17 +26,19 @@ _finding = Finder("topology")
 
 
 class Topology(Validator):
-    """Lengths in metres; every limit is a field."""
+    """Finds faults of a network that netconvert accepts: loose parts, nodes or roads on each other, dead directions."""
 
     stage: ClassVar[str] = "road"
     min_edge_m: float = 5.0
+    """Shortest road between two junctions."""
     min_node_gap_m: float = 6.0
+    """Least distance of two nodes."""
     min_angle_deg: float = 8.0
-    """Between two roads that leave a node: closer, they lie on each other."""
+    """Least angle between two roads that leave a node; below it they lie on each other."""
     max_findings: int = 20
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """Worst first; a network that did not compile is passed over."""
+        """Worst first; none for a network that did not compile."""
         if not isinstance(artifact, RoadNetwork) or artifact.net_xml is None:
             return []
         try:
@@ -121,7 +123,7 @@ def _dead_ways(graph: LaneGraph) -> Iterator[Finding]:
 
 
 def _turned(road: str, way: str, alone: bool) -> tuple[Hold, ...]:
-    """A leg of a layout without the lanes that nobody can use; a one-way leg the other way round."""
+    """Holds a layout's leg to no lanes in the dead direction; a one-way leg to the other direction."""
     if road not in get_args(Compass):
         return ()
     gone, other = ("lanes_in", "lanes_out") if way == "forward" else ("lanes_out", "lanes_in")

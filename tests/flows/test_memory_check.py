@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from flows import memory_check
-from plugins.backbone.hf_size import weights_gb
+from plugins.backbone.hf_vision import weights_gb
 from sgcad_core.config import load
 
 CARDS = {"gpus": ["NVIDIA H100 80GB HBM3, 81559 MiB", "NVIDIA H100 80GB HBM3, 81559 MiB"], "memory_gib": 128.0}

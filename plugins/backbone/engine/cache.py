@@ -1,9 +1,8 @@
-"""The key-value cache of the loop: one slot a row, each as long as its own row.
+"""The key-value cache of the loop: one slot for each row, filled to the row's own length.
 
-Storage is (slot, position, head, channel), so a row's tokens are written at their own positions, rows of
-different lengths share one batch, a row leaves by forgetting its slot, and rejected tokens by being
-overwritten. What is behind a row's length is masked, never read. Knows no model; transformers' `Cache` is
-the interface that every model of theirs writes through.
+Storage is (slot, position, head, channel): a row's tokens are written at their own positions, rows of different lengths
+share one batch, a row is removed by freeing its slot, and rejected tokens are overwritten. Positions behind a row's
+length are masked and never read. Knows no model; the models of transformers write through the interface `Cache`.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ _GROWTH = 256
 
 @dataclass
 class Window:
-    """What the forward pass at hand reads and writes: `count` slots from `first`, `keys` positions of each."""
+    """The part that the next forward pass reads and writes: `count` slots from `first`, `keys` positions of each."""
 
     first: int = 0
     count: int = 1
@@ -52,13 +51,13 @@ class SlotLayer(CacheLayerMixin):  # type: ignore[misc]
         self.stored: tuple[Tensor, Tensor] | None = None
 
     def lazy_initialization(self, key_states: Tensor, value_states: Tensor) -> None:
-        """Allocate zeros: what was never written is multiplied by a weight of 0 and must be finite."""
+        """Allocates zeros: positions never written are multiplied by a weight of 0 and must be finite."""
         shape = (self.cache.slots, self.cache.capacity)
         self.keys, self.values = self.stored = (_room(key_states, shape), _room(value_states, shape))
         self.is_initialized = True
 
     def update(self, key_states: Tensor, value_states: Tensor, *args: Any, **kwargs: Any) -> tuple[Tensor, Tensor]:
-        """Write (rows, heads, new tokens, channels) at the window's places; the window's keys and values."""
+        """Writes (rows, heads, new tokens, channels) at the window's places; returns the window's keys and values."""
         if self.stored is None:
             self.lazy_initialization(key_states, value_states)
         assert self.stored is not None  # noqa: S101 -- for the type checker
@@ -71,7 +70,7 @@ class SlotLayer(CacheLayerMixin):  # type: ignore[misc]
         return self.keys, self.values
 
     def resize(self, slots: int, capacity: int) -> None:
-        """Move what is stored into larger storage."""
+        """Moves the stored keys and values into larger storage."""
         if self.stored is not None:
             self.stored = (_grown(self.stored[0], slots, capacity), _grown(self.stored[1], slots, capacity))
 
@@ -103,14 +102,14 @@ class CrossLayer(SlotLayer):
         """Positions by slot."""
 
     def lazy_initialization(self, key_states: Tensor, value_states: Tensor) -> None:
-        """Allocate as many positions as the picture has."""
+        """Allocates as many positions as the picture has."""
         shape = (self.cache.slots, key_states.shape[2])
         self.stored = (_room(key_states, shape), _room(value_states, shape))
         self.is_initialized = True
         self._expose()
 
     def update(self, key_states: Tensor, value_states: Tensor, *args: Any, **kwargs: Any) -> tuple[Tensor, Tensor]:
-        """Keep one row's picture; its keys and values as they came."""
+        """Stores one row's picture and returns its keys and values unchanged."""
         if self.stored is None:
             self.lazy_initialization(key_states, value_states)
         assert self.stored is not None  # noqa: S101 -- for the type checker
@@ -128,7 +127,7 @@ class CrossLayer(SlotLayer):
         super().resize(slots, 0)
 
     def show(self) -> None:
-        """Point `keys` and `values`, which Mllama reads directly, at the window's rows."""
+        """Sets `keys` and `values`, which Mllama reads directly, to the window's rows."""
         if self.stored is not None:
             self._expose()
 
@@ -151,14 +150,14 @@ class SlotCache(Cache):  # type: ignore[misc]
         super().__init__(layers=[CrossLayer(self) if i in cross else SlotLayer(self) for i in range(layers)])
 
     def look_at(self, window: Window) -> None:
-        """Set the window of the next forward pass."""
+        """Sets the window of the next forward pass."""
         self.window = window
         for layer in self.layers:
             if isinstance(layer, CrossLayer):
                 layer.show()
 
     def ensure(self, slots: int, capacity: int) -> None:
-        """Make room for that many rows and positions; grows by doubling, so seldom."""
+        """Makes room for that many rows and positions; grows by doubling, so rarely."""
         if slots <= self.slots and capacity <= self.capacity:
             return
         self.slots = max(self.slots, slots if slots <= self.slots else max(slots, 2 * self.slots))
@@ -167,7 +166,7 @@ class SlotCache(Cache):  # type: ignore[misc]
             layer.resize(self.slots, self.capacity)
 
     def move(self, source: int, target: int, length: int) -> None:
-        """Copy a row's first positions to another slot."""
+        """Copies a row's first positions to another slot."""
         for layer in self.layers:
             for room in layer.stored or ():
                 used = slice(None) if isinstance(layer, CrossLayer) else slice(length)
@@ -176,7 +175,7 @@ class SlotCache(Cache):  # type: ignore[misc]
                 layer.lengths[target] = layer.lengths.get(source, 0)
 
     def clear(self, slot: int) -> None:
-        """Zero a slot that may hold NaN: a weight of 0 times NaN is NaN."""
+        """Sets a slot that may hold NaN to zero: a weight of 0 times NaN is NaN."""
         for layer in self.layers:
             for room in layer.stored or ():
                 room[slot] = 0
@@ -191,7 +190,7 @@ class SlotCache(Cache):  # type: ignore[misc]
         ]
 
     def load(self, slot: int, saved: Saved, length: int) -> None:
-        """Write the first positions of what `save` gave into a slot."""
+        """Writes the first positions of a copy made by `save` into a slot."""
         for layer, kept in zip(self.layers, saved, strict=True):
             if kept is None:
                 continue

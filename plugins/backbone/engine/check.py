@@ -1,8 +1,8 @@
-"""The start-up self-check: does a batch give the logits of separate forwards?
+"""The start-up self-check: a batch must give the logits of separate forward passes.
 
-transformers lets an architecture be batched and quietly compute something else (Mllama's row without a
-picture was off by most of its range). So before the first report, rows of both kinds are prefilled apart,
-stepped together and compared with one plain forward each, without cache. Knows no report and no decoder.
+Some architectures of transformers silently compute wrong logits in a batch (Mllama's row without a picture was off by
+most of its range). Before the first report, rows of both kinds are prefilled apart, stepped together and compared with
+one plain forward pass each, without cache. Knows no report and no decoder.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.families import Beside, Family, raw_inputs
-from plugins.backbone.engine.records import Picture, Prompt, WrongBatch
+from plugins.backbone.engine.families import CrossAttentionFamily, Family, forward_inputs
+from plugins.backbone.engine.faults import WrongBatch
+from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.engine.runner import Runner
 
 _BEHIND = (3, 1, 1)
@@ -22,7 +23,7 @@ _BEHIND = (3, 1, 1)
 
 
 def batching(model: Any, family: Family, picture: Picture | None) -> bool:
-    """Whether rows with and without pictures must be kept apart. Raises WrongBatch if neither way is right."""
+    """Whether rows with and without pictures need separate batches. Raises WrongBatch if neither way is right."""
     prompts = check_prompts(family, picture)
     faults = []
     for apart in (False, True):
@@ -37,7 +38,7 @@ def batching(model: Any, family: Family, picture: Picture | None) -> bool:
 
 
 def tolerance(model: Any) -> float:
-    """Root mean square error over the logits' own spread: rounding is far below, a wrong mask far above."""
+    """Limit of the error over the logits' spread: rounding is far below it, a wrong mask far above."""
     return 1e-3 if model.dtype == torch.float32 else 0.05
 
 
@@ -67,10 +68,10 @@ def batch_error(model: Any, family: Family, apart: bool, prompts: Sequence[Promp
 def reference(model: Any, family: Family, prompt: Prompt, behind: Sequence[int] = ()) -> Tensor:
     """Logits (1 + behind, vocabulary) from the prompt's last token on: one forward, no cache, its own positions."""
     ids = torch.tensor([[*prompt.ids, *behind]], device=model.device)
-    inputs = family.moved(raw_inputs(prompt.pictures))
+    inputs = family.to_model(forward_inputs(prompt.pictures))
     if prompt.pictures and family.dimensions > 1:
         inputs["mm_token_type_ids"] = ids.eq(family.image_token or 0).int()
-    if prompt.pictures and isinstance(family, Beside):
+    if prompt.pictures and isinstance(family, CrossAttentionFamily):
         whole = Prompt(ids[0].tolist(), prompt.pictures)
         inputs["cross_attention_mask"] = family.visible(whole)[None].to(model.device)
     _forget_positions(model)
@@ -96,7 +97,7 @@ def _tokens(family: Family, count: int, seed: int) -> list[int]:
 
 
 def _forget_positions(model: Any) -> None:
-    """The model keeps one batch's rope_deltas for the next: nobody may read another's."""
+    """Clears the model's rope_deltas, which it would otherwise use for the next batch."""
     core = getattr(model, "model", model)
     if hasattr(core, "rope_deltas"):
         core.rope_deltas = None

@@ -1,8 +1,8 @@
-"""What the loop must know of a model's architecture: positions, pictures, which rows may share a batch.
+"""The properties of a model's architecture that the loop needs: positions, pictures, rows that may share a batch.
 
-Two families cover the image-text models of transformers: those that put a picture's features in place of
-placeholder tokens (Qwen-VL with three-dimensional positions, LLaVA, Idefics3, ... and plain text models),
-and Mllama, whose pictures stand beside the text. Knows no cache and no decoder.
+Two families cover the image-text models of transformers: models that put a picture's features in place of placeholder
+tokens (Qwen-VL with three-dimensional positions, LLaVA, Idefics3, ... and plain text models), and Mllama, which attends
+to pictures in layers of its own. Knows no cache and no decoder.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from weakref import WeakKeyDictionary
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.records import Picture, Prompt, TooLong
+from plugins.backbone.engine.faults import TooLong
+from plugins.backbone.engine.records import Picture, Prompt
 
 _KEPT_PICTURES = 64
 Positions = Tensor
@@ -27,7 +28,7 @@ Positions = Tensor
 
 
 class Family(ABC):
-    """One architecture's answers; the picture features it keeps are its only state."""
+    """One kind of architecture; the kept picture features are its only state."""
 
     cross_layers: Sequence[int] = ()
     dimensions = 1
@@ -60,15 +61,15 @@ class Family(ABC):
         return torch.arange(len(prompt.ids))[None], len(prompt.ids)
 
     def lane(self, prompt: Prompt) -> str:
-        """Rows of the same lane may share a batch even where the family's lanes are kept apart."""
+        """Name of the prompt's lane; rows of the same lane may share a batch even if lanes are separate."""
         return "pictures" if prompt.pictures else "text"
 
     def salt(self, prompt: Prompt) -> tuple[str, ...]:
-        """What a prompt's keys and values depend on besides the tokens before."""
+        """Digests of all that a prompt's keys and values depend on besides the tokens before."""
         return ()
 
     def features(self, picture: Picture) -> Any:
-        """The picture's features, encoded once; from any thread, since whoever writes a prompt counts them."""
+        """The picture's features, encoded once. Thread-safe: every thread that writes a prompt counts them."""
         with self.lock, torch.inference_mode():
             if picture.digest not in self.kept:
                 self.kept[picture.digest] = self.encode(picture)
@@ -94,7 +95,7 @@ class Family(ABC):
             )
         return found
 
-    def moved(self, inputs: dict[str, Any]) -> dict[str, Any]:
+    def to_model(self, inputs: dict[str, Any]) -> dict[str, Any]:
         """Tensors on the model's device, floats in its precision."""
         model = self.model
         return {
@@ -105,7 +106,7 @@ class Family(ABC):
         }
 
 
-class Inline(Family):
+class InlineFamily(Family):
     """Pictures in the text: placeholder tokens whose embeddings are replaced."""
 
     def __init__(self, model: Any) -> None:
@@ -120,7 +121,7 @@ class Inline(Family):
     def encode(self, picture: Picture) -> Any:
         """transformers' own features of one picture, without what only training needs."""
         inputs = {k: v for k, v in picture.inputs.items() if k in self.encoder_arguments}
-        found = self.core.get_image_features(**self.moved(inputs), return_dict=True)
+        found = self.core.get_image_features(**self.to_model(inputs), return_dict=True)
         if not hasattr(found, "pooler_output"):  # transformers before 5.23
             return SimpleNamespace(pooler_output=list(found))
         kept = {k: getattr(found, k) for k in ("pooler_output", "deepstack_features") if hasattr(found, k)}
@@ -137,8 +138,8 @@ class Inline(Family):
         if not inside:
             return {}
         if not self.takes_features:
-            return self.moved(raw_inputs(inside))
-        return {"mm_encoder_outputs": {"image": _joined([self.features(p) for p in inside])}}
+            return self.to_model(forward_inputs(inside))
+        return {"mm_encoder_outputs": {"image": _join_features([self.features(p) for p in inside])}}
 
     def positions(self, prompt: Prompt) -> tuple[Positions, int]:
         """Three dimensions by the model's own rule, but never through its shared rope_deltas."""
@@ -153,10 +154,10 @@ class Inline(Family):
         return found[:, 0], int(found.max()) + 1
 
 
-class Beside(Family):
-    """Mllama: the text attends to the picture in layers of its own, and to all of it from anywhere.
+class CrossAttentionFamily(Family):
+    """Mllama: the text attends to the whole picture in layers of its own.
 
-    A row without picture skips those layers, so it never shares a batch with one that has a picture.
+    A row without a picture skips those layers, so it never shares a batch with a row that has one.
     """
 
     def __init__(self, model: Any) -> None:
@@ -168,7 +169,7 @@ class Beside(Family):
         """States to attend to, (tiles * patches, channels)."""
         core = self.model.model
         names = ("pixel_values", "aspect_ratio_ids", "aspect_ratio_mask")
-        found = core.vision_model(**self.moved({k: picture.inputs[k] for k in names})).last_hidden_state
+        found = core.vision_model(**self.to_model({k: picture.inputs[k] for k in names})).last_hidden_state
         return core.multi_modal_projector(found).reshape(-1, found.shape[-2], core.hidden_size)
 
     def tokens_of(self, picture: Picture) -> int:
@@ -202,7 +203,7 @@ class Beside(Family):
     def _visible(self, prompt: Prompt) -> Tensor:
         tiles = self.model.config.vision_config.max_num_tiles
         found = torch.zeros(len(prompt.ids), len(prompt.pictures), tiles, dtype=torch.long)
-        for i, (start, end) in enumerate(_seen(self.spans(prompt), len(prompt.ids))):
+        for i, (start, end) in enumerate(_visible_spans(self.spans(prompt), len(prompt.ids))):
             used = int(prompt.pictures[i].inputs["aspect_ratio_mask"].sum())
             found[start:end, i, :used] = 1
         return found
@@ -212,7 +213,7 @@ class Beside(Family):
         return tuple(p.digest for p in prompt.pictures)
 
 
-def raw_inputs(pictures: Sequence[Picture]) -> dict[str, Any]:
+def forward_inputs(pictures: Sequence[Picture]) -> dict[str, Any]:
     """The image processor's tensors of several pictures as the model's forward takes them."""
     if not pictures:
         return {}
@@ -230,7 +231,7 @@ def _batched(name: str, value: Tensor) -> bool:
 
 
 def family_of(model: Any) -> Family:
-    """Which family a model belongs to. Raises TooLong for layers whose state is no list of keys and values."""
+    """The family of a model. Raises TooLong for layers whose state is no list of keys and values."""
     text = model.config.get_text_config()
     kinds = set(getattr(text, "layer_types", None) or ["full_attention"])
     if strange := kinds - {"full_attention", "sliding_attention", "cross_attention"}:
@@ -238,11 +239,11 @@ def family_of(model: Any) -> Family:
             f"{type(model).__name__} has layers of kind {', '.join(sorted(strange))}: their memory cannot be cut back "
             "or shared; use a model with attention layers only"
         )
-    return Beside(model) if model.config.model_type == "mllama" else Inline(model)
+    return CrossAttentionFamily(model) if model.config.model_type == "mllama" else InlineFamily(model)
 
 
 def window_of(model: Any) -> int:
-    """How many tokens the model may hold: its trained positions, less where its attention slides."""
+    """The most tokens that the model can hold: its trained positions, or its sliding window if that is smaller."""
     text = model.config.get_text_config()
     found = int(getattr(text, "max_position_embeddings", 0) or 0) or 1 << 30
     if "sliding_attention" in (getattr(text, "layer_types", None) or ()):
@@ -250,7 +251,7 @@ def window_of(model: Any) -> int:
     return found
 
 
-def _seen(spans: Sequence[tuple[int, int]], length: int) -> list[tuple[int, int]]:
+def _visible_spans(spans: Sequence[tuple[int, int]], length: int) -> list[tuple[int, int]]:
     """Each picture is seen up to the next one; pictures side by side share the text behind them."""
     ends = [*(start for start, _ in spans[1:]), length][: len(spans)]
     for i in range(len(spans) - 2, -1, -1):
@@ -259,7 +260,7 @@ def _seen(spans: Sequence[tuple[int, int]], length: int) -> list[tuple[int, int]
     return [(start, end) for (start, _), end in zip(spans, ends, strict=True)]
 
 
-def _joined(found: Sequence[Any]) -> Any:
+def _join_features(found: Sequence[Any]) -> Any:
     """Features of several pictures as transformers would have given them at once."""
     joined = SimpleNamespace(pooler_output=[part for one in found for part in one.pooler_output])
     if hasattr(found[0], "deepstack_features"):

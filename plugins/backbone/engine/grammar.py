@@ -1,7 +1,7 @@
 """A JSON schema as a grammar over tokens: which token may come next, and which must.
 
-llguidance does the parsing and is imported only here, only when a schema is given. Objects come out compact
-and with their keys in the schema's order. Knows token ids and text; no model, no decoder.
+llguidance parses; it is imported only here, and only if a schema is given. Objects are written compactly, their keys in
+the schema's order. Knows token ids and text; no model, no decoder.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from plugins.backbone.engine.records import DoesNotFit
+from plugins.backbone.engine.faults import DoesNotFit
 
 Mask = NDArray[np.int32]
 """(rows, words): bit t of a row set if token t may come next."""
@@ -27,7 +27,7 @@ _KEPT_GRAMMARS = 64
 _STRUCTURE = '{"}[]:,0123456789.-'
 
 
-class GrammarMaker:
+class GrammarCompiler:
     """Compiles schemas for one tokenizer: a fast tokenizer of transformers, or a ready `LLTokenizer`."""
 
     def __init__(self, tokenizer: Any, vocabulary: int, eos: Sequence[int]) -> None:
@@ -51,15 +51,15 @@ class GrammarMaker:
         grammar = Grammar(self, schema)
         if fault := grammar.fault:
             shared = {k: schema[k] for k in ("$defs", "definitions") if k in schema}
-            path = next((p for p, s in _parts(schema) if Grammar(self, {**shared, **s}).fault), "$")
+            path = next((p for p, s in _subschemas(schema) if Grammar(self, {**shared, **s}).fault), "$")
             raise DoesNotFit(f"no answer can meet the schema at {path}: {fault}; mend the schema", path)
         return grammar
 
 
 class Grammar:
-    """A compiled schema; `track` starts an answer."""
+    """A compiled schema; `track` gives the state of a new answer."""
 
-    def __init__(self, maker: GrammarMaker, schema: Mapping[str, Any]) -> None:
+    def __init__(self, maker: GrammarCompiler, schema: Mapping[str, Any]) -> None:
         from llguidance import LLMatcher
 
         self.maker = maker
@@ -71,9 +71,9 @@ class Grammar:
         self.start = LLMatcher(maker.tokens, text, log_level=0)
         self.fault = self.start.get_error() if self.start.is_error() else ""
 
-    def track(self) -> Track:
-        """Follow one answer from its beginning."""
-        return Track(self)
+    def track(self) -> GrammarState:
+        """The grammar's state at the beginning of an answer."""
+        return GrammarState(self)
 
     def text(self, ids: Sequence[int]) -> str:
         """Tokens as text; what is no UTF-8 yet becomes U+FFFD."""
@@ -84,8 +84,8 @@ class Grammar:
         return bytes(self.maker.tokens.decode_bytes(list(ids)))
 
 
-class Track:
-    """Where one answer stands in its grammar."""
+class GrammarState:
+    """The state of the grammar after the tokens of one answer so far."""
 
     def __init__(self, grammar: Grammar) -> None:
         assert grammar.start is not None  # noqa: S101 -- a grammar with a fault is never handed out
@@ -95,12 +95,12 @@ class Track:
 
     @property
     def done(self) -> bool:
-        """Nothing but the end of the text may follow."""
+        """True if only the end of the text may follow."""
         return bool(self.matcher.is_stopped())
 
     @property
     def complete(self) -> bool:
-        """The answer is valid as it stands."""
+        """True if the answer so far is valid."""
         return bool(self.matcher.is_stopped() or self.matcher.is_accepting())
 
     def fill(self, row: Mask) -> None:
@@ -110,23 +110,23 @@ class Track:
             row[:] = 0
 
     def take(self, token: int) -> bool:
-        """Go on with a token; False if it may not come next, and then nothing has changed."""
+        """Advances by a token; False, without a change, if it may not come next."""
         return bool(self.matcher.try_consume_tokens([token]) == 1)
 
     def back(self, tokens: int) -> None:
-        """Take tokens back."""
+        """Goes back by that many tokens."""
         if tokens:
             self.matcher.rollback(tokens)
 
     def forced(self) -> list[int]:
-        """Take and return the tokens that leave no choice, spelled as the tokenizer would spell them."""
+        """Advances by the tokens that leave no choice, in the tokenizer's spelling, and returns them."""
         found = list(self.matcher.compute_ff_tokens())
         taken = self.matcher.try_consume_tokens(found) if found else 0
         return found[:taken]
 
 
 def allowed(mask: Mask, vocabulary: int, device: torch.device) -> Tensor:
-    """Unpack a mask: (rows, vocabulary), True where a token may come next."""
+    """A mask unpacked: (rows, vocabulary), True for tokens that may come next."""
     if device.type == "cpu":
         bits = np.unpackbits(mask.view(np.uint8), axis=-1, count=vocabulary, bitorder="little")
         return torch.from_numpy(bits).view(torch.bool)
@@ -135,14 +135,14 @@ def allowed(mask: Mask, vocabulary: int, device: torch.device) -> Tensor:
     return ((words[..., None] >> shifts) & 1).bool().flatten(1)[:, :vocabulary]
 
 
-def choices(mask: Mask) -> NDArray[np.int64]:
-    """How many tokens may come next, by row."""
+def choice_counts(mask: Mask) -> NDArray[np.int64]:
+    """The number of tokens that may come next, for each row."""
     counted: NDArray[np.int64] = np.bitwise_count(mask.view(np.uint32)).sum(-1, dtype=np.int64)
     return counted
 
 
-def only(mask: Mask) -> NDArray[np.int64]:
-    """The one token of each row that has one."""
+def single_choices(mask: Mask) -> NDArray[np.int64]:
+    """The only token of each row that leaves one."""
     word = mask.view(np.uint32).argmax(-1)
     bits = mask.view(np.uint32)[np.arange(len(mask)), word]
     tokens: NDArray[np.int64] = word.astype(np.int64) * 32 + np.log2(bits.astype(np.float64)).astype(np.int64)
@@ -150,10 +150,10 @@ def only(mask: Mask) -> NDArray[np.int64]:
 
 
 def collisions(added: Sequence[str], schema: Mapping[str, Any]) -> list[str]:
-    """Special tokens whose text is part of what the schema makes every answer say.
+    """Special tokens whose text every answer of the schema must contain.
 
-    A tokenizer reads such text as the special token, which no grammar may produce: the answer could not be
-    spelled as the model learned it.
+    A tokenizer reads such text as the special token, which no grammar may produce, so the answer could not be spelled
+    as the model learned it.
     """
     said = json.dumps(schema, ensure_ascii=False, separators=(",", ":"))
     return [text for text in added if text and (text in said or text in _STRUCTURE)]
@@ -169,14 +169,14 @@ def _token_table(tokenizer: Any, vocabulary: int, eos: list[int]) -> Any:
     return from_tokenizer(tokenizer, n_vocab=vocabulary, eos_token=eos, slices=LLTokenizer.json_slices())
 
 
-def _parts(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _subschemas(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Sub-schemas with their paths, innermost first."""
     for name, part in (schema.get("properties") or {}).items():
         if isinstance(part, Mapping):
-            yield from _parts(part, f"{path}.{name}" if path else name)
+            yield from _subschemas(part, f"{path}.{name}" if path else name)
     if isinstance(schema.get("items"), Mapping):
-        yield from _parts(schema["items"], f"{path}[]")
+        yield from _subschemas(schema["items"], f"{path}[]")
     for part in schema.get("anyOf") or ():
         if isinstance(part, Mapping):
-            yield from _parts(part, path)
+            yield from _subschemas(part, path)
     yield path or "$", schema

@@ -1,7 +1,7 @@
 """One report while it is being answered: its rows, its place in the grammar, its tokens so far.
 
-A job turns what was decided into the next chunk to feed, and what the model said of the chunk into tokens.
-Knows no model and no batch.
+A job turns decided tokens into the next chunk to feed, and the model's result for the chunk into tokens. Knows no model
+and no batch.
 """
 
 from __future__ import annotations
@@ -15,18 +15,23 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 
-from plugins.backbone.engine.draft import Draft
-from plugins.backbone.engine.grammar import Mask, Track
-from plugins.backbone.engine.records import Answer, DoesNotFit, Request
+from plugins.backbone.engine.faults import DoesNotFit
+from plugins.backbone.engine.grammar import GrammarState, Mask
+from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Row
 from sgcad_core.asking.json_field_spans import open_path
 
+_LONGEST_GUESS = 64
+_SHORTEST_GUESS = 2
+_CLUE = 3
+"""How many tokens must agree before the place in the earlier answer counts as found."""
+
 
 @dataclass
-class Said:
-    """What the model said of one chunk; position i is about the token behind chunk[i].
+class ChunkResult:
+    """The model's result for one chunk; position i is about the token after chunk[i].
 
-    Of the first `known` positions the token behind is in the chunk; then come the scored ones.
+    The first positions are about tokens that the chunk holds, the rest about picked ones. Log-probabilities in nats.
     """
 
     known_with: list[float]
@@ -35,7 +40,7 @@ class Said:
     picked_with: list[float]
     picked_without: list[float]
     states: Sequence[torch.Tensor] = ()
-    """Of the first row with context at every position, (hidden,); empty where nobody watches them."""
+    """States of the first row with context at every position, (hidden,); empty unless the loop watches them."""
 
 
 @dataclass(eq=False)
@@ -57,22 +62,22 @@ class Job:
     closing: bool = False
     """The answer is complete; its forced end is fed once more for its log-probabilities."""
     started: float = field(default_factory=time.perf_counter)
-    track: Track | None = None
+    track: GrammarState | None = None
     draft: Draft = field(init=False)
     generator: torch.Generator | None = None
     begun: bool = False
     alone: bool = False
-    """To be answered by itself: a batch with it has failed."""
+    """True if it must be answered by itself, because a batch with it has failed."""
 
     def __post_init__(self) -> None:
         self.draft = Draft([token for token in self.request.draft if token not in self.request.eos])
 
-    def given_up(self) -> bool:
-        """True, once, if the caller has cancelled; whoever waits for it is told."""
+    def is_cancelled(self) -> bool:
+        """True, once, if the caller has cancelled; notifies waiters."""
         return self.future.cancelled() and not self.future.set_running_or_notify_cancel()
 
-    def tell(self, outcome: Answer | Exception) -> None:
-        """End the caller's wait, unless the caller has given up."""
+    def resolve(self, outcome: Answer | Exception) -> None:
+        """Ends the caller's wait with an answer or a fault, unless the caller has cancelled."""
         if not self.future.set_running_or_notify_cancel():
             return
         if isinstance(outcome, Exception):
@@ -82,7 +87,7 @@ class Job:
 
     # ------------------------------------------------------------------ before the step
     def begin(self) -> None:
-        """Start (or, after memory ran out, go on): the last known token is what the first step feeds."""
+        """Starts, or goes on after memory ran out: the first step feeds the last known token."""
         if not self.begun:
             self.begun = True
             self.track = self.request.grammar.track() if self.request.grammar else None
@@ -108,7 +113,7 @@ class Job:
         return self.answer.ids[: len(self.answer.with_context)]
 
     def chunk(self, guess_limit: int) -> list[int]:
-        """What to feed now: decided tokens, then guesses. A closing job's last token says nothing more."""
+        """The next tokens to feed: decided ones, then guesses. A closing job leaves out its last token."""
         if self.closing:
             return self.pending[:-1]
         room = self.request.max_new_tokens - len(self.answer.ids) - 1
@@ -133,24 +138,24 @@ class Job:
         return rows[: self.taken + 1]
 
     def forget_guesses(self) -> None:
-        """Take the guesses out of the grammar again, as far as they got there."""
+        """Removes the guesses from the grammar's state, as far as they were taken."""
         if self.track:
             self.track.back(self.taken)
         self.guesses, self.taken = [], 0
 
     # ------------------------------------------------------------------ after the step
-    def hear(self, said: Said, choices: Sequence[int]) -> None:
-        """Take the model's word for a chunk: note log-probabilities, accept tokens, force the next ones.
+    def take_result(self, result: ChunkResult, choices: Sequence[int]) -> None:
+        """Takes the result for a chunk: notes log-probabilities, accepts tokens, adds forced ones.
 
-        `choices` is how many tokens the grammar left at each scored position, empty without one. Raises
-        DoesNotFit at a dead end and where the limit of tokens is reached within a grammar.
+        `choices` is the number of tokens that the grammar left at each scored position, empty without a grammar. Raises
+        DoesNotFit at a dead end and if the limit of tokens is reached within a grammar.
         """
-        known = len(said.known_with)
-        self._note(said.known_with, said.known_without, said.states[:known])
+        known = len(result.known_with)
+        self._note(result.known_with, result.known_without, result.states[:known])
         if self.closing:
             return self._finish()
         guesses = self.guesses
-        right = next((i for i, (g, p) in enumerate(zip(guesses, said.picked, strict=False)) if g != p), len(guesses))
+        right = next((i for i, (g, p) in enumerate(zip(guesses, result.picked, strict=False)) if g != p), len(guesses))
         fed = len(self.pending) + right
         if self.track:
             self.track.back(self.taken - right)
@@ -160,14 +165,14 @@ class Job:
         for i in range(right + 1):
             if choices and choices[i] == 0:
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
-            self._accept(said.picked[i], bool(choices) and choices[i] == 1)
+            self._accept(result.picked[i], bool(choices) and choices[i] == 1)
             one = slice(i, i + 1)
-            self._note(said.picked_with[one], said.picked_without[one], said.states[known + i : known + i + 1])
-            if i == right and not self._take(said.picked[i]):
+            self._note(result.picked_with[one], result.picked_without[one], result.states[known + i : known + i + 1])
+            if i == right and not self._take(result.picked[i]):
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
         for row in self.rows:
             row.length += fed
-        self.pending = [said.picked[right]]
+        self.pending = [result.picked[right]]
         return self._go_on()
 
     def text(self) -> str:
@@ -187,7 +192,7 @@ class Job:
         return token in self.request.eos or self.track is None or self.track.take(token)
 
     def _go_on(self) -> None:
-        """Force what follows, or end."""
+        """Adds the forced tokens that follow, or ends the answer."""
         if self.answer.ids and self.answer.ids[-1] in self.request.eos:
             if self.track and not self.track.complete:
                 raise DoesNotFit("the text that must follow is an end token of this tokenizer", self.path())
@@ -229,3 +234,41 @@ class Job:
         self.answer.prompt_tokens = sum(len(row.prompt.ids) for row in self.rows)
         self.answer.reused_tokens = sum(row.reused for row in self.rows)
         self.answer.seconds = max(time.perf_counter() - self.started, 1e-9)
+
+
+class Draft:
+    """Guesses at the next tokens, taken from an earlier answer of which a repair repeats most.
+
+    Guessed tokens are fed together and kept as far as the decoder picks the same ones: they change the speed and never
+    the answer. Follows one place in the earlier answer.
+    """
+
+    def __init__(self, earlier: Sequence[int]) -> None:
+        self.earlier = list(earlier)
+        self.at = 0
+        self.length = 16
+        self.recent: list[int] = []
+
+    def guess(self, limit: int) -> list[int]:
+        """The next tokens, at most `limit`."""
+        return self.earlier[self.at : self.at + min(self.length, max(0, limit))]
+
+    def note(self, token: int) -> None:
+        """Follows a token of the new answer; after a difference, searches the place again."""
+        self.recent = [*self.recent[-(_CLUE - 1) :], token]
+        if self.at < len(self.earlier) and self.earlier[self.at] == token:
+            self.at += 1
+        else:
+            self.at = self._found() or min(self.at + 1, len(self.earlier))
+
+    def judge(self, guessed: int, right: int) -> None:
+        """Makes the next guess longer after success, shorter after failure."""
+        if guessed:
+            self.length = min(2 * self.length, _LONGEST_GUESS) if right == guessed else max(right + 1, _SHORTEST_GUESS)
+
+    def _found(self) -> int | None:
+        """The place after the nearest occurrence of the last tokens; None if there is none."""
+        if len(self.recent) < _CLUE:
+            return None
+        ends = [i + _CLUE for i in range(len(self.earlier) - _CLUE + 1) if self.earlier[i : i + _CLUE] == self.recent]
+        return min(ends, key=lambda end: abs(end - self.at), default=None)

@@ -1,8 +1,8 @@
 """Continuous batching: one thread owns the model, reports enter and leave between two tokens.
 
-`submit` may be called from any thread; it hands the request to the owner and returns a future. When memory
-runs out the number of reports at once is halved and what was decided so far is kept. A decoder that raises costs
-its own report; a model that raises makes its reports go on one by one. Knows requests and rows; no prompt format.
+`submit` may be called from any thread; it queues the request and returns a future. If memory runs out, the number of
+reports at once is halved and the tokens so far are kept. A decoder that raises ends its own report; if the model
+raises, its reports go on one by one. Knows requests and rows; no prompt format.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from typing import Any
 import torch
 
 from plugins.backbone.engine.families import Family, window_of
+from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, TooLong, tried
 from plugins.backbone.engine.job import Job
-from plugins.backbone.engine.memory import tried
-from plugins.backbone.engine.records import Answer, BadLogits, EngineFault, Request, TooBig, TooLong
+from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Runner
-from plugins.backbone.engine.scoring import Heard, averaged, heard
+from plugins.backbone.engine.scoring import ScoredChunk, averaged, score_chunks
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""
@@ -57,16 +57,16 @@ class Engine:
         self.halved = 0
 
     def generate(self, request: Request) -> Answer:
-        """Answer one request; blocks. Raises an EngineFault, or what the decoder or the model raised."""
+        """Answers one request; blocks. Raises an EngineFault, or the exception of the decoder or the model."""
         future = self.submit(request)
         try:
             return future.result()
-        except BaseException:  # whoever stops waiting (Ctrl-C) frees the place
+        except BaseException:  # a caller that stops waiting (Ctrl-C) frees its place
             future.cancel()
             raise
 
     def submit(self, request: Request) -> Future[Answer]:
-        """Queue a request. Raises TooLong at once; every other fault comes out of the future.
+        """Queues a request. Raises TooLong at once; every other fault comes from the future.
 
         Cancelling the future ends the report before its next token.
         """
@@ -81,36 +81,36 @@ class Engine:
             if self.ended:
                 raise EngineFault(f"the engine is closed{self.reason}")
             if self.thread is None:
-                self.thread = threading.Thread(target=self._own, name="token-loop", daemon=True)
+                self.thread = threading.Thread(target=self._run_loop, name="token-loop", daemon=True)
                 self.thread.start()
             self.arrivals.put(job)
         return job.future
 
     def close(self) -> None:
-        """Stop after the present token; what was not answered is cancelled."""
+        """Stops after the present token; requests without an answer are cancelled."""
         self.end()
         if self.thread:
             self.thread.join()
 
     def end(self) -> None:
-        """Have the loop stop, without waiting for it (so that its own thread may ask for it too)."""
+        """Tells the loop to stop without waiting for it, so that its own thread may call this too."""
         with self.lock:
             self.ended = True
             self.arrivals.put(None)
 
     # ------------------------------------------------------------------ the owner's thread
-    def _own(self) -> None:
+    def _run_loop(self) -> None:
         try:
             with torch.inference_mode():
-                while self._arrive():
+                while self._collect_arrivals():
                     self._admit()
                     if self.jobs:
                         self._step()
         finally:
-            self._abandon(sys.exc_info()[1])
+            self._fail_unanswered(sys.exc_info()[1])
 
-    def _arrive(self) -> bool:
-        """Take what has arrived, waiting if there is nothing else to do; False to stop."""
+    def _collect_arrivals(self) -> bool:
+        """Collects new requests, waiting if there is nothing else to do; False to stop."""
         idle = not (self.jobs or self.waiting)
         while idle or not self.arrivals.empty():
             job = self.arrivals.get()
@@ -121,19 +121,19 @@ class Engine:
         return True
 
     def _admit(self) -> None:
-        """Open waiting reports; one that is to be answered alone waits for an empty batch and keeps it."""
+        """Opens waiting reports; one that must be answered alone waits for an empty batch and keeps it."""
         while self.waiting and len(self.jobs) < self.limit:
             if self.jobs and (self.waiting[0].alone or self.jobs[0].alone):
                 return
             job = self.waiting.popleft()
-            if job.given_up():
+            if job.is_cancelled():
                 continue
             fault = tried(partial(self._open, job))
             if isinstance(fault, TooBig):
                 self._restart(fault)
             elif fault:
-                self._leave(job)
-                job.tell(fault)
+                self._close_job(job)
+                job.resolve(fault)
 
     def _open(self, job: Job) -> None:
         before = self.runner.calls
@@ -145,30 +145,30 @@ class Engine:
         job.answer.model_calls += self.runner.calls - before
 
     def _step(self) -> None:
-        """One forward pass a lane for all jobs, and what follows from it for each."""
-        for job in [job for job in self.jobs if job.given_up()]:
-            self._leave(job)
-        jobs, results = list(self.jobs), list[Heard]()
+        """Runs one forward pass for each lane and gives every job its result."""
+        for job in [job for job in self.jobs if job.is_cancelled()]:
+            self._close_job(job)
+        jobs, results = list(self.jobs), list[ScoredChunk]()
         if not jobs:
             return
         if failed := tried(lambda: results.extend(self._forward(jobs))):
             self._restart(failed)
             return
         # every job hears first: a row that moves into a freed slot takes only what its job has accepted
-        faults = [self._hear(job, result) for job, result in zip(jobs, results, strict=True)]
+        faults = [self._take_result(job, result) for job, result in zip(jobs, results, strict=True)]
         for job, fault in zip(jobs, faults, strict=True):
             if fault or job.finished:
-                self._leave(job, keep=not fault)
-                job.tell(fault or job.answer)
+                self._close_job(job, keep=not fault)
+                job.resolve(fault or job.answer)
 
-    def _hear(self, job: Job, result: Heard) -> Exception | None:
+    def _take_result(self, job: Job, result: ScoredChunk) -> Exception | None:
         if isinstance(result.fault, BadLogits):
-            self._spoil(job)
-        if result.said is None:
+            self._clear_slots(job)
+        if result.result is None:
             return result.fault
-        return tried(partial(job.hear, result.said, result.choices))
+        return tried(partial(job.take_result, result.result, result.choices))
 
-    def _forward(self, jobs: list[Job]) -> list[Heard]:
+    def _forward(self, jobs: list[Job]) -> list[ScoredChunk]:
         guesses = max(2, _GUESSES // len(jobs))
         chunks = [(row, chunk) for job in jobs for chunk in [job.chunk(guesses)] for row in job.rows]
         before = self.runner.calls
@@ -179,17 +179,17 @@ class Engine:
             without_context.append(next(logits) if job.request.without_context is not None else None)
             with_context.append(averaged(first, [next(logits) for _ in job.request.views]))
             job.answer.model_calls += self.runner.calls - before
-        found = heard(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
+        found = score_chunks(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
         for job, one in zip(jobs, found, strict=True):
             states = self.runner.states.get(id(job.rows[0]))
-            if one.said is not None and states is not None:
-                one.said.states = states.float().cpu().unbind()
+            if one.result is not None and states is not None:
+                one.result.states = states.float().cpu().unbind()
         return found
 
     def _vocabulary(self) -> int:
         return int(self.model.get_output_embeddings().weight.shape[0])
 
-    def _leave(self, job: Job, keep: bool = False) -> None:
+    def _close_job(self, job: Job, keep: bool = False) -> None:
         self.jobs.remove(job)
         for row in reversed(job.rows):
             if keep and tried(partial(self.runner.keep, row, job.answer.ids)):
@@ -197,17 +197,17 @@ class Engine:
             self.runner.close(row)
         job.rows = []
 
-    def _spoil(self, job: Job) -> None:
-        """NaN in a slot would reach the next row there through a weight of 0."""
+    def _clear_slots(self, job: Job) -> None:
+        """Clears the job's slots: NaN in a slot would reach the next row there through a weight of 0."""
         self.runner.prefixes.clear()
         for row in job.rows:
             row.lane.cache.clear(row.slot)
 
     def _restart(self, fault: Exception) -> None:
-        """What was computed for all has failed: forget it and go on from every report's tokens so far.
+        """Discards a failed computation of the batch and goes on from every report's tokens so far.
 
-        Where memory ran out the number of reports at once is halved. After any other fault nobody knows whose
-        it was, so each report goes on alone; one that was alone has had its chance.
+        If memory ran out, the number of reports at once is halved. After any other fault the report that caused it is
+        unknown, so each report goes on alone; a report that was alone ends with the fault.
         """
         jobs, self.jobs = self.jobs, []
         self.runner.reset()
@@ -219,14 +219,14 @@ class Engine:
             ended = fault if job.alone else tried(job.forget_guesses)
             job.rows, job.alone = [], not halved
             if ended:
-                job.tell(ended)
+                job.resolve(ended)
             else:
                 self.waiting.appendleft(job)
         if torch.cuda.is_available():
             torch.cuda.empty_cache()
 
-    def _abandon(self, fault: BaseException | None) -> None:
-        """The loop has ended: nobody waits for ever."""
+    def _fail_unanswered(self, fault: BaseException | None) -> None:
+        """Ends every unanswered request with a fault after the loop has ended."""
         with self.lock:
             self.ended = True
             self.reason = f": {type(fault).__name__}: {fault}" if fault else ""
@@ -235,4 +235,4 @@ class Engine:
                 self.waiting.append(job)
         for job in [*self.jobs, *self.waiting]:
             closed = EngineFault(f"the engine was closed before this report was answered{self.reason}")
-            job.tell(fault if isinstance(fault, Exception) else closed)
+            job.resolve(fault if isinstance(fault, Exception) else closed)

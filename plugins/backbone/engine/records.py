@@ -1,60 +1,16 @@
-"""What goes into the token loop and what comes out; the loop's own errors.
-
-    EngineFault
-    ├── DoesNotFit    no valid answer within the limits: the field's path, so that it can be asked again
-    ├── BadLogits     the model gave NaN or inf at a step: this report stops, the others go on
-    ├── BadScores     the decoder gave no usable scores or tokens: this report stops, the others go on
-    ├── TooLong       prompt and answer exceed the model's window
-    ├── TooBig        one report alone does not fit in memory
-    └── WrongBatch    the start-up self-check found no way to run this model right
-
-Knows tensors only: no tokenizer, no prompt format, no pydantic.
-"""
+"""What goes into the token loop and what comes out. Knows tensors only: no tokenizer, no prompt format, no pydantic."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from plugins.backbone.engine.grammar import Grammar
-
-
-class EngineFault(Exception):
-    """Root of the tree; never raised itself."""
-
-
-class DoesNotFit(EngineFault):
-    """No valid answer can be finished; `path` is the JSON path of the field at fault ("$" = the whole)."""
-
-    def __init__(self, message: str, path: str = "$") -> None:
-        super().__init__(message)
-        self.path = path
-
-
-class BadLogits(EngineFault):
-    """NaN or inf in a row's logits."""
-
-
-class BadScores(EngineFault):
-    """A decoder's scores are NaN, inf or of another shape, or its draw is no token."""
-
-
-class TooLong(EngineFault):
-    """The prompt and the longest answer do not fit in the model's window."""
-
-
-class TooBig(EngineFault):
-    """Memory ran out for a single report."""
-
-
-class WrongBatch(EngineFault):
-    """Neither one batch nor two caches give the logits of separate forwards."""
+from plugins.backbone.engine.grammar import Grammar
 
 
 class Policy(Protocol):
-    """A decoder, as the loop sees it: `sgcad_core.interfaces.Decoder` is one."""
+    """The decoder's methods that the loop calls; `sgcad_core.interfaces.Decoder` has them."""
 
     def scores(self, with_context: Any, without_context: Any | None) -> Any:
         """Combine logits (rows, vocabulary); -inf excludes."""

@@ -1,7 +1,7 @@
-"""Rows on a model: prefill them apart, step them together, let them go.
+"""Rows on a model: prefilled apart, stepped together, closed.
 
-A row is one prompt and the tokens fed behind it. Rows of one lane share a cache and a forward pass, however
-long each is. Knows no report, no decoder and no grammar.
+A row is one prompt and the tokens fed after it. Rows of one lane share a cache and a forward pass, whatever their
+lengths. Knows no report, no decoder and no grammar.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Runner:
         """By id of a row that was stepped: (tokens, hidden)."""
 
     def watch(self) -> None:
-        """From now on keep the states that every step's logits come from."""
+        """Keeps, from now on, the states that every step's logits are computed from."""
 
         def seen(_: Any, given: tuple[Tensor, ...]) -> None:
             self.last = given[0]
@@ -71,7 +71,7 @@ class Runner:
         self.model.get_output_embeddings().register_forward_pre_hook(seen)
 
     def open(self, prompt: Prompt, behind: Sequence[int] = ()) -> Row:
-        """Give a prompt a row and prefill all of prompt and `behind` but the last token."""
+        """Opens a row for a prompt and prefills the prompt and `behind` except the last token."""
         lane = self._lane(prompt)
         spans = self.family.spans(prompt)
         positions, next_position = self.family.positions(prompt)
@@ -88,12 +88,12 @@ class Runner:
         return row
 
     def keep(self, row: Row, behind: Sequence[int]) -> None:
-        """Keep the row's prompt and the tokens fed behind it for a prompt that goes on from there."""
+        """Keeps the row's prompt and the tokens fed after it for a prompt that continues them."""
         if row.length > len(row.prompt.ids):
             self._keep(row, behind)
 
     def close(self, row: Row) -> None:
-        """Free the row's slot; the last row of the lane moves into it."""
+        """Frees the row's slot; the last row of the lane moves into it."""
         rows = row.lane.rows
         last = rows.pop()
         if last is not row:
@@ -102,9 +102,9 @@ class Runner:
             rows[row.slot] = last
 
     def step(self, chunks: Sequence[tuple[Row, Sequence[int]]]) -> list[Tensor]:
-        """Feed tokens to rows, all rows of their lanes at once: logits (tokens, vocabulary) of each.
+        """Feeds tokens to rows, all rows of their lanes at once; returns logits (tokens, vocabulary) of each.
 
-        The rows' lengths stay: the caller adds what it accepts, the rest is overwritten later.
+        The rows' lengths stay: the caller adds the accepted tokens, the rest is overwritten later.
         """
         found: dict[int, Tensor] = {}
         self.states = {}
@@ -117,7 +117,7 @@ class Runner:
         return [found[id(row)] for row, _ in chunks]
 
     def reset(self) -> None:
-        """Forget every row and every prefix: what is left after memory ran out is not to be trusted."""
+        """Discards every row and every prefix: after memory ran out their content is not reliable."""
         self.lanes = {}
         self.prefixes.clear()
 
@@ -128,7 +128,7 @@ class Runner:
         return self.lanes[name]
 
     def _fill(self, row: Row, known: Sequence[int]) -> None:
-        """Put the known tokens into the row's slot: what is kept, the rest of the prompt, what stands behind it."""
+        """Fills the row's slot: the kept beginning, the rest of the prompt, the known tokens after it."""
         prompt = row.prompt
         inside = min(len(prompt.ids), len(known))
         row.lane.cache.ensure(row.slot + 1, len(known) + 1)
@@ -141,7 +141,7 @@ class Runner:
             self._prefill(row, known[inside:], self.family.step_inputs([prompt], len(known) - inside))
 
     def _reuse(self, row: Row, limit: int) -> None:
-        """Load the longest kept beginning, cut back to before a picture that it holds only in part."""
+        """Loads the longest kept beginning, cut before a picture that it holds only in part."""
         kept = self.prefixes.longest(self.family.salt(row.prompt), row.key)
         if kept is None:
             return

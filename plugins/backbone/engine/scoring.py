@@ -1,8 +1,8 @@
 """From two rows of logits to a token: contrast, plausibility, grammar, temperature and top-p, pick.
 
-The first two are the decoder's `scores`, the last two its `draw`; the grammar stands between them and
-applies to the combined logits. All jobs come to the host at once. A decoder is others' code: what it raises,
-and scores that are none, cost its own report alone. Knows jobs and tensors; no model, no cache.
+The first two are the decoder's `scores`, the last two its `draw`; the grammar stands between them and applies to the
+combined logits. The results of all jobs come to the host at once. A decoder may be third-party code: its exceptions and
+invalid scores end only its own report. Knows jobs and tensors; no model, no cache.
 """
 
 from __future__ import annotations
@@ -14,31 +14,30 @@ from functools import partial
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.grammar import Mask, allowed, choices, only
-from plugins.backbone.engine.job import Job, Said
-from plugins.backbone.engine.memory import tried
-from plugins.backbone.engine.records import BadLogits, BadScores, TooBig
+from plugins.backbone.engine.faults import BadLogits, BadScores, TooBig, tried
+from plugins.backbone.engine.grammar import Mask, allowed, choice_counts, single_choices
+from plugins.backbone.engine.job import ChunkResult, Job
 
 NEVER = float("-inf")
 _BLOCK = 8
 
 
 @dataclass
-class Heard:
-    """What one job is told of its chunk: `said`, or the fault that ends it."""
+class ScoredChunk:
+    """The scores of one job's chunk: `result`, or the fault that ends the job."""
 
     choices: list[int] = field(default_factory=list)
     parts: list[Tensor] = field(default_factory=list)
     """On the device: finite, log-probabilities of known tokens, then sound, picked tokens, their log-probabilities."""
-    said: Said | None = None
+    result: ChunkResult | None = None
     fault: Exception | None = None
 
 
-def heard(
+def score_chunks(
     jobs: Sequence[Job], with_context: Sequence[Tensor], without_context: Sequence[Tensor | None], words: int
-) -> list[Heard]:
-    """Score every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
-    found = [Heard() for _ in jobs]
+) -> list[ScoredChunk]:
+    """Scores every job's chunk; logits are (chunk, vocabulary), `words` the length of a mask for them."""
+    found = [ScoredChunk() for _ in jobs]
     for i, job in enumerate(jobs):
         prior = without_context[i]
         logits = [with_context[i]] if prior is None else [with_context[i], prior]
@@ -53,7 +52,7 @@ def heard(
         for part in one.parts:
             lists.append(numbers[at : at + len(part)])
             at += len(part)
-        _tell(job, one, lists)
+        _set_result(job, one, lists)
     return found
 
 
@@ -78,7 +77,7 @@ class _Row:
 
     @classmethod
     def of(cls, logits: Tensor) -> _Row:
-        """On a CPU in blocks that stay in its cache."""
+        """The row with its mass, computed on a CPU in blocks that fit its cache."""
         blocks = [logits] if logits.is_cuda else torch.split(logits, _BLOCK)
         return cls(logits, torch.cat([block.float().logsumexp(-1) for block in blocks]))
 
@@ -88,10 +87,10 @@ class _Row:
         return self.logits[places].gather(-1, tokens[:, None])[:, 0].float() - self.mass[places]
 
 
-def _score(one: Heard, job: Job, logits: Sequence[Tensor], words: int) -> None:
-    """Fill in what is known of a chunk, on the device."""
+def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> None:
+    """Computes a chunk's log-probabilities and picks, on the device."""
     mask = job.masks(words)
-    one.choices = choices(mask).tolist() if mask is not None else []
+    one.choices = choice_counts(mask).tolist() if mask is not None else []
     known = len(job.pending) - 1
     rows = [_Row.of(row) for row in logits]
     finite = torch.stack([row.mass.isfinite().all() for row in rows]).all()[None]
@@ -107,13 +106,13 @@ def _score(one: Heard, job: Job, logits: Sequence[Tensor], words: int) -> None:
 def _all_picked(
     job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor
 ) -> tuple[Tensor, Tensor]:
-    """Whether the decoder was sound, and one token a position; where the grammar leaves one, nothing is scored."""
+    """Whether the decoder's scores are valid, and one token for each position; forced positions are not scored."""
     free = [i for i in range(len(rows[0])) if mask is None or left[i] != 1]
     if mask is None or len(free) == len(left):
         return _picked(job, rows, mask, free, finite)
     forced = [i for i, count in enumerate(left) if count == 1]
     picked = torch.empty(len(left), dtype=torch.long, device=finite.device)
-    picked[forced] = torch.from_numpy(only(mask[forced])).to(finite.device)
+    picked[forced] = torch.from_numpy(single_choices(mask[forced])).to(finite.device)
     sound = torch.ones(1, dtype=torch.bool, device=finite.device)
     if free:
         sound, picked[free] = _picked(job, [row[free] for row in rows], mask[free], free, finite)
@@ -121,7 +120,7 @@ def _all_picked(
 
 
 def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], finite: Tensor) -> tuple[Tensor, Tensor]:
-    """One token a position; where plausibility and grammar leave none, the most likely one with context."""
+    """One token for each position; if plausibility and grammar leave none, the most likely one with context."""
     full = [row.to(torch.float32, copy=True) for row in rows]
     scores = job.request.policy.scores(full[0], full[1] if len(full) > 1 else None)
     if not isinstance(scores, Tensor) or scores.shape != rows[0].shape:
@@ -146,7 +145,7 @@ def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], fi
 
 
 def _drawn(job: Job, scores: Tensor, free: list[int]) -> Tensor:
-    """One token a position, (positions,), each by the random numbers of its place in the answer."""
+    """One token for each position, (positions,), drawn with the random numbers of its place in the answer."""
     found = []
     for i, position in enumerate(free):
         job.place = len(job.answer.ids) + position
@@ -165,7 +164,7 @@ def _described(found: object) -> str:
     return f"{found.dtype} {tuple(found.shape)}" if isinstance(found, Tensor) else repr(found)[:80]
 
 
-def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
+def _set_result(job: Job, one: ScoredChunk, lists: list[list[float]]) -> None:
     finite, *rest = lists
     rows = 1 + (job.request.without_context is not None)
     if not finite[0]:
@@ -175,7 +174,7 @@ def _tell(job: Job, one: Heard, lists: list[list[float]]) -> None:
     if scored and not scored[0][0]:
         one.fault = _unsound(job, "scores are NaN or inf, or its tokens outside the vocabulary,")
         return
-    one.said = Said(
+    one.result = ChunkResult(
         known_with=known[0],
         known_without=known[1] if rows > 1 else [],
         picked=[int(token) for token in scored[1]] if scored else [],

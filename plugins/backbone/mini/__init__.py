@@ -1,2 +1,2 @@
-"""The run-time part of the embedded model: how it sees a drawing. Weights lie in `weights/`; how they were made, in
+"""The embedded model's run-time code: from a drawing to patches. The weights are in `weights/`, the training in
 research/."""

@@ -1,7 +1,7 @@
-"""A crash diagram as the model sees it: cropped, fitted to a grid of patches, thin lines kept dark.
+"""The embedded model's view of a crash diagram: cropped, fitted to a grid of patches, thin lines kept dark.
 
-Ink is averaged and then raised to a power below one, since a one-pixel line would fade away when a drawing of
-1300 pixels shrinks to 384. Needs Pillow and numpy only.
+Ink is averaged and then raised to a power below one, since a one-pixel line would disappear when a drawing of 1300
+pixels shrinks to 384. Needs Pillow and numpy only.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Which way is north in a drawing: a small convolutional network that looks for the north arrow.
+"""Finds the north arrow of a drawing with a small convolutional network.
 
-A model that cuts a drawing into patches hardly learns to read an arrow of fifteen pixels that may stand anywhere,
-and everything with a compass bearing hangs on it. Convolutions find it after a few minutes of training; the
-drawing is then turned by quarters until north is up, before the model sees it.
+A model that cuts a drawing into patches hardly learns to read an arrow of fifteen pixels at any place, and every
+compass bearing depends on it. Convolutions find it after a few minutes of training; the drawing is then turned by
+quarters until north is up, before the model gets it.
 
 `python -m research.training.train_north --out plugins/backbone/mini/weights` trains it on made drawings.
 """

@@ -1,9 +1,9 @@
 """The eye: a few convolutions between the pixels of a drawing and the patches of the vision tower.
 
-Patches cut from pixels learn slowly what lines are: a lane line may cross a patch anywhere. Convolutions know from the
-start that a line is a line wherever it lies; with them the vision tower learned as much from 9,000 drawings as it had
-from 100,000. The tower stays that of the architecture: what the eye gives are "pictures" of many channels, cut into
-patches of 3 x 3 cells, so that model and loader see a Qwen2.5-VL. The eye lies beside the weights, trained with them.
+A lane line may cross a patch anywhere, so a model that gets patches of pixels learns lines slowly. Convolutions do not
+depend on the place; with them the vision tower learned as much from 9,000 drawings as from 100,000 without. The tower
+is unchanged: the eye gives "pictures" of many channels, cut into patches of 3 x 3 cells, so that model and loader see a
+Qwen2.5-VL. The eye is trained with the weights and stored beside them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SIDE = drawing_view.PATCH // CELL
 """Cells along a patch."""
 WIDTH = 64
 CHANNELS = WIDTH + 2
-"""What a cell is given: what the eye saw there, and its place."""
+"""Channels of a cell: the eye's features and the cell's place."""
 FILE = "eye.safetensors"
 
 
@@ -65,7 +65,7 @@ class Eye(nn.Module):
 
 
 class Sight:
-    """What stands between a drawing and the vision tower: the north finder, if there is one, and the eye."""
+    """The steps between a drawing and the vision tower: the north finder, if there is one, and the eye."""
 
     def __init__(self, eye: Eye, finder: north_arrow.NorthFinder | None = None) -> None:
         self.eye, self.finder = eye, finder
@@ -82,13 +82,13 @@ class Sight:
 
 
 def save(eye: Eye, folder: Path) -> None:
-    """Write the eye, in bf16, beside a model's weights."""
+    """Writes the eye, in bf16, beside a model's weights."""
     weights = {k: v.detach().to("cpu", torch.bfloat16).contiguous() for k, v in eye.state_dict().items()}
     save_file(weights, folder / FILE)
 
 
 def load(folder: Path) -> Sight:
-    """Eye and north finder of a folder of weights, in fp32. Raises FileNotFoundError where there is no eye."""
+    """Eye and north finder of a folder of weights, in fp32. Raises FileNotFoundError if the folder has no eye."""
     if not (folder / FILE).is_file():
         raise FileNotFoundError(
             f"{folder} has no {FILE}, without which this model sees no drawing; take the whole folder that training "

@@ -1,4 +1,4 @@
-"""What the `lancedb` retriever knows and how it keeps it: sources of chunks, embedders, the index on disk.
+"""The knowledge base of the `lancedb` retriever: sources of chunks, embedders, the index on disk.
 
 Private to the retriever kind. Knows no prompt, no writer and no flow.
 """

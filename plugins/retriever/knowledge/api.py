@@ -1,7 +1,7 @@
 """scenariogeneration's API as chunks, read from the installed package by introspection.
 
-One chunk a public class, function or enumeration of `xosc` and `xodr`: signature, what its docstring says
-of it and its parameters, public methods. Imports the library when asked (0.5 to 1 s). Knows no database.
+One chunk for each public class, function or enumeration of `xosc` and `xodr`: signature, docstring with parameters,
+public methods. Imports the library at the first call (0.5 to 1 s). Knows no database.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from plugins.retriever.knowledge.chunk import Chunk, Task
 
 MODULES: dict[str, tuple[Task, ...]] = {"xosc": ("scenario",), "xodr": ("road",)}
 _HELPERS = ("get_", "convert_", "enum", "are_", "is_", "find_", "merge_")
-"""Beginnings of functions that serve the package itself."""
+"""Prefixes of functions that only the package itself uses."""
 _DULL = {"parse", "get_element", "get_attributes", "get_header"}
 _NOISE = (
     (re.compile(r"scenariogeneration(\.\w+)*\.|typing\.|datetime\.(?=datetime)"), ""),
@@ -79,7 +79,7 @@ def _method(name: str, function: Any) -> str:
 
 
 def signature(name: str, item: Any) -> str:
-    """`name(parameters) -> type` with the package's own paths and addresses taken out."""
+    """`name(parameters) -> type` without the package's paths and memory addresses."""
     try:
         text = str(inspect.signature(item))
     except (TypeError, ValueError):  # built in C
@@ -95,7 +95,7 @@ def _lead(item: Any) -> str:
 
 
 def _doc(item: Any) -> str:
-    """Docstring without what signature and methods say already."""
+    """The docstring's text with its parameters and return value, without what the signature shows."""
     pieces = _SECTION.split(inspect.getdoc(item) or "")
     sections = dict(zip(pieces[1::2], pieces[2::2], strict=True))
     kept = [" ".join(pieces[0].split())]

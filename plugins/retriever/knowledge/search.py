@@ -1,4 +1,6 @@
-"""Finding chunks: native full text and vectors, fused by reciprocal rank, filtered by kind and task.
+"""Search: LanceDB's full text and vectors, fused by weighted reciprocal rank, filtered by kind and task.
+
+LanceDB's own RRFReranker has no weights, so the fusion is computed here.
 
 Reads the version that index.json names. Knows no source of chunks and no plugin.
 """
@@ -18,9 +20,9 @@ from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
 
 RANK_CONSTANT = 10
-"""Of reciprocal rank fusion; Cormack, Clarke and Büttcher (2009) take 60, for lists of which more is read."""
+"""Constant of reciprocal rank fusion; Cormack, Clarke and Büttcher (2009) take 60, for longer result lists."""
 FULL_TEXT_WEIGHT = 1.5
-"""Against 1 for vectors: names and numbers decide here, and full text finds them more surely."""
+"""Weight against 1 for vectors: names and numbers decide, and full text finds them more reliably."""
 POOL = 30
 """Ranks of each list that are fused."""
 MAX_QUERY = 4000
@@ -41,10 +43,10 @@ class Hit(Record):
 
 
 class Index:
-    """An open index: one version of it, whatever is added meanwhile. Thread-safe."""
+    """One version of an index, opened; later additions do not change it. Thread-safe."""
 
     def __init__(self, folder: Path, embedder: Embedder | None) -> None:
-        """Raises ConfigError: no index there, broken, or vectors of another embedder."""
+        """Opens the index. Raises ConfigError if it is absent, broken, or has vectors of another embedder."""
         import lancedb
 
         self.manifest: Manifest = read_manifest(folder)
@@ -60,7 +62,7 @@ class Index:
             ) from fault
 
     def search(self, text: str, k: int, kinds: Sequence[Kind] = (), task: Task | None = None) -> list[Hit]:
-        """The k best chunks for a text, best first; none for a text without a word."""
+        """The k best chunks for a text, best first; an empty list for a text without a word."""
         text = text[:MAX_QUERY]
         if not _WORD.search(text):
             return []
@@ -86,7 +88,7 @@ class Index:
 
 
 def fuse(lists: Sequence[Sequence[str]], weights: Sequence[float]) -> dict[str, float]:
-    """Reciprocal rank fusion: sum over lists of weight / (10 + rank), ranks from 1; spare weights are passed over."""
+    """Reciprocal rank fusion: sum over lists of weight / (10 + rank), ranks from 1; extra weights are ignored."""
     scores: dict[str, float] = {}
     for found, weight in zip(lists, weights, strict=False):
         for rank, name in enumerate(found, 1):

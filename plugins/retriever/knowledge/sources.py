@@ -1,6 +1,6 @@
-"""Where chunks come from: what the project brings, and files that the user names.
+"""Sources of chunks: the project's own, and files that the user names.
 
-A file is an OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf) or chunks of the user's own (.jsonl).
+A file is an OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf) or holds the user's own chunks (.jsonl).
 Knows no database.
 """
 
@@ -13,21 +13,20 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from plugins.retriever.knowledge.chunk import Chunk
-from plugins.retriever.knowledge.junctions.osm import ENDINGS as OSM_ENDINGS
+from plugins.retriever.knowledge.osm_extract import ENDINGS as OSM_ENDINGS
 from sgcad_core.errors import ConfigError
 
 ENDINGS = (*OSM_ENDINGS, ".jsonl")
 
 OnSkip = Callable[[str, str], None]
-"""Told of what could not be taken in: its name and why."""
+"""Called with the name of each item that could not be used, and the reason."""
 
 
 def builtin_chunks() -> Iterator[Chunk]:
     """scenariogeneration's API, snippets, SUMO's XML, worked scenarios; about 550 chunks, 2 s."""
     from plugins.retriever.knowledge.api import api_chunks
-    from plugins.retriever.knowledge.examples import example_chunks
-    from plugins.retriever.knowledge.snippets.read_snippets import snippet_chunks
-    from plugins.retriever.knowledge.sumo_xml.xml_schema import xml_chunks
+    from plugins.retriever.knowledge.examples import example_chunks, snippet_chunks
+    from plugins.retriever.knowledge.sumo_schema import xml_chunks
 
     return chain(example_chunks(), snippet_chunks(), xml_chunks(), api_chunks())
 
@@ -37,7 +36,7 @@ def file_chunks(file: Path, on_skip: OnSkip) -> Iterator[Chunk]:
     check_file(file)
     if file.name.endswith(".jsonl"):
         return _jsonl(file)
-    from plugins.retriever.knowledge.junctions.junction_chunks import junction_chunks
+    from plugins.retriever.knowledge.junction_chunks import junction_chunks
 
     return junction_chunks(file, on_skip)
 

@@ -1,7 +1,7 @@
-"""The index on disk: one LanceDB table and `index.json`, which says what is in it and which version is whole.
+"""The index on disk: one LanceDB table and `index.json`, which names its content and its complete version.
 
-Readers open the version that index.json names, and it is written last, by rename: a build or an addition
-that was killed is never read. Knows no source of chunks and no plugin.
+Readers open the version that index.json names. That file is written last, by rename, so an interrupted build or
+addition is never read. Knows no source of chunks and no plugin.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ BATCH = 256
 VECTOR_INDEX_FROM = 20_000
 """Below this many rows an exact scan is as fast as an index."""
 Progress = Callable[[int], None]
-"""Told of every batch: chunks looked at since the last call."""
+"""Called after every batch with the number of chunks processed since the last call."""
 
 
 def build(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> Manifest:
-    """Write a whole new index beside `folder` and put it in its place. Raises ConfigError."""
+    """Writes a new index beside `folder`, then replaces the folder. Raises ConfigError."""
     import lancedb
 
     _check_place(folder)
@@ -55,7 +55,7 @@ def build(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, prog
 
 
 def add(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> Manifest:
-    """Add what is new or changed; without any, the index stays byte for byte. Raises ConfigError."""
+    """Adds new and changed chunks; without any, the index stays byte for byte. Raises ConfigError."""
     import lancedb
 
     with _locked(folder):
@@ -71,7 +71,7 @@ def add(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, progre
 
 
 def check_embedder(manifest: Manifest, name: str) -> None:
-    """Raises ConfigError where vectors would not be comparable."""
+    """Raises ConfigError if the index was built with another embedder: the vectors would not be comparable."""
     if manifest.embedder != name:
         raise ConfigError(
             f"the index was built with embedder {manifest.embedder or 'none'!r}, not {name or 'none'!r}; "
@@ -94,7 +94,7 @@ def _dimension(embedder: Embedder | None) -> int:
 
 
 def _write(table: Any, chunks: Iterable[Chunk], embedder: Embedder | None, progress: Progress) -> int:
-    """Append new chunks and replace changed ones, batch by batch; how many."""
+    """Appends new chunks and replaces changed ones, batch by batch; returns how many."""
     known = _known(table)
     written = 0
     for batch in _batches(chunks):
@@ -111,7 +111,7 @@ def _write(table: Any, chunks: Iterable[Chunk], embedder: Embedder | None, progr
 
 
 def _known(table: Any) -> dict[str, str]:
-    """id -> digest of what is there: 100 bytes a chunk."""
+    """Digests of the stored chunks by id; 100 bytes for each chunk."""
     found = table.search().select(["id", "digest"]).limit(None).to_arrow()
     return dict(zip(found["id"].to_pylist(), found["digest"].to_pylist(), strict=True))
 
@@ -183,7 +183,7 @@ def _write_json(file: Path, value: dict[str, Any]) -> None:
 
 
 def _check_place(folder: Path) -> None:
-    """Never put an index in the place of something else."""
+    """Raises ConfigError if the folder holds something other than an index."""
     if folder.exists() and not (folder / MANIFEST).is_file() and (not folder.is_dir() or any(folder.iterdir())):
         raise ConfigError(f"--out {folder}: holds something that is no index; choose another folder")
 

@@ -1,5 +1,5 @@
-"""Runs Python that a model wrote, never in our process: `outside.run_script` is the near end.
+"""Runs Python that a model wrote, never in this process: `script_runner.run_script` is the entry.
 
-`inside` is the far end, `rules` what it reads before it runs anything, `confine` the walls it puts up, `modules`
-the little world that a script sees.
+`script_process` runs in the other process, `script_rules` checks a script before it runs, `isolation` confines the
+process, `script_modules` are the modules that a script can import.
 """

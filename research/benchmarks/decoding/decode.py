@@ -21,8 +21,9 @@ import torch
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
 from plugins.backbone.engine.check import reference
+from plugins.backbone.engine.faults import EngineFault
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import Answer, EngineFault, Prompt, Request
+from plugins.backbone.engine.records import Answer, Prompt, Request
 from research.benchmarks.decoding import decode_setup as setup
 from research.benchmarks.decoding import decode_table as table
 

@@ -204,10 +204,10 @@ class Language:
 def language(vocabulary: int) -> Language:
     """An ordinary byte-level BPE, filled up with unreached words to the vocabulary's size."""
     try:
-        from plugins.backbone.engine.grammar import GrammarMaker
+        from plugins.backbone.engine.grammar import GrammarCompiler
 
         tokenizer = _tokenizer(vocabulary)
-        maker = GrammarMaker(tokenizer, vocabulary, [2])
+        maker = GrammarCompiler(tokenizer, vocabulary, [2])
     except ImportError:
         return Language(vocabulary, None, words(160, 5), words(160, 5))
     spelled = [tokenizer(json.dumps(a, separators=(",", ":")))["input_ids"] for a in (ANSWER, MENDED)]

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT))
 
 from plugins.retriever.knowledge.chunk import Chunk  # noqa: E402
-from plugins.retriever.knowledge.junctions.junction_chunks import junction_chunks  # noqa: E402
+from plugins.retriever.knowledge.junction_chunks import junction_chunks  # noqa: E402
 from plugins.retriever.knowledge.sources import builtin_chunks  # noqa: E402
 from plugins.retriever.lancedb import LanceDB  # noqa: E402
 from sgcad_core.case.records import PlainXml  # noqa: E402

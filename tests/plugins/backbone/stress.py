@@ -15,9 +15,10 @@ import sys
 from collections import Counter
 from typing import Any
 
-from plugins.backbone.engine.grammar import Grammar, GrammarMaker
+from plugins.backbone.engine.faults import DoesNotFit
+from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import DoesNotFit, Prompt, Request
+from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
@@ -132,7 +133,7 @@ _KINDS: dict[str, Any] = {
 }  # fmt: skip
 
 
-def request(maker: GrammarMaker, wanted: dict[str, Any], rng: random.Random) -> tuple[Request, Grammar]:
+def request(maker: GrammarCompiler, wanted: dict[str, Any], rng: random.Random) -> tuple[Request, Grammar]:
     """A random prompt, decoder, draft and limit for a schema. Raises DoesNotFit if nothing can meet it."""
     grammar = maker.grammar(wanted)
     decoder = rng.choice(DECODERS)
@@ -150,7 +151,7 @@ def request(maker: GrammarMaker, wanted: dict[str, Any], rng: random.Random) -> 
 def stress(count: int, first_seed: int = 0) -> tuple[Counter[str], list[str]]:
     """Run `count` random cases, 16 at once: how they ended, and every broken promise."""
     model, family = tiny.build("text_only")
-    maker = GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2])
+    maker = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
     engine = Engine(model, family, reports_at_once=16)
     ends: Counter[str] = Counter()
     broken: list[str] = []

@@ -12,7 +12,7 @@ import torch
 
 from plugins.backbone.engine.check import batching, reference
 from plugins.backbone.engine.families import Family
-from plugins.backbone.engine.grammar import Grammar, GrammarMaker, allowed
+from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, allowed
 from plugins.backbone.engine.loop import Engine
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
@@ -51,8 +51,8 @@ def model_of(name: str) -> tuple[Any, Family, bool]:
 
 
 @cache
-def maker() -> GrammarMaker:
-    return GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2])
+def maker() -> GrammarCompiler:
+    return GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
 
 
 def plain_loop(name: str, rows: tuple[Prompt, Prompt], decoder: Decoder, limit: int, grammar: Grammar | None) -> Any:
@@ -174,10 +174,10 @@ def test_alpha_zero_equals_generate_token_for_token(name: str) -> None:
     _, answers, _ = run(name, 1, Cad(alpha=0.0), 12)
     assert answers[0].ids == run(name, 1, Greedy(), 12)[1][0].ids
     from plugins.backbone.engine.check import _forget_positions
-    from plugins.backbone.engine.families import raw_inputs
+    from plugins.backbone.engine.families import forward_inputs
 
     ids = torch.tensor([list(prompt.ids)])
-    inputs = raw_inputs(prompt.pictures)
+    inputs = forward_inputs(prompt.pictures)
     if family.dimensions > 1:
         inputs["mm_token_type_ids"] = ids.eq(tiny.IMAGE_TOKEN).int()
     if name == "mllama":

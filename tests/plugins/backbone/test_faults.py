@@ -11,9 +11,10 @@ import torch
 import transformers as tf
 
 from plugins.backbone.engine.families import Family, family_of
-from plugins.backbone.engine.grammar import Grammar, GrammarMaker, Track
+from plugins.backbone.engine.faults import BadLogits, BadScores, EngineFault, TooBig
+from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, GrammarState
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import Answer, BadLogits, BadScores, EngineFault, Prompt, Request, TooBig
+from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from plugins.decoder.nucleus import Nucleus
@@ -70,7 +71,7 @@ def alone(model: Any, family: Family, one: Request) -> Answer:
 
 
 def grammar() -> Grammar:
-    return GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(tiny.SCHEMA)
+    return GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(tiny.SCHEMA)
 
 
 def _raise(rows: torch.Tensor) -> Any:
@@ -175,17 +176,17 @@ def test_what_no_boundary_may_catch_ends_the_loop_and_every_wait() -> None:
 
 
 def test_a_grammar_that_raises_costs_its_own_report_alone() -> None:
-    class Breaks(Track):
+    class Breaks(GrammarState):
         def fill(self, row: Any) -> None:
             raise ValueError("the matcher is in an error state")
 
     class Bad(Grammar):
-        def track(self) -> Track:
+        def track(self) -> GrammarState:
             return Breaks(self)
 
     model, family = tiny.build("text_only")
     engine = Engine(model, family)
-    bad = Bad(GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2]), tiny.SCHEMA)
+    bad = Bad(GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2]), tiny.SCHEMA)
     futures = [engine.submit(request(family, i, grammar=g, tokens=90)) for i, g in enumerate((bad, grammar()))]
     with pytest.raises(ValueError, match="the matcher is in an error state"):
         futures[0].result(WAIT_S)

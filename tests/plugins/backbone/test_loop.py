@@ -11,9 +11,10 @@ import transformers as tf
 
 from plugins.backbone.engine.check import batching
 from plugins.backbone.engine.families import Family, family_of
-from plugins.backbone.engine.grammar import GrammarMaker
+from plugins.backbone.engine.faults import DoesNotFit, EngineFault, TooBig, TooLong, WrongBatch
+from plugins.backbone.engine.grammar import GrammarCompiler
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import DoesNotFit, EngineFault, Prompt, Request, TooBig, TooLong, WrongBatch
+from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from sgcad_core.interfaces import Decoder
@@ -87,7 +88,7 @@ def test_memory_running_out_halves_the_batch_and_loses_nothing() -> None:
 
 def test_memory_running_out_in_the_middle_keeps_grammar_draws_and_log_probabilities() -> None:
     model, family = built(Cramped)
-    grammar = GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(tiny.SCHEMA)
+    grammar = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(tiny.SCHEMA)
     decoder = Cad(temperature=1.0)
     with_, without = tiny.prompts("text_only", family, 1)
     late = Request(with_, without, decoder, grammar, 5, 90, EOS)
@@ -202,7 +203,7 @@ def test_a_dead_end_names_the_field() -> None:
 
     from llguidance import TokenizerWrapper
 
-    maker = GrammarMaker(LLTokenizer(TokenizerWrapper(Words()), n_vocab=tiny.VOCABULARY), tiny.VOCABULARY, [256])
+    maker = GrammarCompiler(LLTokenizer(TokenizerWrapper(Words()), n_vocab=tiny.VOCABULARY), tiny.VOCABULARY, [256])
     lanes = {"type": "object", "properties": {"lanes": {"type": "integer"}}, "required": ["lanes"]}
     model, family = tiny.build("text_only")
     with_, without = tiny.prompts("text_only", family, 0)

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plugins.backbone.engine.cache import SlotCache, Window
-from plugins.backbone.engine.draft import Draft
-from plugins.backbone.engine.grammar import GrammarMaker, allowed, choices, collisions, only
+from plugins.backbone.engine.faults import DoesNotFit
+from plugins.backbone.engine.grammar import GrammarCompiler, allowed, choice_counts, collisions, single_choices
+from plugins.backbone.engine.job import Draft
 from plugins.backbone.engine.prefix import SHORTEST, PrefixStore, prompt_key
-from plugins.backbone.engine.records import DoesNotFit
 from tests.plugins.backbone import tiny
 
 torch.set_num_threads(1)
@@ -133,7 +133,7 @@ def test_a_draft_guesses_further_after_success_and_less_after_failure() -> None:
 def test_a_mask_unpacks_to_the_tokens_it_holds(bits: list[bool]) -> None:
     mask = np.packbits(np.array([*bits, *[False] * 26]), bitorder="little").view(np.int32)[None]
     assert allowed(mask, 70, torch.device("cpu"))[0].tolist() == bits
-    assert choices(mask).tolist() == [sum(bits)]
+    assert choice_counts(mask).tolist() == [sum(bits)]
 
 
 @given(st.lists(st.integers(0, 319), min_size=1, max_size=9))
@@ -142,11 +142,11 @@ def test_the_only_token_of_a_mask_is_read_off_it(tokens: list[int]) -> None:
     mask = np.zeros((len(tokens), 10), np.uint32)
     for row, token in enumerate(tokens):
         mask[row, token // 32] = np.uint32(1) << np.uint32(token % 32)
-    assert only(mask.view(np.int32)).tolist() == tokens
+    assert single_choices(mask.view(np.int32)).tolist() == tokens
 
 
 def test_a_schema_is_compiled_once() -> None:
-    maker = GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2])
+    maker = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
     assert maker.grammar(tiny.SCHEMA) is maker.grammar(dict(tiny.SCHEMA))
 
 
@@ -160,7 +160,7 @@ def test_a_schema_is_compiled_once() -> None:
     ],
 )
 def test_a_schema_that_cannot_be_met_names_the_innermost_part_at_fault(part: dict[str, Any], path: str) -> None:
-    maker = GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2])
+    maker = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
     schema = {"type": "object", "properties": {"ok": {"type": "null"}, "a": part}, "required": ["ok", "a"]}
     with pytest.raises(DoesNotFit, match=rf"no answer can meet the schema at {path}: "):
         maker.grammar(schema)

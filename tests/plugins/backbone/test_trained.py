@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plugins.backbone.engine.check import reference
-from plugins.backbone.engine.grammar import Grammar, GrammarMaker, allowed
+from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, allowed
 from plugins.backbone.engine.loop import Engine
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.adacad import AdaCad
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def grammar() -> Grammar:
-    return GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(trained.SCHEMA)
+    return GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2]).grammar(trained.SCHEMA)
 
 
 def nothing() -> Prompt:

@@ -14,7 +14,7 @@ from plugins.backbone.engine.check import reference
 from plugins.backbone.engine.loop import Engine
 from plugins.backbone.engine.records import Prompt, Request
 from plugins.backbone.engine.scoring import averaged
-from plugins.backbone.hf_load import moved
+from plugins.backbone.hf_load import shifted_view
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
@@ -118,7 +118,7 @@ def test_every_view_is_a_picture_of_its_own(folder: Path) -> None:
 
 def test_a_moved_picture_is_whole_and_lies_elsewhere_in_every_view() -> None:
     picture = Image.new("RGB", (100, 50), "black")
-    views = [moved(picture, view) for view in range(5)]
+    views = [shifted_view(picture, view) for view in range(5)]
     assert views[0] is picture
     boxes = set()
     for view in views[1:]:

@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,11 +11,10 @@ from lxml import etree
 
 from plugins.retriever.knowledge.api import api_chunks
 from plugins.retriever.knowledge.embedders import MINILM_PACKAGE, check_digest, make, minilm_folder
-from plugins.retriever.knowledge.examples import examples
-from plugins.retriever.knowledge.snippets.read_snippets import snippet_chunks, snippet_functions
+from plugins.retriever.knowledge.examples import examples, snippet_chunks
 from plugins.retriever.knowledge.sources import builtin_chunks
-from plugins.retriever.knowledge.sumo_xml.xml_schema import examples as xml_examples
-from plugins.retriever.knowledge.sumo_xml.xml_schema import xml_chunks
+from plugins.retriever.knowledge.sumo_schema import examples as xml_examples
+from plugins.retriever.knowledge.sumo_schema import xml_chunks
 from plugins.simulator.kinematic import Kinematic
 from sgcad_core import settings as paths
 from sgcad_core.errors import MissingTool
@@ -23,7 +23,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.roads.layout import road_spec
 
-SNIPPETS = snippet_functions()
+SNIPPETS = {chunk.id.removeprefix("snippet/"): chunk.text for chunk in snippet_chunks()}
 needs_minilm = pytest.mark.skipif(importlib.util.find_spec(MINILM_PACKAGE) is None, reason="needs the extra 'minilm'")
 
 
@@ -45,11 +45,14 @@ def test_the_api_is_that_of_the_installed_package():
 
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_a_snippet_runs_as_it_is_shown(name):
-    shown = next(c for c in snippet_chunks() if c.id == f"snippet/{name}").text
-    module = "snippets.road_snippets" if SNIPPETS[name][1] == ("road",) else "snippets.scenario_snippets"
-    scope = dict(vars(importlib.import_module(f"plugins.retriever.knowledge.{module}")))
-    exec(shown, scope)  # noqa: S102 - the project's own text
-    assert etree.tostring(etree.fromstring(xml_of(scope["result"])))
+    assert etree.tostring(etree.fromstring(xml_of(result_of(name))))
+
+
+def result_of(name):
+    """What a snippet leaves in `result`; snippets that it calls by name are run the same way."""
+    scope = {other: partial(result_of, other) for other in SNIPPETS}
+    exec(SNIPPETS[name], scope)  # noqa: S102 - the project's own text
+    return scope["result"]
 
 
 def xml_of(item):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from plugins.retriever.lancedb import LanceDB
-from plugins.road_writer._maps import library
+from plugins.road_writer._map_search import library
 from plugins.road_writer.map_library import MapLibrary
 from plugins.road_writer.osm_direct import OsmDirect
 from plugins.road_writer.template import Template

@@ -35,7 +35,7 @@ RULED = {
     "import runpy": "import runpy\nrunpy.run_path('{secret}')",
     "import marshal": "import marshal\nmarshal.loads(b'')",
     "import our package": "from sgcad_core import settings",
-    "import the sandbox": "from plugins.scenario_writer.sandbox import confine",
+    "import the sandbox": "from plugins.scenario_writer.sandbox import isolation",
     "import xodr": "from scenariogeneration import xodr",
     "import esmini": "from scenariogeneration import esmini",
     "import relative": "from . import os",

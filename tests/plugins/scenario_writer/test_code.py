@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from plugins.scenario_writer.api import nearest_entry
+from plugins.scenario_writer._api_hint import nearest_entry
+from plugins.scenario_writer._network_words import lane_lines
 from plugins.scenario_writer.code import Code
-from plugins.scenario_writer.lanes import lane_lines
 from plugins.simulator.kinematic import Kinematic
 from plugins.validator.openscenario import OpenScenario
 from sgcad_core.case.records import Context, CrashReport, Evidence, Generation, Passage, RoadNetwork

@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 import psutil
 import pytest
 
-from plugins.scenario_writer.sandbox import outside
-from plugins.scenario_writer.sandbox.outside import Limits, run_script
-from plugins.scenario_writer.sandbox.rules import breaches, parsed
+from plugins.scenario_writer.sandbox import script_runner
+from plugins.scenario_writer.sandbox.script_rules import breaches, parsed
+from plugins.scenario_writer.sandbox.script_runner import Limits, run_script
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 from tests.plugins.scenario_writer.escapes import RAW, RULED
@@ -33,7 +33,7 @@ def bait(tmp_path, monkeypatch):
     Its processes carry a mark in their command lines, which forks keep: other tests may run scripts meanwhile.
     """
     mark = f"# of {tmp_path}"
-    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n{mark}")
+    monkeypatch.setattr(script_runner, "_BOOT", f"{script_runner._BOOT}\n{mark}")
     secret, canary = tmp_path / "secret.txt", tmp_path / "canary.txt"
     secret.write_text("the-secret")
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -53,7 +53,7 @@ def running(mark):
 
 
 def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
-    monkeypatch.setattr(outside, "_BOOT", f"{outside._BOOT}\n# of {tmp_path}")
+    monkeypatch.setattr(script_runner, "_BOOT", f"{script_runner._BOOT}\n# of {tmp_path}")
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(
             run_script, "import time\ntime.sleep(60)\n", dataclasses.replace(TIGHT, wall_s=2.0), unchecked=True
@@ -169,8 +169,8 @@ def test_a_scripts_own_private_attributes_are_its_own():
 @pytest.fixture
 def no_namespaces(monkeypatch):
     """A system that lets nobody unshare, as seen from inside."""
-    denied = "import plugins.scenario_writer.sandbox.confine as c; c.isolate = lambda channels: False; "
-    monkeypatch.setattr(outside, "_BOOT", outside._BOOT.replace("from plugins", f"{denied}from plugins", 1))
+    denied = "import plugins.scenario_writer.sandbox.isolation as c; c.isolate = lambda channels: False; "
+    monkeypatch.setattr(script_runner, "_BOOT", script_runner._BOOT.replace("from plugins", f"{denied}from plugins", 1))
 
 
 def test_without_a_namespace_nothing_runs_unless_it_is_allowed(no_namespaces):

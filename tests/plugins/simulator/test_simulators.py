@@ -23,7 +23,7 @@ from sgcad_core.roads.layout import road_spec
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
 
 K = np.arange(120)
-REPLAY = "_sumo_replay:replay"
+REPLAY = "replay"
 BOTH = [Kinematic(), LibSumo()]
 
 

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from plugins.tracker import mlflow_ready
+from plugins.tracker import mlflow_database
 from plugins.tracker.mlflow import MlflowTracker
 from sgcad_core.errors import ConfigError
 
@@ -44,7 +44,7 @@ def test_a_file_that_is_no_database_is_named(tmp_path):
 
 
 def test_a_database_that_another_program_holds_is_named_in_time(database, tmp_path, monkeypatch):
-    monkeypatch.setattr(mlflow_ready, "LOCKED_S", 0.2)
+    monkeypatch.setattr(mlflow_database, "LOCKED_S", 0.2)
     holder = sqlite3.connect(database, isolation_level=None)
     holder.execute("BEGIN EXCLUSIVE")
     started = time.monotonic()
@@ -55,7 +55,7 @@ def test_a_database_that_another_program_holds_is_named_in_time(database, tmp_pa
 
 
 def test_a_database_that_may_not_be_written_is_named(database, tmp_path, monkeypatch):
-    monkeypatch.setattr(mlflow_ready.os, "access", lambda *_: False)  # root may write everywhere
+    monkeypatch.setattr(mlflow_database.os, "access", lambda *_: False)  # root may write everywhere
     with pytest.raises(ConfigError, match=r"cannot be written; make it writable"):
         MlflowTracker().ready(tmp_path)
 
@@ -63,8 +63,8 @@ def test_a_database_that_may_not_be_written_is_named(database, tmp_path, monkeyp
 @pytest.mark.parametrize("fault", [OSError(errno.ENOSPC, "No space left on device"),
                                    sqlite3.OperationalError("database or disk is full")])  # fmt: skip
 def test_a_full_disk_is_told_as_one(fault):
-    assert mlflow_ready.reason(fault) == "there is no room left on the disk"
-    assert mlflow_ready.remedy(fault) == "make room"
+    assert mlflow_database.reason(fault) == "there is no room left on the disk"
+    assert mlflow_database.remedy(fault) == "make room"
 
 
 def test_a_server_that_is_not_there_is_found_at_once(tmp_path):
@@ -78,7 +78,7 @@ def test_a_server_that_is_not_there_is_found_at_once(tmp_path):
 
 def test_looking_imports_no_mlflow(database, tmp_path):
     code = (
-        "import sys; from pathlib import Path; from plugins.tracker.mlflow_ready import check_file\n"
+        "import sys; from pathlib import Path; from plugins.tracker.mlflow_database import check_file\n"
         f"check_file(Path({str(database)!r})); print('mlflow' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

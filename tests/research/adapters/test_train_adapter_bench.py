@@ -13,7 +13,7 @@ import torch
 
 from plugins.backbone import hf_gguf
 from plugins.backbone.engine.families import family_of
-from plugins.backbone.engine.grammar import GrammarMaker
+from plugins.backbone.engine.grammar import GrammarCompiler
 from plugins.backbone.hf_load import load
 from plugins.backbone.hf_prompt import Prompter
 from research.adapters.gist_heard import GistListener, likeliest
@@ -65,7 +65,7 @@ def said(spelling: GistSpelling, rng: Random) -> dict[str, str]:
 
 def _agrees_with_the_grammar(tokenizer: Any, vocabulary: int) -> None:
     spelling = GistSpelling(tokenizer)
-    grammar = GrammarMaker(tokenizer, vocabulary, [2]).grammar(answer_schema(Gist, refusal=False))
+    grammar = GrammarCompiler(tokenizer, vocabulary, [2]).grammar(answer_schema(Gist, refusal=False))
     for seed in range(40):
         answer, track = said(spelling, Random(seed)), grammar.track()
         forced = track.forced()

@@ -7,14 +7,14 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from plugins.backbone.engine.grammar import Grammar, GrammarMaker
+from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
 from sgcad_core.asking.prompts import answer_schema
 from sgcad_core.asking.schema_holds import narrowed
 from sgcad_core.case.records import Hold
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout
 from tests.plugins.backbone import tiny
 
-MAKER = GrammarMaker(tiny.tokenizer(), tiny.VOCABULARY, [2])
+MAKER = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
 OTHERS = ("V1", "V2", "V3", "P1", "O1")
 TURNS_LEFT = Hold(items="actors", key="id", values=("V1",), others=OTHERS, either=({"maneuver": ("turn_left",)},))
 FROM_SOUTH = Hold(

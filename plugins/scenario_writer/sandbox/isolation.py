@@ -36,11 +36,11 @@ _ARCHITECTURES: Mapping[str, tuple[int, frozenset[int]]] = {
 
 
 def isolate(channels: Sequence[int]) -> bool:
-    """Go on in fresh namespaces, without network; False where the system does not let us.
+    """Continues in new namespaces, without network; False if the system does not allow it.
 
-    The caller's process stays behind without the `channels` (descriptors) and ends as its child ends: by exit code,
-    128 + signal for a death. So does process 1, whose end takes all others of its namespace along (and which no
-    limit's signal would end).
+    The caller's process waits without the `channels` (descriptors) and ends as its child ends: by exit code, 128 +
+    signal for a death. So does process 1, whose end also ends all others of its namespace (and which no limit's signal
+    would end).
     """
     if not sys.platform.startswith("linux"):
         return False
@@ -63,7 +63,7 @@ def _end_like(child: int, channels: Sequence[int]) -> None:
 
 
 def shut_in(folder: str) -> bool:
-    """Make an empty folder the root of all paths; False where the system does not let us."""
+    """Makes an empty folder the root of all paths; False if the system does not allow it."""
     try:
         os.chroot(folder)
     except (OSError, AttributeError):
@@ -73,7 +73,7 @@ def shut_in(folder: str) -> bool:
 
 
 def limit(cpu_s: int, memory_mb: int) -> None:
-    """Resource limits: processor seconds, address space; no files, no processes, no core dumps."""
+    """Sets resource limits: processor seconds, address space; no files, no processes, no core dumps."""
     memory = memory_mb << 20
     for what, soft, hard in (
         (resource.RLIMIT_CPU, cpu_s, cpu_s + 1),
@@ -87,7 +87,7 @@ def limit(cpu_s: int, memory_mb: int) -> None:
 
 
 def filter_calls() -> bool:
-    """Leave only system calls that compute; all others answer EPERM. False where there is no filter for us."""
+    """Allows only system calls that compute; all others answer EPERM. False if there is no filter for this machine."""
     known = _ARCHITECTURES.get(platform.machine()) if sys.platform.startswith("linux") else None
     if known is None:
         return False
@@ -100,7 +100,7 @@ def filter_calls() -> bool:
 
 
 def _program(architecture: int, allowed: frozenset[int]) -> bytes:
-    """A BPF program: kill on a foreign architecture, allow what is listed, EPERM for the rest."""
+    """A BPF program: kill on another architecture, allow the listed calls, EPERM for the rest."""
     load, equal, give = 0x20, 0x15, 0x06
     lines = [(load, 0, 0, 4), (equal, 1, 0, architecture), (give, 0, 0, _KILL), (load, 0, 0, 0)]
     numbers = sorted(allowed)

@@ -1,4 +1,7 @@
-"""A road network's lanes in coordinates, for a model that places actors itself. Knows no prompt and no crash."""
+"""A road network in words: its lanes in coordinates, or its SUMO edges, for models that write code or routes.
+
+Knows no prompt and no crash.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
+from sgcad_core.roads.describe import compass
 from sgcad_core.roads.lane_graph import Connection, Edge, Floats, LaneGraph
 
 MOST_POINTS = 5
@@ -43,3 +47,20 @@ def _points(line: Floats) -> str:
 def _heading(line: Floats) -> float:
     first, second = line[0], line[1]
     return math.atan2(second[1] - first[1], second[0] - first[0])
+
+
+def edge_lines(graph: LaneGraph) -> str:
+    """One line an edge: lanes, length, heading, and where each lane leads."""
+    return "\n".join(_edge_line(edge, graph) for edge in graph.edges.values() if edge.car_lanes)
+
+
+def _edge_line(edge: Edge, graph: LaneGraph) -> str:
+    shape, length = edge.lanes[0].shape, edge.lanes[0].length_m
+    heading = compass(math.atan2(*(shape[-1] - shape[0])[::-1]))
+    count = len(edge.lanes)
+    ways: dict[str, list[int]] = {}
+    for way in graph.leaving(edge.id):
+        ways.setdefault(f"{way.to_edge} ({way.direction})", []).append(way.from_lane)
+    onward = "; ".join(f"{to} from lane {', '.join(map(str, sorted(set(lanes))))}" for to, lanes in ways.items())
+    counted = f"{count} lane{'s' if count > 1 else ''}"
+    return f"- edge {edge.id}: heads {heading}, {counted}, {length:.0f} m; leads to {onward or 'nothing'}"

@@ -1,7 +1,7 @@
-"""The far end: puts up the walls and says so, reads the rules, runs one script, answers one JSON object.
+"""The sandbox's process: confines itself and reports that, checks the rules, runs one script, answers one JSON object.
 
-The script must leave an `xosc.Scenario` in its variable `scenario`. Nothing of the script is even parsed before
-the walls stand. Runs once and ends; knows nothing of the project.
+The script must leave an `xosc.Scenario` in its variable `scenario`. No part of the script is parsed before the
+confinement is in place. Runs once and ends; knows nothing of the project.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import xml.etree.ElementTree as ET
 from types import ModuleType
 from typing import Any
 
-from plugins.scenario_writer.sandbox import confine
-from plugins.scenario_writer.sandbox.modules import fronts, script_builtins
-from plugins.scenario_writer.sandbox.rules import breaches, parsed
+from plugins.scenario_writer.sandbox import isolation
+from plugins.scenario_writer.sandbox.script_modules import fronts, script_builtins
+from plugins.scenario_writer.sandbox.script_rules import breaches, parsed
 
 Json = dict[str, Any]
 MAX_XML = 5_000_000
@@ -25,17 +25,17 @@ RECURSION = 400
 
 
 def main(site: str, status: int) -> None:
-    """Serve the job on standard input, then end. `status` is the descriptor on which the walls are told."""
+    """Runs the job on standard input, then ends. `status` is the descriptor that reports the confinement."""
     job: Json = json.loads(sys.stdin.buffer.read())
     os.close(0)
-    own = confine.isolate((1, 2, status))
+    own = isolation.isolate((1, 2, status))
     if not own and not job["allow_without_namespace"]:
         _tell(status, isolated=False)
         os._exit(0)
     modules = fronts(site)
-    walls = {"namespaces": own, "root": own and confine.shut_in(job["folder"])}
-    confine.limit(job["cpu_s"], job["memory_mb"])
-    walls["calls"] = confine.filter_calls()
+    walls = {"namespaces": own, "root": own and isolation.shut_in(job["folder"])}
+    isolation.limit(job["cpu_s"], job["memory_mb"])
+    walls["calls"] = isolation.filter_calls()
     _tell(status, isolated=True, walls=[name for name, up in walls.items() if up])
     printed: list[str] = []
     secret = job.pop("secret").encode()
@@ -48,7 +48,7 @@ def main(site: str, status: int) -> None:
 
 
 def _tell(status: int, **what: object) -> None:
-    """Say what stands and close the channel: nothing that runs later can say it again."""
+    """Reports the confinement and closes the channel, so that nothing that runs later can report it again."""
     _write(status, json.dumps(what).encode())
     os.close(status)
 
@@ -70,7 +70,7 @@ def _run(source: str, modules: dict[str, ModuleType] | Any, printed: list[str]) 
 
 
 def _unchecked(source: str) -> Json:
-    """Run with every builtin and module at hand: what the walls hold when the rules are not asked."""
+    """Runs with every builtin and module, to test the confinement without the rules."""
     space: Json = {"__name__": "__main__"}
     exec(compile(source, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
     return {"ok": True, "xosc": str(space.get("found", ""))}

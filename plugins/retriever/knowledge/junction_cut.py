@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from plugins.retriever.knowledge.junctions.plain_graph import PlainEdge, PlainGraph, Point
+from plugins.retriever.knowledge.plain_graph import PlainEdge, PlainGraph, Point
 from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput
 
@@ -32,7 +32,7 @@ class Cut(NamedTuple):
 
 
 def cut(graph: PlainGraph, node: str) -> Cut:
-    """Cut out a junction and its near neighbors. Raises InvalidOutput saying why it cannot be."""
+    """Cuts out a junction and its near neighbors. Raises InvalidOutput with the reason if that is not possible."""
     inner = _cluster(graph, node)
     names = {name: "hub" if i == 0 else f"hub{i + 1}" for i, name in enumerate(inner)}
     drawing = _Drawing(graph, names, graph.places[node])
@@ -65,7 +65,7 @@ class _Drawing:
         self.roads = 0
 
     def road(self, node: str, other: str) -> None:
-        """Draw both directions between a junction of the cut and a neighbor, once."""
+        """Draws both directions between a junction of the cut and a neighbor, once."""
         pair = [
             e for n in self.graph.touching[node]
             if {(e := self.graph.edges[n]).start, e.end} == {node, other} and n not in self.made
@@ -111,7 +111,7 @@ class _Drawing:
         return f'<node id="{name}" x="{x:.2f}" y="{y:.2f}" type={quoteattr(kind)}/>'
 
     def plain(self) -> PlainXml:
-        """The cut as it stands."""
+        """The three documents of the cut."""
         return PlainXml(
             nodes=f'<nodes {_XSD}/nodes_file.xsd">{"".join(self.nodes)}</nodes>',
             edges=f'<edges {_XSD}/edges_file.xsd">{"".join(self.edges)}</edges>',

@@ -1,4 +1,4 @@
-"""A library of maps that existed before any report: read, described by legs and lanes, searched.
+"""A library of existing maps: read, described by legs and lanes, searched for the one nearest to a layout.
 
 The maps that come with the project stand in maps.yaml as layouts; a folder of the user's holds .net.xml and .xodr
 files, which netconvert reads. Knows no narrative and no model.
@@ -46,19 +46,19 @@ class Map(NamedTuple):
 
 
 def library(folder: Path | None) -> tuple[Map, ...]:
-    """The maps of a folder, the project's own where none is named. Raises ConfigError, MissingTool."""
+    """The maps of a folder; the project's own if the folder is None. Raises ConfigError, MissingTool."""
     return _built_in() if folder is None else _folder(folder.resolve())
 
 
 def nearest(maps: Sequence[Map], wanted: RoadLayout) -> tuple[Map, float]:
-    """The map most like a layout, and how it has to be turned (radians); of equals the first."""
+    """The map nearest to a layout and the turn that fits it best (radians); of equally near maps the first."""
     found = [(_cost(m, wanted), i) for i, m in enumerate(maps)]
     chosen = maps[min(found)[1]]
     return chosen, _turn(chosen, wanted)[0]
 
 
 def compiled(chosen: Map, turn_rad: float) -> RoadNetwork:
-    """The map as a network, turned; its log begins with what it is."""
+    """The map as a network, turned; its log begins with the map's name, turn and description."""
     if chosen.layout is not None:
         layout = _turned(chosen.layout, turn_rad)
         spec = road_spec(layout)

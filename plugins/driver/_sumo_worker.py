@@ -1,7 +1,7 @@
-"""The far end of the SUMO driver: one vehicle that SUMO drives among others that are put where they are.
+"""The SUMO driver's worker process: one vehicle that SUMO drives among others that are put on their given places.
 
-Runs in a worker process, since libsumo may take its process along. An order a step comes in, the speed that SUMO chose
-goes out. SI units; headings counter-clockwise from east, points are box centers.
+libsumo may end its process. Each step an order comes in and the speed that SUMO chose goes out. SI units; headings
+counter-clockwise from east, points are box centers.
 """
 
 from __future__ import annotations
@@ -11,21 +11,18 @@ from xml.sax.saxutils import quoteattr
 
 import libsumo
 
-from plugins.driver._sumo_orders import Begin, Habits, Mover, Order, Place, Step
+from plugins.driver._sumo_messages import Begin, Habits, Mover, Order, Place, Step
+from plugins.sumo_session import AS_TOLD, QUIET, front_bumper, start, sumo_angle
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.system.temp_folders import scratch
 
-_OPTIONS = (
-    "--step-length", str(STEP_S), "--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never",
-    "--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true",
-)  # fmt: skip
+_OPTIONS = ("--collision.action", "none", *AS_TOLD, *QUIET, "--no-warnings", "true")
 EGO = "ego"
 _ON_ROUTE, _FREE = 1, 2
 _STRAYS_M = 2.0
 """A mover that SUMO puts this far from where it is has left the way that it was thought to go."""
 _OFF_LANES_M = 2.5
-"""Farther from the center of any lane nobody is in a lane."""
+"""A mover farther than this from the center of every lane is in no lane."""
 _ANYWHERE_M = 100.0
 _NO_LIMIT_MPS = 100.0
 
@@ -33,7 +30,7 @@ _free: set[str] = set()
 
 
 def obey(order: Order) -> float:
-    """Carry out one order; a step answers the ego's speed, m/s. Raises SimulationFailed with SUMO's words."""
+    """Carries out one order and returns the ego's speed, m/s. Raises SimulationFailed with SUMO's message."""
     try:
         if isinstance(order, Begin):
             _begin(order)
@@ -48,11 +45,7 @@ def obey(order: Order) -> float:
 
 def _begin(order: Begin) -> None:
     _free.clear()
-    with scratch("driver") as folder:
-        net, routes = folder / "road.net.xml", folder / "types.rou.xml"
-        net.write_text(order.net_xml, encoding="utf-8")
-        routes.write_text(_types(order.habits), encoding="utf-8")
-        libsumo.start(["sumo", "-n", str(net), "-r", str(routes), *_OPTIONS])
+    start(_OPTIONS, order.net_xml, _types(order.habits), STEP_S)
     libsumo.route.add(EGO, order.route)
     libsumo.vehicletype.setLength(EGO, order.ego.length_m)
     libsumo.vehicletype.setWidth(EGO, order.ego.width_m)
@@ -60,7 +53,7 @@ def _begin(order: Begin) -> None:
     libsumo.vehicle.setLaneChangeMode(EGO, 0)
     _put(EGO, order.ego, _ON_ROUTE)
     libsumo.simulationStep()
-    for lane in libsumo.lane.getIDList():  # the report's driver's speed, told step by step, is the only limit
+    for lane in libsumo.lane.getIDList():  # the speed of the report's driver, given step by step, is the only limit
         libsumo.lane.setMaxSpeed(lane, _NO_LIMIT_MPS)
 
 
@@ -87,7 +80,7 @@ def _step(order: Step) -> float:
         libsumo.vehicle.setPreviousSpeed(EGO, order.own_mps)  # what the tires allowed of the last answer
     libsumo.simulationStep()
     there = set(libsumo.vehicle.getIDList())
-    if EGO not in there:  # behind the end of its roads nobody is ahead
+    if EGO not in there:  # past the end of its roads no vehicle is ahead
         return order.free_mps
     for mover in order.movers:
         if mover.id in there and _on_route(mover) and _strays(mover):
@@ -113,7 +106,7 @@ def _add(mover: Mover) -> None:
 
 
 def _put(name: str, place: Place, keep: int) -> None:
-    angle = (90.0 - math.degrees(place.heading_rad)) % 360.0
+    angle = sumo_angle(place.heading_rad)
     near = _OFF_LANES_M if keep == _FREE else _ANYWHERE_M
     libsumo.vehicle.moveToXY(name, "", -1, *_front(place), angle=angle, keepRoute=keep, matchThreshold=near)
 
@@ -123,6 +116,4 @@ def _strays(mover: Mover) -> bool:
 
 
 def _front(place: Place) -> tuple[float, float]:
-    """The middle of the front bumper, SUMO's point of a vehicle."""
-    reach = place.length_m / 2
-    return place.x_m + reach * math.cos(place.heading_rad), place.y_m + reach * math.sin(place.heading_rad)
+    return front_bumper(place.x_m, place.y_m, place.heading_rad, place.length_m)

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from plugins.retriever.knowledge.chunk import Chunk
-from plugins.retriever.knowledge.junctions.cutting import Cut, cut
-from plugins.retriever.knowledge.junctions.osm import plain_of
-from plugins.retriever.knowledge.junctions.plain_graph import PlainGraph, read_plain
+from plugins.retriever.knowledge.junction_cut import Cut, cut
+from plugins.retriever.knowledge.osm_extract import plain_of
+from plugins.retriever.knowledge.plain_graph import PlainGraph, read_plain
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.roads.junction_words import JunctionLeg, describe, marks
@@ -26,11 +26,11 @@ CONTROLS = {
     "traffic_light": "signal", "traffic_light_right_on_red": "signal", "traffic_light_unregulated": "signal",
     "allway_stop": "all_way_stop", "priority_stop": "stop",
 }  # fmt: skip
-"""Others are not known: OpenStreetMap rarely says who yields."""
+"""Other types give no control: OpenStreetMap rarely tells which road yields."""
 
 
 def junction_chunks(extract: Path, on_skip: Callable[[str, str], None]) -> Iterator[Chunk]:
-    """A chunk of every junction of an extract; what cannot be cut is told with its reason."""
+    """A chunk for every junction of an extract; `on_skip` gets the name and the reason of each that cannot be cut."""
     with scratch("osm") as folder:
         graph = read_plain(*plain_of(extract, folder))
     source = extract.name.partition(".osm")[0]
@@ -56,7 +56,7 @@ def _chunk(graph: PlainGraph, node: str, source: str) -> Chunk:
 
 
 def legs_of(graph: PlainGraph, node: str) -> list[JunctionLeg]:
-    """One leg a neighboring node: direction of the road some 20 m out, lanes both ways."""
+    """One leg for each neighboring node: direction of the road some 20 m out, lanes both ways."""
     legs = []
     for other in graph.neighbors(node):
         edges = [graph.edges[name] for name in graph.touching[node]]

@@ -1,9 +1,9 @@
-"""The modules that a script can import: fronts that hold public names only, made before the walls go up.
+"""The modules that a script can import: fronts that hold public names only, made before the process is confined.
 
-A front keeps a script from walking out of a module through what that module itself imported. scenariogeneration's
-xosc is loaded without its package's __init__ and without the schema library, which nothing here needs: 0.1 s
-instead of 0.8 s. What turns a text into a name or into code is left out: dataclasses (which compile source made of
-field names), enumerations made by a call, and the library's parsers (which read attributes named in a file).
+A front prevents a script from reaching other modules through a module's own imports. scenariogeneration's xosc is
+loaded without its package's __init__ and without the schema library, which is not needed: 0.1 s instead of 0.8 s.
+Everything that turns a text into a name or into code is left out: dataclasses (which compile source made of field
+names), enumerations made by a call, and the library's parsers (which read attributes named in a file).
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
-from plugins.scenario_writer.sandbox.rules import ANY, BUILTINS, MODULES
+from plugins.scenario_writer.sandbox.script_rules import ANY, BUILTINS, MODULES
 
 _LIBRARY = "scenariogeneration"
 _UNUSED = ("xmlschema", "lxml", "lxml.etree", "venv")
-"""What xosc imports for reading and pretty-printing files, which a script does not do."""
+"""Modules that xosc imports for reading and pretty-printing files, which a script does not do."""
 MAX_PRINTED = 20_000
 
 

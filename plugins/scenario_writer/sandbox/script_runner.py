@@ -1,10 +1,10 @@
-"""The near end: a script goes over to a fresh interpreter and comes back as a scenario file or as one fault.
+"""Runs a script in a new interpreter and reads back a scenario file or one fault.
 
-The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its
-own that is killed as a whole. Two channels come back. *Status* says which walls stand: it is written before a line
-of the script is read and closed then, so a script cannot forge it. The *answer* is as untrusted as the script that
-may have written it: it is bounded, it opens with a secret of this run, and it is read by a strict model; one that
-does not fit is a fault of that script and of nothing else.
+The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its own
+that is killed as a whole. Two channels come back. *Status* names the walls (parts of the confinement) in place:
+it is written and closed before a line of the script is read, so a script cannot forge it. The *answer* is as untrusted
+as the script that may have written it: it is bounded, begins with a secret of this run, and is read by a strict model;
+an answer that does not fit is a fault of that script only.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ MAX_STATUS = 1_000
 Wall = Literal["namespaces", "root", "calls"]
 _BOOT = (
     "import sys; root, site, status = sys.argv[1:]; sys.path.append(root); "
-    "from plugins.scenario_writer.sandbox.inside import main; sys.path.append(site); main(site, int(status))"
+    "from plugins.scenario_writer.sandbox.script_process import main; sys.path.append(site); main(site, int(status))"
 )
 
 
@@ -73,7 +73,7 @@ class Ran:
 
 
 class _Strict(BaseModel):
-    """Read from bytes that anybody may have written."""
+    """A model that reads bytes from an untrusted source."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -129,15 +129,15 @@ def run_script(
             "source": source, "folder": str(folder), "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
             "allow_without_namespace": allow_without_namespace, "unchecked": unchecked, "secret": secret,
         }  # fmt: skip
-        heard, ended = _serve(job, str(folder), limits.wall_s)
-    status = _status(heard, ended)
+        channels, ended = _run_process(job, str(folder), limits.wall_s)
+    status = _status(channels, ended)
     if not status.isolated:
         raise ConfigError(
             "the sandbox needs a network namespace of its own and the system gives none; allow user namespaces "
             "(sysctl user.max_user_namespaces, a container's seccomp profile), or set "
             "scenario_writer.allow_without_namespace: true to rely on its other walls"
         )
-    ran = _read(heard, ended, limits, secret.encode())
+    ran = _ran(channels, ended, limits, secret.encode())
     return replace(ran, walls=status.walls, seconds=time.monotonic() - started)
 
 
@@ -151,8 +151,8 @@ def _site() -> str:
 
 # ------------------------------------------------------------------ the process
 @dataclass
-class _Heard:
-    """What the process wrote on each channel; `cut` is why we stopped listening."""
+class _Channels:
+    """What the process wrote on each channel; `cut` is why reading stopped early."""
 
     status: bytearray = field(default_factory=bytearray)
     said: bytearray = field(default_factory=bytearray)
@@ -160,7 +160,7 @@ class _Heard:
     cut: Literal["", "time", "flood"] = ""
 
 
-def _serve(job: dict[str, Any], folder: str, wall_s: float) -> tuple[_Heard, int]:
+def _run_process(job: dict[str, Any], folder: str, wall_s: float) -> tuple[_Channels, int]:
     """What it wrote and its exit code."""
     ours, theirs = os.pipe()
     try:
@@ -168,11 +168,11 @@ def _serve(job: dict[str, Any], folder: str, wall_s: float) -> tuple[_Heard, int
     finally:
         os.close(theirs)
     try:
-        heard = _hear(process, ours, time.monotonic() + wall_s)
+        channels = _read_channels(process, ours, time.monotonic() + wall_s)
     finally:
         os.close(ours)
         _kill(process)
-    return heard, process.returncode
+    return channels, process.returncode
 
 
 def _start(job: dict[str, Any], folder: str, status: int) -> subprocess.Popen[bytes]:
@@ -186,17 +186,17 @@ def _start(job: dict[str, Any], folder: str, status: int) -> subprocess.Popen[by
         )  # fmt: skip
 
 
-def _hear(process: subprocess.Popen[bytes], status: int, deadline: float) -> _Heard:
+def _read_channels(process: subprocess.Popen[bytes], status: int, deadline: float) -> _Channels:
     """Read all channels until they end, the time is over or there is too much on one."""
-    heard = _Heard()
+    channels = _Channels()
     with selectors.DefaultSelector() as selector:
-        selector.register(status, selectors.EVENT_READ, (heard.status, MAX_STATUS))
-        selector.register(process.stdout, selectors.EVENT_READ, (heard.said, MAX_ANSWER))  # type: ignore[arg-type]
-        selector.register(process.stderr, selectors.EVENT_READ, (heard.errors, MAX_ERRORS))  # type: ignore[arg-type]
-        while selector.get_map() and not heard.cut:
+        selector.register(status, selectors.EVENT_READ, (channels.status, MAX_STATUS))
+        selector.register(process.stdout, selectors.EVENT_READ, (channels.said, MAX_ANSWER))  # type: ignore[arg-type]
+        selector.register(process.stderr, selectors.EVENT_READ, (channels.errors, MAX_ERRORS))  # type: ignore[arg-type]
+        while selector.get_map() and not channels.cut:
             ready = selector.select(max(0.0, deadline - time.monotonic()))
             if not ready:
-                heard.cut = "time"
+                channels.cut = "time"
             for key, _ in ready:
                 kept, room = key.data
                 chunk = os.read(key.fd, 1 << 16)
@@ -204,12 +204,12 @@ def _hear(process: subprocess.Popen[bytes], status: int, deadline: float) -> _He
                 if not chunk:
                     selector.unregister(key.fileobj)
                 elif len(kept) > room:
-                    heard.cut = "flood"
-    return heard
+                    channels.cut = "flood"
+    return channels
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End the whole group; one that has closed its pipes gets a moment to leave its exit code."""
+    """Ends the process group; a process that has closed its pipes gets a moment to leave its exit code."""
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(0.1)
     with contextlib.suppress(ProcessLookupError, PermissionError):
@@ -221,23 +221,23 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 # ------------------------------------------------------------------ its answer
-def _status(heard: _Heard, ended: int) -> _Status:
+def _status(channels: _Channels, ended: int) -> _Status:
     """Which walls stand. Raises MissingTool if the sandbox never came so far."""
     try:
-        return _Status.model_validate_json(bytes(heard.status))
+        return _Status.model_validate_json(bytes(channels.status))
     except ValidationError as fault:
-        words = heard.errors[-1500:].decode("utf-8", "replace").strip()
-        said = words or heard.cut or "no words"
+        words = channels.errors[-1500:].decode("utf-8", "replace").strip()
+        said = words or channels.cut or "no words"
         raise MissingTool(f"the sandbox did not start (exit code {ended}): {said}") from fault
 
 
-def _read(heard: _Heard, ended: int, limits: Limits, secret: bytes) -> Ran:
+def _ran(channels: _Channels, ended: int, limits: Limits, secret: bytes) -> Ran:
     """What came back; never raises, whatever the script wrote."""
-    if heard.cut == "time":
-        return _over("TimeLimit", f"the script ran longer than {limits.wall_s:g} s")
-    if heard.cut == "flood":
-        return _over("OutputLimit", "the script floods its output")
-    said = bytes(heard.said)
+    if channels.cut == "time":
+        return _limit_fault("TimeLimit", f"the script ran longer than {limits.wall_s:g} s")
+    if channels.cut == "flood":
+        return _limit_fault("OutputLimit", "the script floods its output")
+    said = bytes(channels.said)
     if not said:
         return _death(ended, limits)
     try:
@@ -245,7 +245,7 @@ def _read(heard: _Heard, ended: int, limits: Limits, secret: bytes) -> Ran:
     except ValidationError:
         answer = None
     if answer is None:
-        return _over("ForgedAnswer", "what came back on the sandbox's channel is not the sandbox's own answer")
+        return _limit_fault("ForgedAnswer", "what came back on the sandbox's channel is not the sandbox's own answer")
     if isinstance(answer, _Written):
         return Ran(xosc=answer.xosc, printed=answer.printed)
     fault = Fault(answer.layer, answer.kind, answer.message, answer.line, answer.breaches)
@@ -255,10 +255,10 @@ def _read(heard: _Heard, ended: int, limits: Limits, secret: bytes) -> Ran:
 def _death(ended: int, limits: Limits) -> Ran:
     number = ended - 128 if ended > 128 else -ended
     if number in (signal.SIGXCPU, signal.SIGKILL):
-        return _over("ProcessorLimit", f"the script computed for more than {limits.cpu_s} s")
+        return _limit_fault("ProcessorLimit", f"the script computed for more than {limits.cpu_s} s")
     how = signal.Signals(number).name if number in set(signal.Signals) else f"exit code {ended}"
-    return _over("Died", f"the script ended its interpreter ({how}) instead of finishing")
+    return _limit_fault("Died", f"the script ended its interpreter ({how}) instead of finishing")
 
 
-def _over(kind: str, message: str) -> Ran:
+def _limit_fault(kind: str, message: str) -> Ran:
     return Ran(fault=Fault("limit", kind, message))

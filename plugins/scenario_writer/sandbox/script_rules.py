@@ -1,7 +1,7 @@
-"""What a script may say: imports from a list, no private names, no way to frames, files or other interpreters.
+"""The rules for a script's source: imports from a list, no private names, no access to frames or files.
 
-Reads syntax only; the walls behind it (`confine`) do not rely on it. Runs in the sandbox's process, since
-parsing hostile text can itself kill an interpreter. Knows no model.
+Reads syntax only; `isolation` does not rely on it. Runs in the sandbox's process, since parsing hostile text can itself
+kill an interpreter. Knows no model.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _PRIVATE_IN_TEXT = re.compile(rf"__\w+__|\{{[^{{}}]*\.(?:_|(?:{'|'.join(sorted(_
 
 
 class Breach(NamedTuple):
-    """What a script may not say, and where."""
+    """A breach of the rules and its place."""
 
     line: int
     what: str
@@ -71,7 +71,7 @@ def parsed(source: str) -> ast.Module:
 
 
 def breaches(tree: ast.Module) -> list[Breach]:
-    """Everything a script says that it may not, in its order; an empty list lets it run."""
+    """Every breach of the rules, in the script's order; a script without any may run."""
     nodes = list(ast.walk(tree))
     if len(nodes) > MAX_NODES:
         return [Breach(1, "the script is too large", f"{len(nodes)} syntax nodes", f"stay below {MAX_NODES}")]

@@ -27,7 +27,7 @@ def names() -> dict[str, Any]:
 
 
 def nearest_entry(kind: str, message: str, source_line: str) -> str:
-    """What to use instead, such as "xosc.TransitionDynamics(shape, dimension, value)"; "" where nothing is near."""
+    """The entry to use instead, such as "xosc.TransitionDynamics(shape, dimension, value)"; "" if none is near."""
     if found := _MODULE.search(message) or _UNDEFINED.search(message):
         return _named(found[1] or found[found.lastindex or 1])
     if found := _MEMBER.search(message):

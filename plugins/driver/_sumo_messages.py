@@ -1,4 +1,4 @@
-"""What the SUMO driver and its worker process say to each other. Imports no libsumo: it costs half a second."""
+"""Messages between the SUMO driver and its worker process. Imports no libsumo, which takes half a second."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Habits(NamedTuple):
 
 
 class Mover(NamedTuple):
-    """Another road user: where it is, and the edges that it is thought to take (`known`: it drives on them)."""
+    """Another road user: its place, and the edges of its assumed route (`known`: it drives on them)."""
 
     id: str
     place: Place
@@ -37,7 +37,7 @@ class Mover(NamedTuple):
 
 
 class Begin(NamedTuple):
-    """A drive begins: the roads, and the ego on its route."""
+    """Begins a drive: the roads, and the ego on its route."""
 
     net_xml: str
     ego: Place
@@ -46,7 +46,7 @@ class Begin(NamedTuple):
 
 
 class Step(NamedTuple):
-    """The next step: where the others are, how fast the ego is, and how fast the road lets it drive here."""
+    """Asks for the next step: the others' places, the ego's speed, and the free speed at this place."""
 
     movers: tuple[Mover, ...]
     own_mps: float
@@ -54,7 +54,7 @@ class Step(NamedTuple):
 
 
 class End(NamedTuple):
-    """The drive is over."""
+    """Ends the drive."""
 
 
 Order = Begin | Step | End

@@ -1,6 +1,6 @@
 """SUMO plain XML read into nodes, edges and connections, element by element.
 
-Only what cutting junctions needs; lanes that cars may not use are not counted. Knows no OpenStreetMap.
+Reads what `junction_cut` needs; lanes closed to cars are not counted. Knows no OpenStreetMap.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class PlainGraph:
     """Edge -> (edge behind, lane before, lane behind)."""
 
     def neighbors(self, node: str) -> list[str]:
-        """Nodes that one edge away, in order, each once."""
+        """Nodes that are one edge away, in order, each once."""
         found: dict[str, None] = {}
         for name in self.touching[node]:
             edge = self.edges[name]
@@ -55,7 +55,7 @@ class PlainGraph:
 
 
 def read_plain(nodes: Path, edges: Path, connections: Path) -> PlainGraph:
-    """Read the three files that netconvert wrote."""
+    """Reads the three files that netconvert wrote."""
     graph = PlainGraph()
     for node in _elements(nodes, "node"):
         name = node.get("id", "")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plugins.retriever.knowledge.junctions.junction_chunks import junction_chunks
+from plugins.retriever.knowledge.junction_chunks import junction_chunks
 from plugins.retriever.knowledge.sources import file_chunks
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core.case.records import PlainXml

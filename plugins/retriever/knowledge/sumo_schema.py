@@ -1,20 +1,22 @@
-"""SUMO's plain-XML elements and attributes as chunks, read from the installed schemas.
+"""SUMO's plain-XML elements and attributes as chunks, read from the installed schemas and sumo_xml_words.yaml.
 
-One chunk an element (its attributes with types and allowed values, what it contains, an example) and one
-an attribute that we have words for. Knows no database.
+One chunk for each element (attributes with types and allowed values, child elements, an example), and one for each
+attribute that sumo_xml_words.yaml explains. Knows no database.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
+import yaml
 from lxml import etree
 
 from plugins.retriever.knowledge.chunk import Chunk, Task
-from plugins.retriever.knowledge.sumo_xml.xml_words import ATTRIBUTES, ELEMENTS, Element
 from sgcad_core import settings
 from sgcad_core.errors import MissingTool
 
@@ -31,32 +33,41 @@ _BASE = {
 }  # fmt: skip
 
 _PLAIN = {"id", "x", "y", "z", "from", "to"}
-"""Attributes that the element's own chunk says enough of."""
+"""Attributes that need no chunk of their own: the element's chunk explains them."""
+
+
+@cache
+def _words() -> dict[str, dict[str, Any]]:
+    """The meanings: "elements" by "file/element", "attributes" by name or "file/element@name"."""
+    words: dict[str, dict[str, Any]] = yaml.safe_load(
+        Path(__file__).with_name("sumo_xml_words.yaml").read_text(encoding="utf-8")
+    )
+    return words
 
 
 @dataclass(frozen=True)
 class Attribute:
-    """An attribute as the schema has it."""
+    """An attribute as the schema declares it."""
 
     name: str
     type: str
     required: bool
 
     def line(self, about: str) -> str:
-        """One line for a prompt."""
+        """The attribute as one line of a prompt; `about` is its meaning, "" if unknown."""
         said = f": {about}" if about else ""
         return f"  {self.name} ({self.type}{', required' if self.required else ''}){said}"
 
 
 @dataclass
 class Schema:
-    """One schema file with all that it includes."""
+    """One schema file with every file that it includes."""
 
     types: dict[str, etree._Element] = field(default_factory=dict)
     root: etree._Element | None = None
 
     def read(self, file: Path, top: bool = True) -> None:
-        """Take in a file and its includes. Raises MissingTool where SUMO lacks it."""
+        """Adds a file and its includes. Raises MissingTool if the SUMO installation lacks the file."""
         try:
             tree = etree.parse(file).getroot()
         except OSError as fault:
@@ -69,7 +80,7 @@ class Schema:
             self.root = tree.find(f"{XSD}element")
 
     def elements(self) -> Iterator[tuple[str, list[Attribute], list[str]]]:
-        """(name, attributes, names of children) of every element below the root, each once."""
+        """Yields (name, attributes, names of child elements) of the root and every element below it, each once."""
         seen: set[str] = set()
         queue = [self.root] if self.root is not None else []
         while queue:
@@ -110,21 +121,20 @@ class Schema:
 
 
 def _own(part: etree._Element) -> Iterator[etree._Element]:
-    """Attributes of a type, not of elements declared inside it."""
+    """Attributes of the type itself, without those of elements declared inside it."""
     for attribute in part.iter(f"{XSD}attribute"):
         if next(attribute.iterancestors(f"{XSD}complexType")) is part:
             yield attribute
 
 
 def xml_chunks() -> Iterator[Chunk]:
-    """Chunks of the plain-XML inputs and of routes and additional objects."""
+    """Chunks of the plain-XML inputs, of routes and of additional objects."""
     source = f"SUMO {_sumo_version()}"
     for file, tasks in FILES.items():
         schema = Schema()
         schema.read(settings.sumo_home() / "data" / "xsd" / f"{file}_file.xsd")
         for name, attributes, children in schema.elements():
-            words = ELEMENTS.get(f"{file}/{name}", Element(""))
-            if file in ("routes", "additional") and not words.about:
+            if file in ("routes", "additional") and f"{file}/{name}" not in _words()["elements"]:
                 continue  # detectors, containers, transport plans: no crash needs them
             yield _element(file, name, attributes, children, tasks, source)
             for attribute in attributes:
@@ -133,21 +143,22 @@ def xml_chunks() -> Iterator[Chunk]:
 
 
 def _about(file: str, element: str, attribute: str) -> str:
-    return ATTRIBUTES.get(f"{file}/{element}@{attribute}", ATTRIBUTES.get(attribute, ""))
+    words = _words()["attributes"]
+    return str(words.get(f"{file}/{element}@{attribute}", words.get(attribute, "")))
 
 
 def _element(
     file: str, name: str, attributes: list[Attribute], children: list[str], tasks: tuple[Task, ...], source: str
 ) -> Chunk:
-    words = ELEMENTS.get(f"{file}/{name}", Element(""))
+    words = _words()["elements"].get(f"{file}/{name}", {})
     required = sorted(attributes, key=lambda a: not a.required)
-    lines = [f"<{name}> in the {file} file: {words.about}".rstrip(": ")]
+    lines = [f"<{name}> in the {file} file: {words.get('about', '')}".rstrip(": ")]
     lines += ["attributes:", *(a.line(_about(file, name, a.name)) for a in required)] if attributes else []
     lines += [f"contains: {', '.join(f'<{c}>' for c in dict.fromkeys(children))}"] if children else []
-    lines += [f"example: {words.example}"] if words.example else []
+    lines += [f"example: {words['example']}"] if "example" in words else []
     return Chunk(
         id=f"xml/{file}/{name}", kind="xml", tasks=tasks, title=f"SUMO element <{name}> in the {file} file",
-        text="\n".join(lines), keywords=words.keywords, source=source,
+        text="\n".join(lines), keywords=words.get("keywords", ""), source=source,
     )  # fmt: skip
 
 
@@ -157,14 +168,13 @@ def _attribute(
     text = f"attribute {attribute.name} of <{element}> in the {file} file\n{attribute.line(about)}"
     return Chunk(
         id=f"xml/{file}/{element}@{attribute.name}", kind="xml", tasks=tasks,
-        title=f"SUMO attribute {attribute.name} of <{element}>", text=text,
-        source=source,
+        title=f"SUMO attribute {attribute.name} of <{element}>", text=text, source=source,
     )  # fmt: skip
 
 
 def examples() -> Mapping[str, str]:
-    """ "file/element" -> its example, for checking against the schemas."""
-    return {name: words.example for name, words in ELEMENTS.items() if words.example}
+    """Examples by "file/element", to be checked against the schemas."""
+    return {name: words["example"] for name, words in _words()["elements"].items() if "example" in words}
 
 
 def _sumo_version() -> str:

@@ -1,1 +1,0 @@
-"""Real junctions of OpenStreetMap extracts as chunks."""

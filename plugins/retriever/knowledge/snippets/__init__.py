@@ -1,1 +1,0 @@
-"""Runnable snippets on scenariogeneration, and how they become chunks."""

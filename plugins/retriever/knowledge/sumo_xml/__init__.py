@@ -1,1 +1,0 @@
-"""SUMO's plain-XML elements and attributes as chunks."""
