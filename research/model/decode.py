@@ -19,7 +19,9 @@ from research.model import answer_grammar
 from research.model.fast_layers import norm, rotate
 from research.model.model import Forward
 from research.model.tokens import ROAD, SCENARIO, Coder
-from research.rows.rows import Row, collate, positions, road_ids
+from research.rows.collate import collate, positions
+from research.rows.report_rows import road_ids
+from research.rows.row import Row
 
 
 class Cache:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -92,13 +92,13 @@ def of_part(pool: Path, part: str) -> Iterator[Incident]:
             yield incident
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--part", choices=("train", "validation"), default="train")
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     with args.out.open("w", encoding="utf-8") as file:
         for incident in of_part(args.pool, args.part):
             file.write(json.dumps(row(incident)) + "\n")

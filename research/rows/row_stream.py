@@ -27,7 +27,8 @@ from research.model.tokens import Coder, load_tokenizer
 from research.renderer.draw import Shape, draw_labeled
 from research.rows.gist_rows import gist_row, told_of
 from research.rows.partial_labels import Told, load
-from research.rows.rows import MAX_TEXT, Row, training_row
+from research.rows.report_rows import MAX_TEXT, training_row
+from research.rows.row import Row
 
 POOL = 96
 MOVED = 0.5

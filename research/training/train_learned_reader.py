@@ -296,14 +296,14 @@ def _known_share(one: Row, readers: Readers) -> float:
     return len(known(asked, readers.word_hashes)) / max(1, len(asked))
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
     parser.add_argument("--out", type=Path, default=WEIGHTS)
     parser.add_argument("--takes", type=float, default=0.6)
     parser.add_argument("--folds", type=int, default=5)
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     rows, apart = ([r for one in of_part(args.pool, part) if (r := row(one))] for part in ("train", "validation"))
     learned, lines = learn(rows, apart, args.takes, args.folds)
     save(learned, args.out)

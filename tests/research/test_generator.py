@@ -19,7 +19,7 @@ from research.generator.report import MODES, make_report
 from research.generator.targets import GUESS
 from research.generator.writer import Writer
 from research.model.answer_grammar import behavior_walk, road_walk, write
-from research.rows.rows import road_ids
+from research.rows.report_rows import road_ids
 from sgcad_core.records.specs import BehaviorSpec, Refusal, RoadLayout
 from sgcad_core.roads.layout import road_spec
 from tests.effort import many

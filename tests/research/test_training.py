@@ -15,8 +15,9 @@ from research.generator.report import make_report
 from research.model.decode import Answerer
 from research.model.model import Forward, make_config, make_model
 from research.model.tokens import Coder, train_tokenizer
+from research.rows.collate import collate
+from research.rows.report_rows import evidence, training_row
 from research.rows.row_stream import STAGES, WORDS, Feed, Place, drawing
-from research.rows.rows import collate, evidence, training_row
 from research.training.checkpoint import HEADS
 from research.training.deepen_weights import deepened
 from research.training.muon_adamw import orthogonal

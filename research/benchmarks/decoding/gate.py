@@ -173,7 +173,7 @@ def _yaml(limits: dict[str, float | None]) -> str:
     return f"{{name: evidence_gate, {told}}}"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Ask, sweep, choose, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=Path, help="folders of cases")
@@ -184,7 +184,7 @@ def main() -> None:
     parser.add_argument("--precision", type=float, help="choose for recall at this precision instead of for F1")
     parser.add_argument("--jobs", type=int, default=4, help="reports asked at once")
     parser.add_argument("--limit", type=int, help="at most so many reports")
-    told = parser.parse_args()
+    told = parser.parse_args(arguments)
     try:
         config = load(told.config, tuple(told.overrides))
         reports = [*made(told.made), *(read(config, told.cases) if told.cases else ())][: told.limit]

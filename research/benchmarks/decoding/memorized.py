@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import torch
-from transformers import Qwen2_5_VLForConditionalGeneration
 
 from plugins.backbone import hf_gguf, hf_load
 from research.model.tokens import Coder, load_tokenizer
@@ -45,6 +44,8 @@ class Speaker(NamedTuple):
 
 def embedded(folder: Path) -> Speaker:
     """The embedded model from a folder of weights."""
+    from transformers import Qwen2_5_VLForConditionalGeneration  # takes seconds
+
     model = Qwen2_5_VLForConditionalGeneration.from_pretrained(folder, dtype=torch.float32, local_files_only=True)
     coder = Coder(load_tokenizer(folder))
     return Speaker(model, coder.text, lambda ids: coder.tokenizer.decode(ids, skip_special_tokens=True))
@@ -105,7 +106,7 @@ def drawn(speaker: Speaker, texts: Sequence[str], seed: int = 0) -> list[str]:
     return found
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", type=Path)
@@ -113,7 +114,7 @@ def main() -> None:
     parser.add_argument("--adapter", help="folder of a LoRA adapter of that model")
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--limit", type=int, default=LIMIT)
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     texts = [told.text for told in load(args.rows)]
     joined = "\n".join(texts)
     plain = args.adapter or hf_gguf.is_gguf(args.model)

@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Thread
@@ -58,14 +58,14 @@ class Load(NamedTuple):
     note: str = ""
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--database", default="", help="postgresql://user@host/, with databases prefect and mlflow")
     parser.add_argument("--address", default="", help="fsspec address of the storage; default: a folder")
     parser.add_argument("--inside", choices=["prefect", "mlflow"], help=argparse.SUPPRESS)
-    options, rest = parser.parse_known_args()
+    options, rest = parser.parse_known_args(arguments)
     if options.inside:
         {"prefect": give_prefect, "mlflow": give_mlflow}[options.inside](options.cases, *rest)
         return

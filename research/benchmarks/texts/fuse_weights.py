@@ -141,7 +141,7 @@ def table(cases: Sequence[Case]) -> list[str]:
     return lines
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
@@ -151,7 +151,7 @@ def main() -> None:
     parser.add_argument("--part", choices=("train", "validation"), default="validation")
     parser.add_argument("--most", type=int, help="so many reports at most")
     parser.add_argument("--fit", type=Path)
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     cases = ask_all(args.pool, args.part, load_config(args.config, tuple(args.set)), args.out, args.most)
     for genre in sorted({case.id.partition("-")[0] for case in cases}):
         print(genre, *table([case for case in cases if case.id.startswith(genre)]), sep="\n")  # noqa: T201

@@ -115,7 +115,7 @@ def _line(name: str, members: Sequence[Incident], runs: Path) -> str:
     return f"{name}: {', '.join(shares)}; {', '.join(counts) or 'none run'}; false success {wrong}"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Write cases, run them, print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dev", type=Path, nargs=2, metavar=("CASES", "TRUTH"))
@@ -125,7 +125,7 @@ def main() -> None:
     parser.add_argument("--config", type=Path, default=CONFIG, help="whose runs are scored (template.yaml)")
     parser.add_argument("--only", default="", help="a genre, such as sgo")
     parser.add_argument("--score-only", action="store_true", help="score what --out holds from before")
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     incidents = (of_dev(*args.dev) if args.dev else []) + (of_pool(args.pool, args.sample) if args.pool else [])
     incidents = [i for i in incidents if i.genre == args.only or not args.only]
     if not incidents:

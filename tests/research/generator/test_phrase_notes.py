@@ -21,7 +21,8 @@ from research.generator.words import NUMBERS
 from research.model import answer_grammar
 from research.model.batch import Taggers
 from research.model.tokens import ROAD, SCENARIO, Coder, train_tokenizer
-from research.rows.rows import collate, road_ids, training_row
+from research.rows.collate import collate
+from research.rows.report_rows import road_ids, training_row
 from tests.research.reports import text_report
 
 seeds = st.integers(0, 10**6)

@@ -20,8 +20,9 @@ from research.model.batch import Pass, Taggers
 from research.model.model import Forward
 from research.model.tokens import Coder, train_tokenizer
 from research.rows import evidence_labels
+from research.rows.collate import collate
+from research.rows.report_rows import tag_picture, training_row
 from research.rows.row_stream import labeled, moment
-from research.rows.rows import collate, tag_picture, training_row
 from research.training.train import Trainer
 from research.training.train_options import parse
 from tests.research.reports import text_report

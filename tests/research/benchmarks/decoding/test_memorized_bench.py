@@ -8,8 +8,8 @@ import torch
 from research.benchmarks.decoding.memorized import COPIED, LIMIT, drawn, embedded, longest_run, not_copied
 from research.generator.incidents import make_incident
 from research.model.tokens import Coder, load_tokenizer
+from research.rows.collate import collate
 from research.rows.gist_rows import gist_row
-from research.rows.rows import collate
 from research.training.train import answer_tokens
 from sgcad_core import settings
 

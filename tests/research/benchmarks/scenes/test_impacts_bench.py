@@ -67,9 +67,8 @@ def test_a_car_stopped_by_a_wall_takes_its_speed_and_the_bounce():
     assert all(o.model_mps <= 18.0 for o in walls)
 
 
-def test_the_table_has_a_row_a_mode(capsys, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["impacts", "--tests"])
-    assert main() == 0
+def test_the_table_has_a_row_a_mode(capsys):
+    assert main(["--tests"]) == 0
     shown = capsys.readouterr().out
     assert "| RICSAC 9 | 1 |" in shown
     assert "| front to side 90 | 3 | 6 |" in shown

@@ -2,8 +2,8 @@
 
 import pytest
 
-from research.training import training_log
-from research.training.training_log import Training, Watched, held_out, options
+from research.training import training_flow
+from research.training.training_flow import Training, Watched, held_out, options
 from sgcad_core.errors import BadInput
 
 
@@ -27,7 +27,7 @@ def test_a_broken_line_is_named(tmp_path, text, said):
 
 
 def test_a_folder_without_a_log_is_named_and_ends_with_code_2(tmp_path, capsys):
-    assert training_log.main(["import", str(tmp_path / "nowhere")]) == 2
+    assert training_flow.main(["import", str(tmp_path / "nowhere")]) == 2
     assert "nowhere/log.jsonl: cannot be read" in capsys.readouterr().err
 
 
@@ -53,7 +53,7 @@ def test_a_trainer_is_looked_at_while_it_runs_and_at_its_end(tmp_path, monkeypat
         f"while not pathlib.Path({str(seen)!r}).exists(): time.sleep(0.01)\n"
         "(out / 'log.jsonl').open('a').write(json.dumps({'step': 40}) + '\\n'); sys.exit(3)\n"
     )
-    monkeypatch.setattr(training_log, "TRAINER", ("-c", code))
+    monkeypatch.setattr(training_flow, "TRAINER", ("-c", code))
     looks = []
 
     def log(self):
@@ -71,11 +71,11 @@ def test_a_trainer_is_looked_at_while_it_runs_and_at_its_end(tmp_path, monkeypat
 def test_a_short_training_is_in_mlflow_when_its_flow_ends(tmp_path):
     import mlflow
 
-    from research.training.training_flow import train_flow
+    from research.training.training_flow import train
 
     small = "--size tiny --workers 0 --ranks 1 --texts 100 --tokens 600 --total-steps 40 --max-steps 20 --budget 1000"
     database = tmp_path / "mlflow.db"
-    assert train_flow.fn(str(tmp_path / "mini"), small.split(), str(database), every_s=600.0) == 20
+    assert train(str(tmp_path / "mini"), small.split(), str(database), every_s=600.0) == 20
     assert (tmp_path / "mini" / "export" / "model.safetensors").is_file()
     (line,) = [line for line in Training(tmp_path / "mini").lines() if "step" in line]
     client = mlflow.MlflowClient(tracking_uri=f"sqlite:///{database}")
@@ -86,8 +86,8 @@ def test_a_short_training_is_in_mlflow_when_its_flow_ends(tmp_path):
 
 
 def test_a_trainer_that_fails_fails_the_flow(tmp_path, monkeypatch):
-    from research.training.training_flow import train_flow
+    from research.training.training_flow import train
 
-    monkeypatch.setattr(training_log, "TRAINER", ("-c", "raise SystemExit(5)"))
-    with pytest.raises(RuntimeError, match=r"mini\.train ended with code 5"):
-        train_flow.fn(str(tmp_path / "mini"), [], str(tmp_path / "mlflow.db"))
+    monkeypatch.setattr(training_flow, "TRAINER", ("-c", "raise SystemExit(5)"))
+    with pytest.raises(RuntimeError, match=r"training\.train ended with code 5"):
+        train(str(tmp_path / "mini"), [], str(tmp_path / "mlflow.db"))
