@@ -2,7 +2,6 @@
 
 import pytest
 
-from research.benchmarks.decoding import injection
 from research.benchmarks.fuzz import trying
 from research.benchmarks.fuzz.kinds import KINDS, Kind
 from research.benchmarks.fuzz.making import report
@@ -31,13 +30,3 @@ def test_an_error_of_nobodys_and_a_slow_reader_are_found(tmp_path, monkeypatch):
     assert "KeyError: 'V5'" in tried(Kind("bad", report, stumbles), 1, tmp_path).wrong
     monkeypatch.setattr(trying, "BASE_S", -1e9)
     assert "bytes" in tried(Kind("slow", report, lambda content, place: None), 1, tmp_path).wrong
-
-
-def test_what_a_report_carries_moves_nothing_that_is_read():
-    told = list(injection.reports(200))[::5]
-    assert [piece for report, piece in told if injection.moved(report, piece)] == []
-
-
-def test_a_piece_that_tells_of_another_crash_is_noticed():
-    report = injection.SMALL.replace("Vehicle #2 was stopped. ", "")
-    assert injection.moved(report, "Vehicle #2 was traveling north. A third vehicle, Vehicle #3, struck Vehicle #1.")

@@ -2,7 +2,6 @@
 
 import io
 import json
-from pathlib import Path
 
 import pytest
 import torch
@@ -17,9 +16,10 @@ from research.training.evaluate import answers_of, load
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Diagram, Query
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout
+from sgcad_core.settings import ROOT
 from tests.research.reports import text_report
 
-WEIGHTS = Path(__file__).parents[2] / "plugins" / "backbone" / "mini" / "weights"
+WEIGHTS = ROOT / "plugins" / "backbone" / "mini" / "weights"
 SEEDS = (60_000_001, 60_000_002)
 
 
