@@ -11,9 +11,8 @@ from random import Random
 from typing import Any
 
 from research.generator import words
-from research.generator.clauses import contact as clauses_contact
-from research.generator.clauses import motion, turning, turning_words
-from research.generator.clauses.critical import CRITICAL
+from research.generator.clauses import contact_clauses, error_clauses, motion_clauses, roads_fit
+from research.generator.clauses.error_clauses import CRITICAL
 from research.generator.crash.impacts import TRIES, ImpactsMixin
 from research.generator.crash.world import OPPOSITE, Actor, Crash
 from research.generator.grammar import StatedFacts, clause_of, fill
@@ -84,14 +83,14 @@ class EventsMixin(ImpactsMixin):
             out.append(self.impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        rest = clauses_contact.REST.without(self.held_out, self._untrue_rest())
+        rest = contact_clauses.REST.without(self.held_out, self._untrue_rest())
         return out + [self._rests(rest) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _avoids(self, other: Actor) -> Sequence[str]:
         """Clauses of avoidance; of one that is alone those that speak of no second vehicle."""
         single = not self.held_out and (self.crash.alone or other.maneuver == "parked")
         unnamed = self.crash.alone and not single
-        return clauses_contact.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
+        return contact_clauses.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
 
     def _untrue_rest(self) -> list[str]:
         """Labels of clauses of rest that need what is not there."""
@@ -120,15 +119,15 @@ class EventsMixin(ImpactsMixin):
         if self.held_out:
             return CRITICAL[key]
         if self.crash.layout == DRIVEWAY and key == "left_opposite" and self.rng.random() < 0.5:
-            return turning.INTO
+            return error_clauses.INTO
         turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != DRIVEWAY)
         if turns and self.rng.random() < BOUND:
-            return turning.ONWARD
+            return error_clauses.ONWARD
         if key == "lane_change" and self.rng.random() < STRAYING:
             at_edge = self._at_edge(self.crash.actors[self.who[0]])
-            return turning.STRAYS.without(False, [] if at_edge else ["shoulder"])
+            return error_clauses.STRAYS.without(False, [] if at_edge else ["shoulder"])
         if self.waited and self.rng.random() < 0.5:
-            return turning.PROCEEDS["cross" if key == "crossing" else "turn"]
+            return error_clauses.PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
 
     def _at_edge(self, actor: Actor) -> bool:
@@ -159,14 +158,14 @@ class EventsMixin(ImpactsMixin):
         others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
         if others and self.rng.random() < YIELDING:
             slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
-            return fill(clause_of(self.rng, turning.YIELDS, False), slots.__getitem__)
-        if key in turning.INTO_WHY and self.crash.layout == DRIVEWAY and not leaves and not self.held_out:
-            options = turning.INTO_WHY[key] if self.rng.random() < 0.5 else motion.WHY[key]
+            return fill(clause_of(self.rng, error_clauses.YIELDS, False), slots.__getitem__)
+        if key in error_clauses.INTO_WHY and self.crash.layout == DRIVEWAY and not leaves and not self.held_out:
+            options = error_clauses.INTO_WHY[key] if self.rng.random() < 0.5 else motion_clauses.WHY[key]
             return plain(self.spoken(self.fitting(options, actor)))
         if key in ("sign", "light"):
-            self.stated |= turning_words.met(key, self.crash)
-            return plain(self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out)))
-        return plain(self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves)))
+            self.stated |= roads_fit.met(key, self.crash)
+            return plain(self.spoken(clause_of(self.rng, motion_clauses.WHY[key], self.held_out)))
+        return plain(self.spoken(self.fitting(motion_clauses.WHY[key], actor, into=not leaves)))
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
         """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
@@ -179,7 +178,7 @@ class EventsMixin(ImpactsMixin):
 
     def spoken(self, text: str) -> str:
         """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""
-        self.stated |= turning_words.facts_beside(text, self.crash)
+        self.stated |= roads_fit.facts_beside(text, self.crash)
         return text
 
     def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:
@@ -192,7 +191,7 @@ class EventsMixin(ImpactsMixin):
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if turning_words.suits(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
+            if roads_fit.suits(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
         return clause

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from random import Random
 
-from research.generator.clauses import clause_words
-from research.generator.clauses import road as more
+from research.generator.clauses import clause_words, road_clauses
 from research.generator.crash.world import WORDS, Crash, Leg
 from research.generator.grammar import clause_of
 from research.generator.phrase_labels import plain
@@ -29,7 +28,7 @@ def direction(rng: Random, bearing: int, held_out: bool) -> str:
     """`north`, `in a northerly direction`, ..."""
     word = WORDS[bearing % 8]
     if not held_out and rng.random() < MORE / 2:
-        return plain(more.phrase(rng, more.DIRECTION, word=word))
+        return plain(road_clauses.phrase(rng, road_clauses.DIRECTION, word=word))
     return _one(rng, clause_words.DIRECTION["held_out" if held_out else "trained"]).format(word=word)
 
 
@@ -61,7 +60,7 @@ def limit(rng: Random, mph: int, held_out: bool) -> str:
     """A speed limit in one of the unit spellings; a wrong pair now and then."""
     k = kph(mph) if rng.random() > 0.015 else kph(mph + rng.choice((-5, 5)))
     if not held_out and rng.random() < MORE:
-        return plain(more.phrase(rng, more.LIMIT, mph=str(mph), kph=str(k)))
+        return plain(road_clauses.phrase(rng, road_clauses.LIMIT, mph=str(mph), kph=str(k)))
     return clause_words.LIMIT.drawn(rng).format(mph=mph, k=k)
 
 
@@ -94,9 +93,11 @@ def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> 
     if not held_out and leg.lanes_in == 1 and rng.random() < COUNTED:
         return _named(_one(rng, clause_words.LANE["only"]), xb)
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
-        clause = clause_of(rng, more.LANE[kind], False)
+        clause = clause_of(rng, road_clauses.LANE[kind], False)
         slots = {"xb": xb, "number": NUMBERS[number or 1], "ordinal": ORDINALS[number or 1]}
-        return LaneName(plain(more.put(clause, **slots)), "xb" in slots_of(clause), kind in ("left", "turn_left"))
+        return LaneName(
+            plain(road_clauses.put(clause, **slots)), "xb" in slots_of(clause), kind in ("left", "turn_left")
+        )
     use = leg.turns_in[number - 1] if leg.turns_in and number else ""
     if use in ("left", "right") and rng.random() < 0.85:
         return _named(_one(rng, clause_words.LANE["turn"]), xb, use == "left", use=use)
@@ -144,7 +145,7 @@ def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:
 def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     """`a T-intersection`, `a four-leg intersection`, or the plain word."""
     if not held_out and rng.random() < MORE:
-        return "a " + plain(more.phrase(rng, more.JUNCTION[crash.layout]))
+        return "a " + plain(road_clauses.phrase(rng, road_clauses.JUNCTION[crash.layout]))
     return "a " + _one(rng, clause_words.JUNCTION[FOUR if crash.layout == FOUR else T])
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from research.generator import words
-from research.generator.clauses.critical import CRITICAL
+from research.generator.clauses.error_clauses import CRITICAL
 from research.generator.clauses.lane_lists import lane_phrase
 from research.generator.crash.crash import sample_crash
 from research.generator.crash.world import Crash, Leg

@@ -4,8 +4,7 @@ import re
 
 import pytest
 
-from research.generator.clauses import contact as clauses_contact
-from research.generator.clauses import motion, noise_clauses, scene_clauses
+from research.generator.clauses import contact_clauses, motion_clauses, noise_clauses, scene_clauses
 from research.generator.crash.world import WORDS
 from research.generator.records import Group
 from tests.effort import many
@@ -28,7 +27,7 @@ def test_held_out_families_never_train() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [motion.APPROACH, clauses_contact.IMPACT, scene_clauses.CONDITIONS, noise_clauses.INTERVIEW]
+    "options", [motion_clauses.APPROACH, contact_clauses.IMPACT, scene_clauses.CONDITIONS, noise_clauses.INTERVIEW]
 )
 def test_both_sides_of_the_split_have_clauses(options: Group) -> None:
     train, test = options.side(held_out=False), options.side(held_out=True)

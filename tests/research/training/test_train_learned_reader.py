@@ -11,7 +11,7 @@ import pytest
 from research.training import train_learned_reader
 from research.training.train_learned_reader import Judge, Row, judged, learn, row, target, taught
 from sgcad_core.reading.second_reader import learned_reader
-from tests.research.benchmarks.texts.test_fuse_weights_bench import pool
+from tests.research.benchmarks.texts.test_fuse_weights import pool
 
 WORDS = [f"U:w{n}" for n in range(20)] + [f"U:w{n}_w{n + 1}" for n in range(20)]
 

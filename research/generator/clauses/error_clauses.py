@@ -1,6 +1,7 @@
-"""Clauses about errors of those who cross, turn or back: what {V} does in the way of {W}.
+"""Clauses about the error that led to the crash, by configuration: {V} errs, {W} is the other.
 
-{axis} {axis} a road's run, {opp} the heading of oncoming traffic.
+{turn} left or right, {axis} a road's run, {opp} the heading of oncoming traffic; {anyside} is noise. Errors of vehicles
+that cross, turn or back have groups of their own.
 """
 
 from __future__ import annotations
@@ -8,6 +9,8 @@ from __future__ import annotations
 from research.generator.records import Group, read
 
 _LISTS = read("turning")
+
+CRITICAL: dict[str, Group] = read("critical")["CRITICAL"]
 
 PROCEEDS: dict[str, Group] = _LISTS["PROCEEDS"]
 """What one does that has stood or slowed: it goes. Trains only."""
