@@ -1,5 +1,5 @@
 # ruff: noqa: E501 - lists of words
-"""The event sentences of a report: who erred, who avoided, who struck whom, where they came to rest.
+"""The event sentences of a report: errors, evasions, contacts, places of rest.
 
 A part of the writer.
 """
@@ -46,7 +46,7 @@ class EventsMixin(ImpactsMixin):
 
     # -------------------------------------------------------------- events
     def culprit(self) -> tuple[int, int]:
-        """Index of the one who errs and of the other."""
+        """Indices of the actor that errs and of the other."""
         plain = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
         actors = self.crash.actors
         first = self.crash.contacts[0]
@@ -115,7 +115,7 @@ class EventsMixin(ImpactsMixin):
         return str(self.say([clause], v, w))
 
     def _error(self, key: str) -> Group | Sequence[str]:
-        """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
+        """Clauses of the error; of an actor that has waited, half of the time, that it goes."""
         if self.held_out:
             return CRITICAL[key]
         if self.crash.layout == DRIVEWAY and key == "left_opposite" and self.rng.random() < 0.5:
@@ -153,7 +153,7 @@ class EventsMixin(ImpactsMixin):
         return self.crash.config == "parked" and not self.held_out and has(clause, "drifts")
 
     def reason(self, key: str, actor: Actor) -> str:
-        """What one stands or slows for; of those who turn off a road into a driveway half say so."""
+        """What an actor stands or slows for; half of the turns off a road into a driveway are told."""
         leaves = self.crash.layout == DRIVEWAY and not self.crash.is_main(actor.leg)
         others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
         if others and self.rng.random() < YIELDING:
@@ -168,7 +168,7 @@ class EventsMixin(ImpactsMixin):
         return plain(self.spoken(self.fitting(motion_clauses.WHY[key], actor, into=not leaves)))
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
-        """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
+        """Headings of traffic that a turning actor may have to wait for: to the left the oncoming, on a side road any; to
         the right what comes from the left, on the lane that it turns into."""
         only = (actor.leg + (4 if left else 2)) % 8
         others = [leg for leg in self.crash.legs if leg.bearing == only]
@@ -183,9 +183,9 @@ class EventsMixin(ImpactsMixin):
 
     def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:
         """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one,
-        of a stop sign only where the one that it speaks of meets one.
+        of a stop sign only where the actor that it speaks of meets one.
 
-        `into`: whether it may be a driveway that somebody turns into.
+        `into`: whether the driveway may be one that an actor turns into.
         """
         clause = clause_of(self.rng, options, self.held_out)
         if self.held_out:

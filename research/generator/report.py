@@ -135,7 +135,7 @@ def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0)
 
 
 def _worth_telling(rng: Random, seed: int, length: float, crash: Crash, written: Written) -> tuple[Crash, Written]:
-    """A report in which a road that nobody describes is, most often, a plain one: writers mention what is unusual."""
+    """A report in which an undescribed road is, most often, a plain one: writers mention what is unusual."""
     for attempt in range(1, SECOND_THOUGHTS + 1):
         told = {fact for _, facts in written.sentences for fact in facts}
         rare = [leg for leg in crash.legs if not _plain(leg, told) and f"lanes.{leg.bearing % 4}" not in told]
@@ -168,7 +168,7 @@ def _without_road(crash: Crash, sentences: Sentences) -> Sentences:
 
 
 def _prior(crash: Crash, rng: Random) -> Targets:
-    """What would be answered to this crash had somebody told a part of it: the distribution without context."""
+    """Answers to this crash with a random part of it told: the distribution without context."""
     facts = drawn_facts(crash, True, True, bool(crash.accesses)) | {"light", "weather", "surface"}
     facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
     targets = Targets(crash, {fact for fact in sorted(facts) if rng.random() < 0.8})

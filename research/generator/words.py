@@ -80,8 +80,8 @@ def lanes(count: int, way: str = "") -> str:
 
 @dataclass(frozen=True)
 class LaneName:
-    """How a lane is named: the words, whether they say its direction (`headed`), and whether only who knows the lanes
-    beside it can number it, from the right as answers do (`from_left`)."""
+    """How a lane is named: the words, whether they say its direction (`headed`), and whether its number from the
+    right, which answers want, follows only from the lanes beside it (`from_left`)."""
 
     text: str
     headed: bool

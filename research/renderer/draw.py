@@ -138,7 +138,7 @@ def _lane_widths(rng: Random, crash: Crash) -> dict[int, float]:
 
 def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
     """Center the sheet somewhere between the hub and the impact, so that both are on it and, if that can be, where
-    everyone came from."""
+    all actors came from."""
     at = [track.poses[track.contact] for track in tracks]
     came = [track.poses[track.contact - 1] for track in tracks if track.contact]
     x, y = sum(p.x for p in at) / len(at), sum(p.y for p in at) / len(at)

@@ -125,12 +125,12 @@ def _behavior_fields(report: Report, behavior: Any) -> Iterator[tuple[str, str, 
 
 
 def _sides(contact: Any) -> dict[str, str]:
-    """Who is touched where, whoever strikes."""
+    """The touched areas by actor, whichever strikes."""
     return {contact[k]: contact[f"{k}_area"] for k in ("striker", "struck") if k in contact}
 
 
 def source(report: Report, key: str) -> str:
-    """Who tells facts (one or several, apart by spaces): "text", "diagram", "both" or "none".
+    """Source of facts (one or several, apart by spaces): "text", "diagram", "both" or "none".
 
     What the narrative tells without saying which legs are meant stands in no source by itself.
     """

@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def blind(file: Path) -> bool:
-    """Whether a file belongs to the third that nobody looks at, by the hash of its name."""
+    """Whether a file belongs to the blind third, by the hash of its name."""
     return hashlib.sha256(file.name.encode()).digest()[0] % 3 == 0
 
 

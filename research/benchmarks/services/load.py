@@ -6,7 +6,7 @@ Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a Po
 what a study gives them a case: a task run, one more a step and an artifact, an MLflow run with figures and
 files, one object and one mark. Prefect's server is measured as a command starts its own, as `make up` starts it,
 and as it is by default. Tells processor seconds of the server and of the client (they do not depend on
-who else uses the machine as much as the clock does), wall seconds, and how far the server lagged behind.
+other users of the machine as much as the clock does), wall seconds, and how far the server lagged behind.
 The case is a real one: the bundled report, run once.
 """
 
@@ -167,7 +167,7 @@ def spent(process: psutil.Process) -> float:
 
 
 def free_port() -> int:
-    """A port that nobody listens on now."""
+    """A port that is free now."""
     with socket.socket() as bound:
         bound.bind(("127.0.0.1", 0))
         return int(bound.getsockname()[1])

@@ -53,7 +53,7 @@ def by_hash(text: str) -> int:
 
 
 def is_blind(id: str) -> bool:
-    """Whether a report of the pool is one that nobody reads."""
+    """Whether a report of the pool is blind: scored, never read."""
     return by_hash(id) % BLIND_OF == 0
 
 

@@ -1,4 +1,4 @@
-"""Are plain facts read in words that nobody's report used? Prints, for a file of paraphrases, what share is read right.
+"""Are plain facts read in words that no report used? Prints, for a file of paraphrases, what share is read right.
 
     python -m research.benchmarks.texts.paraphrases [FILE.yaml ...]
 

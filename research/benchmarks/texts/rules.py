@@ -47,7 +47,7 @@ def report_of(seed: int, held_out: bool) -> Report:
 
 
 def answer_of(report: Report) -> Answer:
-    """What the rules make of a report, in the form of the model's answers; nobody and nothing where they refuse it."""
+    """The rules' reading of a report in the form of the model's answers; no actors and no contacts if refused."""
     facts = road_facts(report.narrative)
     layout = layout_of_facts(facts, DEFAULTS)
     try:

@@ -1,7 +1,7 @@
 """The blocks on single vehicles: noise, and what is coded and stated of the crash, which is true.
 
-A part of the writer. In NMVCCS reports every vehicle has a critical event, and who turned or crossed the line is
-often told there, or by a driver, more plainly than among the events.
+A part of the writer. In NMVCCS reports every vehicle has a critical event, and the vehicle that turned or crossed
+the line is often told there, or by a driver, more plainly than among the events.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class BlocksMixin:
         return self.people[index]
 
     def _clear(self, options: Group, index: int, untrue: Sequence[str] = ()) -> list[str]:
-        """Clauses of its side of the split without some labels that leave nobody in doubt whom they are about.
+        """Clauses of its side of the split without some labels, of which it is clear which vehicle they are about.
 
         "He was driving 30 mph" says whose speed that is only behind a sentence of the block that names the vehicle.
         """
@@ -218,7 +218,7 @@ class BlocksMixin:
         return self.say(frames, index, other, code=plain(code))
 
     def _on_foot(self, slot: str) -> str:
-        """What a code calls one whom a vehicle hits: as the slot says, but a cyclist no pedestrian."""
+        """Words of a code for the person that a vehicle hits: as the slot says, but a cyclist is no pedestrian."""
         rides = any(actor.kind == "bicycle" for actor in self.crash.actors)
         return "bicyclist" if rides else slot.replace("_", " ")
 

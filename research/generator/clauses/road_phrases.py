@@ -172,7 +172,7 @@ class RoadsMixin:
 
     @staticmethod
     def _sides(leg: Leg, to: str, fro: str) -> list[str]:
-        """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and who leave by it."""
+        """`two northbound lanes` and `one southbound lane`: the lanes into the hub and out of it by a leg."""
         back = (leg.bearing + 4) % 8
         return [
             phrase_notes.item(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
@@ -241,7 +241,7 @@ class RoadsMixin:
         return (self._first + 2 * (slot == "lim2")) % 4
 
     def _limit_of(self, slot: str) -> int | None:
-        """That limit; None where nobody set one."""
+        """The limit of the road that a slot names; None where none is set."""
         return next((leg.limit for leg in self._legs_on(self._axis_of(slot)) if leg.limit), None)
 
     def _limit(self, slot: str) -> str:

@@ -9,8 +9,8 @@ from sgcad_core.kinds import DRIVEWAY, FOUR, INTERSECTIONS
 
 
 def suits(text: str, crash: Crash, actor: Actor) -> bool:
-    """Whether what the words say of driveways, streets, signs and signals may be said of these roads and of one who
-    comes to them."""
+    """Whether what the words say of driveways, streets, signs and signals is true of these roads and of an
+    actor that comes to them."""
     controls, met = {leg.control for leg in crash.legs}, crash.leg(actor.leg)
     if has(text, "signal") and "signal" not in controls:
         return False
@@ -35,7 +35,7 @@ def facts_beside(text: str, crash: Crash) -> set[str]:
 
 
 def met(key: str, crash: Crash) -> set[str]:
-    """Facts that one tells who stands for a "light", or for a "sign", which others may have or not."""
+    """Facts that waiting for a "light" tells, or for a "sign", which other legs may have or not."""
     if key == "sign":
         return {"control", f"{VAGUE}.control"}
     return {"control"} if all(leg.control == "signal" for leg in crash.legs if leg.lanes_in) else set()

@@ -101,7 +101,7 @@ class ApproachMixin:
         return self.say([self.spoken(clause)], index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _pauses(self, index: int) -> str:
-        """ "waiting" or "slowing" where one who is about to cross or turn is said to have done so; else "".
+        """ "waiting" or "slowing" where an actor about to cross or turn is said to have done so; else "".
 
         Then the error must be told. Of turning vehicles in real narratives two in five had stopped, one in six slowed.
         """

@@ -1,6 +1,6 @@
 """The crash sampler: roads, a configuration that fits them, then numbers, lanes and speeds.
 
-`configurations` knows who strikes whom; a configuration that the roads do not allow is tried again.
+`configurations` knows striker and struck; a configuration that the roads do not allow is tried again.
 """
 
 from __future__ import annotations
@@ -89,8 +89,8 @@ def glanced(rng: Random, crash: Crash) -> Crash:
 
 
 def seldom(rng: Random, crash: Crash) -> Crash:
-    """More often than on roads, as far as a drawing can show it: somebody on foot or a bicycle, or a vehicle of a kind
-    that is seldom seen."""
+    """The crash with rare actors more often than on roads, as far as a drawing can show them: pedestrians, bicycles,
+    vehicles of rare kinds."""
     if rng.random() < WALKS:
         crash = sample_crash(rng, "pedestrian")
     vehicles = [i for i, actor in enumerate(crash.actors) if actor.vehicle]

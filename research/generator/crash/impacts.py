@@ -1,4 +1,4 @@
-"""Sentences of contacts: who strikes whom with which sides. A part of the writer."""
+"""Sentences of contacts: striker, struck and the sides of both. A part of the writer."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ class ImpactsMixin:
         return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
 
     def _contact(self, options: Group, number: int, alike: bool) -> str:
-        """A clause of a contact. In training its choices are made, it is true of those whom it means, and where sides
-        do not tell who strikes (`alike`) each order of words comes as often as the others, as far as there are such
-        clauses: most name the striker first, and the rest would hardly be learned.
+        """A clause of a contact. In training its choices are made, it is true of the actors that it means, and where
+        sides do not tell the striker (`alike`) each order of words comes as often as the others, as far as there are
+        such clauses: most name the striker first, and the rest would hardly be learned.
         """
         clauses = options.side(self.held_out)
         if self.held_out:
