@@ -178,7 +178,7 @@ class EventsMixin(ImpactsMixin):
 
     def spoken(self, text: str) -> str:
         """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""
-        self.stated |= roads_fit.facts_beside(text, self.crash)
+        self.stated |= roads_fit.facts_of_words(text, self.crash)
         return text
 
     def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:
@@ -191,7 +191,7 @@ class EventsMixin(ImpactsMixin):
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if roads_fit.suits(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
+            if roads_fit.fits_roads(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
         return clause

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
-from research.generator.crash.compass_ties import unsettled
-from research.generator.crash.crash import glanced, sample_crash, seldom
-from research.generator.crash.roads import beside, carriageway, misdrawn, mouths, one_way
+from research.generator.crash.compass_ties import uncertain_facts
+from research.generator.crash.crash import sample_crash, with_glancing_sides, with_rare_actor
+from research.generator.crash.roads import beside, one_carriageway, one_way, with_access_mouths, with_wrong_lanes
 from research.generator.crash.world import Crash, Leg
 from research.generator.grammar import HINT, Written, unmark
 from research.generator.targets import Targets, drawn_facts
@@ -87,15 +87,15 @@ def make_report(
     if mode == "text" and not held_out:
         crash, written = _worth_telling(rng, seed, length, crash, written)
     sentences = written.sentences
-    half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
+    half = one_carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
     if mode in ("both", "image", "none") and not held_out:  # without context no fewer, else contrast invents driveways
         told_of = mode == "both" and any("access" in facts for _, facts in sentences)
-        crash = mouths(Random(f"{seed} mouths"), crash, told_of or mode == "none")
+        crash = with_access_mouths(Random(f"{seed} mouths"), crash, told_of or mode == "none")
     drawn, shown = drawn_facts(crash, control, arrows, bool(crash.accesses)), None
     if mode == "both" and not held_out and half is None and rng.random() < CARELESS:
-        shown = misdrawn(rng, crash)
+        shown = with_wrong_lanes(rng, crash)
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
         written, sentences = Written(), []
@@ -130,8 +130,8 @@ def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0)
         return crash
     own = Random(f"{seed} streets {attempt}")
     if mode == "image":
-        crash = seldom(own, crash)
-    return glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
+        crash = with_rare_actor(own, crash)
+    return with_glancing_sides(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 
 def _worth_telling(rng: Random, seed: int, length: float, crash: Crash, written: Written) -> tuple[Crash, Written]:
@@ -157,7 +157,7 @@ def _stated_facts(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str
     """What sentences tell of a crash, and what they tell without saying of which legs."""
     facts = {fact for _, some in sentences for fact in some if not fact.startswith(HINT)}
     facts |= {"legs"} if "layout" in facts else set()
-    doubtful = facts & unsettled(crash, [some for _, some in sentences])
+    doubtful = facts & uncertain_facts(crash, [some for _, some in sentences])
     return facts - doubtful, doubtful
 
 

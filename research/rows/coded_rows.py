@@ -84,7 +84,7 @@ def row(incident: Incident) -> dict[str, Any]:
     return {"id": incident.id, "text": incident.text, "allowed": sets, "weight": weight}
 
 
-def of_part(pool: Path, part: str) -> Iterator[Incident]:
+def incidents_of_part(pool: Path, part: str) -> Iterator[Incident]:
     """Reports of "train" or "validation"; never blind ones."""
     for incident in of_pool(pool):
         left = by_hash(incident.id) % BLIND_OF
@@ -100,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--part", choices=("train", "validation"), default="train")
     args = parser.parse_args(arguments)
     with args.out.open("w", encoding="utf-8") as file:
-        for incident in of_part(args.pool, args.part):
+        for incident in incidents_of_part(args.pool, args.part):
             file.write(json.dumps(row(incident)) + "\n")
 
 

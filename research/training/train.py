@@ -31,7 +31,7 @@ from research.model.tokens import Coder, fragments
 from research.rows import evidence_labels
 from research.rows.collate import collate
 from research.rows.row import Row
-from research.rows.row_stream import Feed, Place, moment
+from research.rows.row_stream import Feed, Place, stage_at
 from research.training import checkpoint
 from research.training.deepen_weights import BLOCKS, deepened
 from research.training.distributed import Ranks
@@ -192,7 +192,7 @@ class Trainer:
 
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""
-        if moment(self.options.stage, self.place.made_at)[0] != "pictures":
+        if stage_at(self.options.stage, self.place.made_at)[0] != "pictures":
             return self.forward.lesson(batch, self._candidates(batch.allowed[batch.allowed >= 0]), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())

@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, get_args
 
-from sgcad_core.records.specs import (
+from sgcad_core.records.specs import (  # fmt: skip
     Access,
     Actor,
     Area,
@@ -87,9 +87,8 @@ def _roundabout_enters(r: random.Random, kind: str) -> Place:
     circle = r.choice([1, 2])
     legs = _legs(r, (own, left, ahead, right), most=circle, beside=_edges(r))
     onward = r.choice([ahead, right])
-    crash = _crash(
-        _actor("V1", own, exit_road=r.choice([ahead, right])), _actor("V2", left, exit_road=onward), ("front", "right")
-    )
+    entering = _actor("V1", own, exit_road=r.choice([ahead, right]))
+    crash = _crash(entering, _actor("V2", left, exit_road=onward), ("front", "right"))
     return Place(kind, RoadLayout(legs=legs, circle_lanes=circle), crash)
 
 
@@ -193,10 +192,8 @@ def _exit(r: random.Random, kind: str) -> Place:
     own = r.choice(COMPASS)
     legs = _freeway(r, own)
     ramp = Leg(bearing=_turned(own, 5), lanes_in=0, lanes_out=1, kind="ramp")
-    crash = _crash(
-        _actor("V1", own, lane=1, exit_road=ramp.bearing),
-        _actor("V2", own, "slowing", lane=1, exit_road=ramp.bearing), ("front", "back"),
-    )  # fmt: skip
+    way = {"lane": 1, "exit_road": ramp.bearing}
+    crash = _crash(_actor("V1", own, **way), _actor("V2", own, "slowing", **way), ("front", "back"))
     return Place(kind, RoadLayout(legs=(*legs, ramp)), crash)
 
 

@@ -36,16 +36,8 @@ DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"
 START_S = 300.0
 SERVERS: Mapping[str, Mapping[str, str]] = {"of a command": LEAN, "of make up": BULK, "plain": {}}
 STEPS = (
-    "read",
-    "retrieve[road]",
-    "road[1]",
-    "retrieve[scenario]",
-    "scenario[1]",
-    "simulate",
-    "measure",
-    "draw",
-    "track",
-)
+    "read", "retrieve[road]", "road[1]", "retrieve[scenario]", "scenario[1]", "simulate", "measure", "draw", "track",
+)  # fmt: skip
 
 
 class Load(NamedTuple):
@@ -81,7 +73,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def show(one: Load) -> None:
     """One part as a row of a Markdown table."""
-    say(f"| {one.part} | {1000 * one.server:.0f} | {1000 * one.client:.0f} | {1000 * one.wall:.0f} | {one.note} |")
+    ms = " | ".join(f"{1000 * seconds:.0f}" for seconds in (one.server, one.client, one.wall))
+    say(f"| {one.part} | {ms} | {one.note} |")
 
 
 def say(line: str) -> None:
@@ -205,16 +198,8 @@ def per_case(
     few = max(2, cases // 10)
     results = []
     for count in (few, cases):
-        client = [
-            sys.executable,
-            "-m",
-            "research.benchmarks.services.load",
-            "--inside",
-            inside,
-            "--cases",
-            str(count),
-            *words,
-        ]
+        module = "research.benchmarks.services.load"
+        client = [sys.executable, "-m", module, "--inside", inside, "--cases", str(count), *words]
         results.append(run_client(server, client, environment))
     (s0, c0, w0, _), (s1, c1, w1, note) = results
     more = cases - few

@@ -26,7 +26,7 @@ from flows.case.model_calls import ask_of
 from research.benchmarks.texts import answer_cache
 from research.benchmarks.texts.incidents import Incident
 from research.benchmarks.texts.weight_fit import calibration_error, logistic, versus
-from research.rows.coded_rows import WAYS, allowed, of_part
+from research.rows.coded_rows import WAYS, allowed, incidents_of_part
 from sgcad_core.asking.second_opinion import seconded
 from sgcad_core.case.records import CrashReport
 from sgcad_core.config import Config
@@ -52,7 +52,7 @@ class Case(NamedTuple):
 
 def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None = None) -> list[Case]:
     """Every report of a part, or the first so many, asked or remembered; a model that can answers several at once."""
-    incidents = {one.id: one for one in list(of_part(pool, part))[:most]}
+    incidents = {one.id: one for one in list(incidents_of_part(pool, part))[:most]}
     ask = ask_of(config)
 
     def heard(incident: Incident) -> dict[str, Any]:

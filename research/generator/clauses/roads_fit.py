@@ -8,7 +8,7 @@ from research.generator.phrase_labels import has
 from sgcad_core.kinds import DRIVEWAY, FOUR, INTERSECTIONS
 
 
-def suits(text: str, crash: Crash, actor: Actor) -> bool:
+def fits_roads(text: str, crash: Crash, actor: Actor) -> bool:
     """Whether what the words say of driveways, streets, signs and signals is true of these roads and of an
     actor that comes to them."""
     controls, met = {leg.control for leg in crash.legs}, crash.leg(actor.leg)
@@ -26,7 +26,7 @@ def suits(text: str, crash: Crash, actor: Actor) -> bool:
     return not has(text, DRIVEWAY) and (not has(text, "stop_line") or stops)
 
 
-def facts_beside(text: str, crash: Crash) -> set[str]:
+def facts_of_words(text: str, crash: Crash) -> set[str]:
     """Facts of the roads that the words tell beside their own: that there is a driveway, a signal or a stop sign."""
     found = {"layout"} if crash.layout == DRIVEWAY and has(text, "leaves") else set()
     if has(text, "sign") and any(leg.control == "stop" for leg in crash.legs):

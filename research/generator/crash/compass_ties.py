@@ -34,7 +34,7 @@ BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 """Facts of one road; "ways" is whether it is one-way, of however many lanes."""
 
 
-def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
+def uncertain_facts(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
     """Facts that sentences tell in part or of no known leg; "legs" where it stays open which legs there are.
 
     Then nothing about the legs beside the main road is known either, nor which legs a control stands at, unless all

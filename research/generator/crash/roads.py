@@ -167,7 +167,7 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     ]
 
 
-def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
+def with_access_mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth.
 
     Around junctions investigators rarely draw any: where no text tells of them (not `told`), most have none.
@@ -192,7 +192,7 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     return replace(crash, legs=legs, accesses=found)
 
 
-def carriageway(crash: Crash) -> Crash | None:
+def one_carriageway(crash: Crash) -> Crash | None:
     """The crash on the one carriageway of a divided road that matters; None where both do, or none is divided."""
     found = next((i for i, leg in enumerate(crash.legs) if leg.bearing == crash.actors[0].leg), None)
     if crash.layout != PLAIN or crash.accesses or len(crash.legs) != 2 or found is None:
@@ -276,7 +276,7 @@ def _lane_of(actor: Actor, lanes: int) -> int | None:
     return lanes if turns_left else actor.lane
 
 
-def misdrawn(rng: Random, crash: Crash) -> Crash:
+def with_wrong_lanes(rng: Random, crash: Crash) -> Crash:
     """The crash as a careless hand draws it: other numbers of lanes, no turn lanes, no medians."""
     lanes = [(rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for _ in range(4)]
     legs = []

@@ -11,7 +11,7 @@ from research.benchmarks.texts import fuse_weights
 from research.benchmarks.texts.fuse_weights import Case, fit, table
 from research.benchmarks.texts.incidents import Incident, is_blind
 from research.benchmarks.texts.weight_fit import calibration_error
-from research.rows.coded_rows import allowed, of_part, row
+from research.rows.coded_rows import allowed, incidents_of_part, row
 from research.rows.partial_labels import load
 from sgcad_core.reading.second_reader.fuse_gist import model_right
 from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
@@ -52,7 +52,7 @@ def test_what_the_text_tells_outright_narrows_a_set_and_never_contradicts_a_code
 
 def test_parts_are_apart_and_neither_holds_a_blind_report(tmp_path: Path) -> None:
     file = pool(tmp_path / "pool.jsonl")
-    train, kept = ({i.id for i in of_part(file, part)} for part in ("train", "validation"))
+    train, kept = ({i.id for i in incidents_of_part(file, part)} for part in ("train", "validation"))
     assert train
     assert kept
     assert not train & kept
@@ -65,7 +65,7 @@ def test_rows_are_what_training_reads(tmp_path: Path, monkeypatch: pytest.Monkey
     from research.rows.coded_rows import main
 
     main()
-    assert {told.id for told in load(out)} == {i.id for i in of_part(tmp_path / "pool.jsonl", "train")}
+    assert {told.id for told in load(out)} == {i.id for i in incidents_of_part(tmp_path / "pool.jsonl", "train")}
 
 
 def cases(*kinds: tuple[str, str, float, bool, int]) -> list[Case]:
@@ -119,7 +119,7 @@ def test_a_run_asks_once_and_writes_weights(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr("sys.argv", [*argv, "--out", str(out), "--fit", str(weights)])
     fuse_weights.main()
     asked = out.read_text()
-    assert len(asked.splitlines()) == len(list(of_part(tmp_path / "pool.jsonl", "validation")))
+    assert len(asked.splitlines()) == len(list(incidents_of_part(tmp_path / "pool.jsonl", "validation")))
     assert set(json.loads(weights.read_text())) == set(answer)
     fuse_weights.main()
     assert out.read_text() == asked
