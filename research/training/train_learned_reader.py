@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix, hstack
 
-from research.benchmarks.texts.weight_fit import calibration_error
 from research.rows.coded_rows import incidents_of_part
 from research.rows.reader_rows import FIELDS, Row, row, target
+from research.training.weight_fit import calibration_error
 from sgcad_core.reading.second_reader.learned_reader import (  # fmt: skip
     READING_WEIGHT,
     WORDS_NORM,

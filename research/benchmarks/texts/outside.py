@@ -31,8 +31,8 @@ import numpy as np
 
 from research.benchmarks.texts.incidents import by_hash
 from research.benchmarks.texts.outside_cases import DRAWN, Case, asked, cases, with_drawing
-from research.benchmarks.texts.weight_fit import SIGNS, calibration_error, logistic, versus
 from research.generator.writer_texts import Written, load
+from research.training.weight_fit import SIGNS, calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import load_weights
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS, Claim, kind_of, rules_claim

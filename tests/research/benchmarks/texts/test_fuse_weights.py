@@ -10,9 +10,9 @@ import yaml
 from research.benchmarks.texts import fuse_weights
 from research.benchmarks.texts.fuse_weights import Case, fit, table
 from research.benchmarks.texts.incidents import Incident, is_blind
-from research.benchmarks.texts.weight_fit import calibration_error
 from research.rows.coded_rows import allowed, incidents_of_part, row
 from research.rows.partial_labels import load
+from research.training.weight_fit import calibration_error
 from sgcad_core.reading.second_reader.fuse_gist import model_right
 from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
 from sgcad_core.records.second_reader import Heard

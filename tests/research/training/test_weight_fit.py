@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from research.benchmarks.texts.weight_fit import SIGNS, calibration_error, logistic, versus
+from research.training.weight_fit import SIGNS, calibration_error, logistic, versus
 
 
 def drawn(weights: list[float], count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
