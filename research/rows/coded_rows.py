@@ -3,7 +3,7 @@
     python -m research.rows.coded_rows POOL.jsonl --out ROWS.jsonl [--part train|validation]
 
 `python -m research.training.train --told ROWS.jsonl` learns from them; the form of a row is
-`research.rows.partial_labels.load`'s. Blind reports (research/benchmarks/texts/incidents.py) never become rows; those
+`research.rows.partial_labels.load`'s. Blind reports (research/rows/coded_incidents.py) never become rows; those
 whose hash leaves 1 are for validation. A code allows a set of values: any side of the flagged areas, any way to go
 straight on. Where the rules read one of that set outright, that one is trained; where they read another one, the code
 stands. What no code says is not trained, whatever the rules say. The rows hold the reports' texts: they are made anew
@@ -18,7 +18,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from research.benchmarks.texts.incidents import BLIND_OF, Incident, by_hash, of_pool
+from research.rows.coded_incidents import BLIND_OF, Incident, by_hash, of_pool
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader.seven_question_gist import rules_say
 

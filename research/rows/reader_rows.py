@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from research.benchmarks.texts.incidents import Incident, by_hash
+from research.rows.coded_incidents import Incident, by_hash
 from research.rows.coded_rows import allowed
 from sgcad_core.reading.second_reader.learned_reader_features import account_of, readings, words
 from sgcad_core.reading.second_reader.seven_question_gist import shown_alike

@@ -24,7 +24,7 @@ import numpy as np
 
 from flows.case.model_calls import ask_of
 from research.benchmarks.texts import answer_cache
-from research.benchmarks.texts.incidents import Incident
+from research.rows.coded_incidents import Incident
 from research.rows.coded_rows import WAYS, allowed, incidents_of_part
 from research.training.weight_fit import calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import seconded

@@ -29,9 +29,9 @@ from pathlib import Path
 
 import numpy as np
 
-from research.benchmarks.texts.incidents import by_hash
 from research.benchmarks.texts.outside_cases import DRAWN, Case, asked, cases, with_drawing
 from research.generator.writer_texts import Written, load
+from research.rows.coded_incidents import by_hash
 from research.training.weight_fit import SIGNS, calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import load_weights
 from sgcad_core.errors import ConfigError

@@ -19,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from research.benchmarks.texts.incidents import by_hash
+from research.rows.coded_incidents import by_hash
 from sgcad_core.reading.crash_facts import ContactFacts
 from sgcad_core.reading.reading import Reading, read
 

@@ -72,7 +72,7 @@ def test_weights_say_what_the_readers_said(tmp_path: Path) -> None:
 
 
 def test_reports_become_rows_and_what_cannot_be_drawn_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from research.benchmarks.texts.incidents import of_pool
+    from research.rows.coded_incidents import of_pool
 
     made = [row(one) for one in of_pool(pool(tmp_path / "pool.jsonl", 6))]
     known = [one for one in made if one]

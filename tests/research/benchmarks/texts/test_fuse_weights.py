@@ -9,7 +9,7 @@ import yaml
 
 from research.benchmarks.texts import fuse_weights
 from research.benchmarks.texts.fuse_weights import Case, fit, table
-from research.benchmarks.texts.incidents import Incident, is_blind
+from research.rows.coded_incidents import Incident, is_blind
 from research.rows.coded_rows import allowed, incidents_of_part, row
 from research.rows.partial_labels import load
 from research.training.weight_fit import calibration_error

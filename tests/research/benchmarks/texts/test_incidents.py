@@ -11,7 +11,8 @@ import pytest
 
 from research.benchmarks.texts import incidents
 from research.benchmarks.texts.incident_scores import Run, false_success, scores
-from research.benchmarks.texts.incidents import Incident, is_blind, of_dev, of_pool, table, write_cases
+from research.benchmarks.texts.incidents import table, write_cases
+from research.rows.coded_incidents import Incident, is_blind, of_dev, of_pool
 
 TRUTH: dict[str, Any] = {
     "contact": True,
