@@ -59,7 +59,7 @@ class Report:
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
     notes: list[tuple[int, list[str]]] = field(default_factory=list)
-    """Where each noted phrase of the narrative ends and what it tells, as names of `notes.NOTES`."""
+    """Where each noted phrase of the narrative ends and what it tells, as names of `phrase_notes.NOTES`."""
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
     doubtful: set[str] = field(default_factory=set)

@@ -18,7 +18,7 @@ _ORDINALS = sorted(values("ordinal"), key=values("ordinal").__getitem__)
 ORDINALS = ("", *(word for word in _ORDINALS if word.isalpha()))
 SHORT_ORDINALS = ("", *(word for word in _ORDINALS if not word.isalpha()))
 MORE = 0.4
-"""How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
+"""How often a phrase of `road_clauses` takes the place of one built here, where phrases are not held out."""
 
 COUNTED = 0.25
 """Share of those who came by the only lane of whom it is said that it was the right or the first one."""
@@ -129,7 +129,7 @@ def _named(form: str, xb: str, from_left: bool = False, **slots: str) -> LaneNam
 
 
 def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:
-    """Which list of `clauses_road.LANE` names a lane; "" if none does."""
+    """Which list of `road_clauses.LANE` names a lane; "" if none does."""
     use = leg.turns_in[number - 1] if leg.turns_in and number else ""
     if use in ("left", "right"):
         return f"turn_{use}"

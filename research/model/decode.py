@@ -1,4 +1,4 @@
-"""Free-running greedy answers of many reports at once, held to the walks of `answers`.
+"""Free-running greedy answers of many reports at once, held to the walks of `answer_grammar`.
 
 For measuring during and after training, with torch alone; the product decodes through its own engine. Every row
 has its own cached keys and values and its own position, so rows of any length share a batch.

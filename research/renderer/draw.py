@@ -1,7 +1,7 @@
 """A report's diagram: view, roads, vehicles at their poses, north arrow, captions, scan.
 
-Everything follows from the report's seed. What a drawing tells is in `generator.targets.drawn_facts`; speeds and
-names are only captions, too small to read at the size that the model sees.
+Everything follows from the report's seed. What a drawing tells is in `research.generator.targets.drawn_facts`; speeds
+and names are only captions, too small to read at the size that the model sees.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ class Row:
     image_start: int = 0
     pieces: list[tuple[str, str]] = field(default_factory=list)
     text_tags: list[tuple[int, list[int]]] = field(default_factory=list)
-    """Place of the last token of each sentence and what the sentence tells, as indices into `tags.TEXT`."""
+    """Place of the last token of each sentence and what the sentence tells, as indices into `evidence_labels.TEXT`."""
     notes: list[tuple[int, list[int]]] = field(default_factory=list)
     """Place of the last token of each noted phrase and what it tells, as indices into `NOTES`."""
     pointers: list[tuple[int, list[int]]] = field(default_factory=list)
@@ -27,4 +27,4 @@ class Row:
     also: dict[int, list[int]] = field(default_factory=dict)
     """Place of a value of which only a set is known, and the tokens of that set."""
     picture_tags: NDArray[np.uint8] | None = None
-    """What each picture token shows, (tokens, len(tags.PICTURE)) of 0 and 1."""
+    """What each picture token shows, (tokens, len(evidence_labels.PICTURE)) of 0 and 1."""

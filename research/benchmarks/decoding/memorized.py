@@ -8,7 +8,7 @@ ROWS is what was trained on (`research.rows.partial_labels.load`). Each text is 
 freely, without a grammar, greedily and sampled, and what it writes is searched for in all texts (after Carlini et al.
 2021, "Extracting training data from large language models", with the prefix known to the attacker). What it copies from
 the beginning that it was given is no secret and does not count; a language model without its adapter shows how much of
-the rest is phrases that anybody would guess. Exits with 1 where a run of --limit characters or more comes back. What
+the rest is phrases that are easy to guess. Exits with 1 where a run of --limit characters or more comes back. What
 the product draws is narrower still: its grammar knows a gist's words only.
 """
 
@@ -27,7 +27,7 @@ from research.model.tokens import Coder, load_tokenizer
 from research.rows.partial_labels import load
 
 LIMIT = 40
-"""Characters in a row that nobody writes by chance."""
+"""Characters in a row that do not come by chance."""
 CUTS = (0.2, 0.5, 0.8)
 NEW_TOKENS = 60
 COPIED = 12

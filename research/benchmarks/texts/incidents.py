@@ -6,8 +6,8 @@
 
 Runs `sgcad evaluate` with a config, the template one unless told otherwise, over the cases and scores what it leaves
 (research/benchmarks/texts/incident_scores.py). A pool's line is a report with its codes: {"id", "text", "contact",
-"subject", "other", "road"}. Of the pool the reports whose id's SHA-256 is a multiple of six are *blind*: nobody reads
-them, and only their totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their
+"subject", "other", "road"}. Of the pool the reports whose id's SHA-256 is a multiple of six are *blind*: never
+read, only their totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their
 hashes fall; blind and dev are always taken whole. Beside the measures stand how many were generated, refused and
 exhausted, and the false successes: a contact is told, none came about, and the status is "generated". The first part of
 an id, up to "-", is its genre; `--only` takes one. Where some reports give no account of a crash (they refer to another

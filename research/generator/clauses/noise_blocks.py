@@ -43,7 +43,7 @@ TELLING = {"spd", "dir", "lane", "doing", "code", "move"}
 
 
 def event_of(crash: Crash, index: int, who: tuple[int, int]) -> str | None:
-    """Key of the critical event of an actor, as `clauses_codes.EVENT` has it; None where nothing is coded."""
+    """Key of the critical event of an actor, as `code_clauses.EVENT` has it; None where nothing is coded."""
     if index == who[0]:
         return _own_event(crash, crash.actors[index], crash.actors[who[1]])
     if index == who[1] and crash.actors[index].vehicle:

@@ -1,4 +1,4 @@
-"""Noun phrases for roads, lanes, junctions, limits and directions, beside those of `clauses_words`.
+"""Noun phrases for roads, lanes, junctions, limits and directions, beside those of `clause_words`.
 
 Slots: {noun} "urban road", {n} all its lanes ("four"), {each} lanes each way ("two lanes"), {lanes} of a one-way
 road, {a} {b} "two northbound lanes" of either way, {median} a phrase of MEDIAN, {xb} "northbound", {mph} {kph},

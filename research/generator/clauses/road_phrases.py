@@ -151,7 +151,7 @@ class RoadsMixin:
         return total
 
     def _further(self, leg: Leg, noun: str) -> str:
-        """A phrase of `clauses_road` for a road without turn lanes at the junction, whatever its lanes."""
+        """A phrase of `road_clauses` for a road without turn lanes at the junction, whatever its lanes."""
         rng, axis = self.rng, leg.bearing % 4
         total = words.NUMBERS[min(leg.lanes_in + leg.lanes_out + leg.twltl, len(words.NUMBERS) - 1)]
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
