@@ -122,7 +122,8 @@ def _fit(seen: Any, may: NDArray[np.bool_], l2: float) -> tuple[Floats, Floats]:
 
 def _softmax(scores: Floats) -> Floats:
     powers: Floats = np.exp(scores - scores.max(1, keepdims=True))
-    return powers / powers.sum(1, keepdims=True)
+    shares: Floats = powers / powers.sum(1, keepdims=True)
+    return shares
 
 
 # ------------------------------------------------------------------ judge
