@@ -169,7 +169,7 @@ def train(training: Training, out: Path, budget: float, save_every: float = 150.
     training.save(out)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", type=Path)
@@ -179,7 +179,7 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=1)
     for name, value in asdict(Options()).items():
         parser.add_argument(f"--{name.replace('_', '-')}", type=type(value), default=value)
-    given = vars(parser.parse_args())
+    given = vars(parser.parse_args(arguments))
     torch.set_num_threads(given.pop("threads"))
     rows, out, budget, every = (given.pop(key) for key in ("rows", "out", "budget", "save_every"))
     training = begun(Options(**given), rows)

@@ -1,5 +1,5 @@
 # ruff: noqa: E501 - lists of words
-"""The event sentences of a report: who erred, who avoided, who struck whom, where they came to rest.
+"""The event sentences of a report: errors, evasions, contacts, places of rest.
 
 A part of the writer.
 """
@@ -11,9 +11,8 @@ from random import Random
 from typing import Any
 
 from research.generator import words
-from research.generator.clauses import contact as clauses_contact
-from research.generator.clauses import motion, turning, turning_words
-from research.generator.clauses.critical import CRITICAL
+from research.generator.clauses import contact_clauses, error_clauses, motion_clauses, roads_fit
+from research.generator.clauses.error_clauses import CRITICAL
 from research.generator.crash.impacts import TRIES, ImpactsMixin
 from research.generator.crash.world import OPPOSITE, Actor, Crash
 from research.generator.grammar import StatedFacts, clause_of, fill
@@ -47,7 +46,7 @@ class EventsMixin(ImpactsMixin):
 
     # -------------------------------------------------------------- events
     def culprit(self) -> tuple[int, int]:
-        """Index of the one who errs and of the other."""
+        """Indices of the actor that errs and of the other."""
         plain = ("straight", "negotiating_curve", "stopped", "parked", "slowing")
         actors = self.crash.actors
         first = self.crash.contacts[0]
@@ -84,14 +83,14 @@ class EventsMixin(ImpactsMixin):
             out.append(self.impact(number, contact))
         if config == "rear_end" and rng.random() < 0.06 and len(out) > 1:
             out = out[1:]
-        rest = clauses_contact.REST.without(self.held_out, self._untrue_rest())
+        rest = contact_clauses.REST.without(self.held_out, self._untrue_rest())
         return out + [self._rests(rest) for _ in range(int(rng.random() < 0.7) + (rng.random() < 0.3))]
 
     def _avoids(self, other: Actor) -> Sequence[str]:
         """Clauses of avoidance; of one that is alone those that speak of no second vehicle."""
         single = not self.held_out and (self.crash.alone or other.maneuver == "parked")
         unnamed = self.crash.alone and not single
-        return clauses_contact.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
+        return contact_clauses.AVOID.without(self.held_out, ["two"] * single, ["W"] * unnamed)
 
     def _untrue_rest(self) -> list[str]:
         """Labels of clauses of rest that need what is not there."""
@@ -116,19 +115,19 @@ class EventsMixin(ImpactsMixin):
         return str(self.say([clause], v, w))
 
     def _error(self, key: str) -> Group | Sequence[str]:
-        """Clauses of what the one who errs does; of one that has waited, half of the time, that it goes."""
+        """Clauses of the error; of an actor that has waited, half of the time, that it goes."""
         if self.held_out:
             return CRITICAL[key]
         if self.crash.layout == DRIVEWAY and key == "left_opposite" and self.rng.random() < 0.5:
-            return turning.INTO
+            return error_clauses.INTO
         turns = key in ("turn_left", "turn_right") or (key == "left_opposite" and self.crash.layout != DRIVEWAY)
         if turns and self.rng.random() < BOUND:
-            return turning.ONWARD
+            return error_clauses.ONWARD
         if key == "lane_change" and self.rng.random() < STRAYING:
             at_edge = self._at_edge(self.crash.actors[self.who[0]])
-            return turning.STRAYS.without(False, [] if at_edge else ["shoulder"])
+            return error_clauses.STRAYS.without(False, [] if at_edge else ["shoulder"])
         if self.waited and self.rng.random() < 0.5:
-            return turning.PROCEEDS["cross" if key == "crossing" else "turn"]
+            return error_clauses.PROCEEDS["cross" if key == "crossing" else "turn"]
         return CRITICAL[key]
 
     def _at_edge(self, actor: Actor) -> bool:
@@ -154,22 +153,22 @@ class EventsMixin(ImpactsMixin):
         return self.crash.config == "parked" and not self.held_out and has(clause, "drifts")
 
     def reason(self, key: str, actor: Actor) -> str:
-        """What one stands or slows for; of those who turn off a road into a driveway half say so."""
+        """What an actor stands or slows for; half of the turns off a road into a driveway are told."""
         leaves = self.crash.layout == DRIVEWAY and not self.crash.is_main(actor.leg)
         others = [] if self.held_out or not key.startswith("turn_") else self._others(actor, key == "turn_left")
         if others and self.rng.random() < YIELDING:
             slots = {"other": words.bound(self.rng, self.rng.choice(others)), "turn": key.removeprefix("turn_")}
-            return fill(clause_of(self.rng, turning.YIELDS, False), slots.__getitem__)
-        if key in turning.INTO_WHY and self.crash.layout == DRIVEWAY and not leaves and not self.held_out:
-            options = turning.INTO_WHY[key] if self.rng.random() < 0.5 else motion.WHY[key]
+            return fill(clause_of(self.rng, error_clauses.YIELDS, False), slots.__getitem__)
+        if key in error_clauses.INTO_WHY and self.crash.layout == DRIVEWAY and not leaves and not self.held_out:
+            options = error_clauses.INTO_WHY[key] if self.rng.random() < 0.5 else motion_clauses.WHY[key]
             return plain(self.spoken(self.fitting(options, actor)))
         if key in ("sign", "light"):
-            self.stated |= turning_words.met(key, self.crash)
-            return plain(self.spoken(clause_of(self.rng, motion.WHY[key], self.held_out)))
-        return plain(self.spoken(self.fitting(motion.WHY[key], actor, into=not leaves)))
+            self.stated |= roads_fit.met(key, self.crash)
+            return plain(self.spoken(clause_of(self.rng, motion_clauses.WHY[key], self.held_out)))
+        return plain(self.spoken(self.fitting(motion_clauses.WHY[key], actor, into=not leaves)))
 
     def _others(self, actor: Actor, left: bool) -> list[int]:
-        """Headings of traffic that one who turns may have to wait for: to the left the oncoming, on a side road any; to
+        """Headings of traffic that a turning actor may have to wait for: to the left the oncoming, on a side road any; to
         the right what comes from the left, on the lane that it turns into."""
         only = (actor.leg + (4 if left else 2)) % 8
         others = [leg for leg in self.crash.legs if leg.bearing == only]
@@ -179,20 +178,20 @@ class EventsMixin(ImpactsMixin):
 
     def spoken(self, text: str) -> str:
         """A clause or phrase that is written; notes what it tells of driveways, signals and signs."""
-        self.stated |= turning_words.facts_beside(text, self.crash)
+        self.stated |= roads_fit.facts_of_words(text, self.crash)
         return text
 
     def fitting(self, options: Group | Sequence[str], actor: Actor, into: bool = True) -> str:
         """A clause or phrase, its choices made, that suits the roads: of a driveway or a signal only where there is one,
-        of a stop sign only where the one that it speaks of meets one.
+        of a stop sign only where the actor that it speaks of meets one.
 
-        `into`: whether it may be a driveway that somebody turns into.
+        `into`: whether the driveway may be one that an actor turns into.
         """
         clause = clause_of(self.rng, options, self.held_out)
         if self.held_out:
             return clause
         for _ in range(TRIES):
-            if turning_words.suits(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
+            if roads_fit.fits_roads(clause, self.crash, actor) and (into or not has(clause, DRIVEWAY)):
                 break
             clause = clause_of(self.rng, options, self.held_out)
         return clause

@@ -1,7 +1,7 @@
 """The small language in which phrases are written: `[a|b|c]` chooses, `{slot}` is filled.
 
 Choices may nest. Filling a slot is reported, so that the caller knows which facts the text told; labels of a phrase
-(`labels`) stay in it until it is filled.
+(`phrase_labels`) stay in it until it is filled.
 """
 
 from __future__ import annotations

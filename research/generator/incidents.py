@@ -1,8 +1,9 @@
-"""Made incident reports: an unnumbered subject, somebody whom it met or nearly met, and the gist of it.
+"""Made incident reports: an unnumbered subject, the actor that it met or nearly met, and the gist of it.
 
-A situation (who did what, which sides could meet) is drawn from a table and told in words of `phrases/incidents.yaml`,
-in one of three manners: a company's report of its automated vehicle, a form's, or a study's of what a driver's camera
-saw. No road is made: the gist asks for none but whether there was a junction. Knows no tokens and no model.
+A situation (the maneuvers of both, the sides that could meet) is drawn from a table and told in words of
+`phrases/incidents.yaml`, in one of three manners: a company's report of its automated vehicle, a form's, or a study's
+of what a driver's camera saw. No road is made: the gist asks for none but whether there was a junction. Knows no tokens
+and no model.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ _NEAR: Mapping[str, Group] = _LISTS["NEAR"]
 
 @dataclass(frozen=True)
 class Situation:
-    """What both did, pairs of sides that may touch, whom it is like with, how often it comes, and as a near crash."""
+    """Maneuvers of both, sides that may touch, kinds of the other actor, how often it comes, and as a near crash."""
 
     subject: str
     other: str

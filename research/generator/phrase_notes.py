@@ -1,8 +1,8 @@
-"""Notes behind phrases: who a mention means, whose side a word names, which lanes an item of a list or a road has.
+"""Notes behind phrases: the actor of a mention or of a named side, the lanes of an item of a list or of a road.
 
 While a report is written, marks stand behind the words of such phrases; taken out again they say where each ends and
 what it tells, in whatever sentence it stands. A list tells the lanes of an approach item by item, and a clause that
-never trained speaks of "the nose of V2" as every other does: whoever learns to read is asked there. Phrases within
+never trained speaks of "the nose of V2" as every other does: the model is asked there. Phrases within
 codes and statements have no notes.
 """
 

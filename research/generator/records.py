@@ -1,12 +1,12 @@
 """The phrases of made reports as records: text, what it tells and needs, order of words, weight, side of the split.
 
 `phrases/NAME.yaml` holds lists: `LIST:` or `LIST.key:`, below it the sections `counted` (phrases that follow counts of
-real reports; they keep their share), `further` (breadth of English, so that words of reports that nobody foresaw have
-been met in some sentence) and `training` (like further, but never in a held-out report). A record is a text, or a
+real reports; they keep their share), `further` (breadth of English, so that words of reports that were not foreseen
+have been met in some sentence) and `training` (like further, but never in a held-out report). A record is a text, or a
 mapping of a text and of what is said of it:
 
     text    the phrase: `[a|b]` chooses, `{slot}` is filled, `[a|b<label>]` gives an alternative a label
-    order   who is named first in a clause of a contact: `struck`, `place`; else the striker
+    order   the actor named first in a clause of a contact: `struck`, `place`; else the striker
     tells   facts that it states beside those of its slots
     needs   what must be there for it to be used
     form    how it is built

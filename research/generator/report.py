@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
-from research.generator.crash.compass_ties import unsettled
-from research.generator.crash.crash import glanced, sample_crash, seldom
-from research.generator.crash.roads import beside, carriageway, misdrawn, mouths, one_way
+from research.generator.crash.compass_ties import uncertain_facts
+from research.generator.crash.crash import sample_crash, with_glancing_sides, with_rare_actor
+from research.generator.crash.roads import beside, one_carriageway, one_way, with_access_mouths, with_wrong_lanes
 from research.generator.crash.world import Crash, Leg
 from research.generator.grammar import HINT, Written, unmark
 from research.generator.targets import Targets, drawn_facts
@@ -59,7 +59,7 @@ class Report:
     sentences: Sentences = field(default_factory=list)
     """Where each sentence of the narrative ends and which facts it tells."""
     notes: list[tuple[int, list[str]]] = field(default_factory=list)
-    """Where each noted phrase of the narrative ends and what it tells, as names of `notes.NOTES`."""
+    """Where each noted phrase of the narrative ends and what it tells, as names of `phrase_notes.NOTES`."""
     shown: Crash | None = None
     """What the drawing shows, where that is not the crash itself."""
     doubtful: set[str] = field(default_factory=set)
@@ -87,15 +87,15 @@ def make_report(
     if mode == "text" and not held_out:
         crash, written = _worth_telling(rng, seed, length, crash, written)
     sentences = written.sentences
-    half = carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
+    half = one_carriageway(crash) if mode in ("both", "image") and rng.random() < 0.4 else None
     if half is not None:
         crash, sentences = half, _without_road(half, sentences)
     if mode in ("both", "image", "none") and not held_out:  # without context no fewer, else contrast invents driveways
         told_of = mode == "both" and any("access" in facts for _, facts in sentences)
-        crash = mouths(Random(f"{seed} mouths"), crash, told_of or mode == "none")
+        crash = with_access_mouths(Random(f"{seed} mouths"), crash, told_of or mode == "none")
     drawn, shown = drawn_facts(crash, control, arrows, bool(crash.accesses)), None
     if mode == "both" and not held_out and half is None and rng.random() < CARELESS:
-        shown = misdrawn(rng, crash)
+        shown = with_wrong_lanes(rng, crash)
         drawn = {fact for fact in drawn if fact.split(".")[0] not in ("lanes", "turns", "median", "lane")}
     if mode in ("image", "none"):
         written, sentences = Written(), []
@@ -130,12 +130,12 @@ def _sample(rng: Random, seed: int, held_out: bool, mode: str, attempt: int = 0)
         return crash
     own = Random(f"{seed} streets {attempt}")
     if mode == "image":
-        crash = seldom(own, crash)
-    return glanced(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
+        crash = with_rare_actor(own, crash)
+    return with_glancing_sides(own, one_way(own, crash, ONE_WAY.get(mode, 0.0)))
 
 
 def _worth_telling(rng: Random, seed: int, length: float, crash: Crash, written: Written) -> tuple[Crash, Written]:
-    """A report in which a road that nobody describes is, most often, a plain one: writers mention what is unusual."""
+    """A report in which an undescribed road is, most often, a plain one: writers mention what is unusual."""
     for attempt in range(1, SECOND_THOUGHTS + 1):
         told = {fact for _, facts in written.sentences for fact in facts}
         rare = [leg for leg in crash.legs if not _plain(leg, told) and f"lanes.{leg.bearing % 4}" not in told]
@@ -157,7 +157,7 @@ def _stated_facts(crash: Crash, sentences: Sentences) -> tuple[set[str], set[str
     """What sentences tell of a crash, and what they tell without saying of which legs."""
     facts = {fact for _, some in sentences for fact in some if not fact.startswith(HINT)}
     facts |= {"legs"} if "layout" in facts else set()
-    doubtful = facts & unsettled(crash, [some for _, some in sentences])
+    doubtful = facts & uncertain_facts(crash, [some for _, some in sentences])
     return facts - doubtful, doubtful
 
 
@@ -168,7 +168,7 @@ def _without_road(crash: Crash, sentences: Sentences) -> Sentences:
 
 
 def _prior(crash: Crash, rng: Random) -> Targets:
-    """What would be answered to this crash had somebody told a part of it: the distribution without context."""
+    """Answers to this crash with a random part of it told: the distribution without context."""
     facts = drawn_facts(crash, True, True, bool(crash.accesses)) | {"light", "weather", "surface"}
     facts |= {f"limit.{leg.bearing % 4}" for leg in crash.legs}
     targets = Targets(crash, {fact for fact in sorted(facts) if rng.random() < 0.8})

@@ -1,6 +1,6 @@
 """What is to be answered to a report, given which facts its text and its drawing tell.
 
-Facts that nobody tells are null where the answer allows it; otherwise the true value stands in the target with
+Untold facts are null where the answer allows it; otherwise the true value stands in the target with
 a small weight, so that a model learns how often it is so. Weights go by the path of the answer.
 """
 
@@ -206,9 +206,9 @@ class Targets:
 def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[str]:
     """What a drawing of a crash tells: all but words, speeds, kinds of cars and the weather.
 
-    Nor that somebody slowed, where one that stands or slows means to turn, that one on the wrong side of a road meant
-    to pass, if the one passed is not there, which of two that touch with the same side struck the other, or how a
-    pedestrian stood.
+    It does not tell that an actor slowed, where a standing or slowing one means to turn, that one on the wrong side of
+    a road meant to pass, if the passed one is not there, which of two that touch with the same side struck the other,
+    or how a pedestrian stood.
     """
     facts = {"layout", "legs", "curve"} | ({"control"} if control else set()) | ({"access"} if access else set())
     for leg in crash.legs:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from random import Random
 
-from research.generator.clauses import clause_words
-from research.generator.clauses import road as more
+from research.generator.clauses import clause_words, road_clauses
 from research.generator.crash.world import WORDS, Crash, Leg
 from research.generator.grammar import clause_of
 from research.generator.phrase_labels import plain
@@ -19,7 +18,7 @@ _ORDINALS = sorted(values("ordinal"), key=values("ordinal").__getitem__)
 ORDINALS = ("", *(word for word in _ORDINALS if word.isalpha()))
 SHORT_ORDINALS = ("", *(word for word in _ORDINALS if not word.isalpha()))
 MORE = 0.4
-"""How often a phrase of `clauses_road` takes the place of one built here, where phrases are not held out."""
+"""How often a phrase of `road_clauses` takes the place of one built here, where phrases are not held out."""
 
 COUNTED = 0.25
 """Share of those who came by the only lane of whom it is said that it was the right or the first one."""
@@ -29,7 +28,7 @@ def direction(rng: Random, bearing: int, held_out: bool) -> str:
     """`north`, `in a northerly direction`, ..."""
     word = WORDS[bearing % 8]
     if not held_out and rng.random() < MORE / 2:
-        return plain(more.phrase(rng, more.DIRECTION, word=word))
+        return plain(road_clauses.phrase(rng, road_clauses.DIRECTION, word=word))
     return _one(rng, clause_words.DIRECTION["held_out" if held_out else "trained"]).format(word=word)
 
 
@@ -61,7 +60,7 @@ def limit(rng: Random, mph: int, held_out: bool) -> str:
     """A speed limit in one of the unit spellings; a wrong pair now and then."""
     k = kph(mph) if rng.random() > 0.015 else kph(mph + rng.choice((-5, 5)))
     if not held_out and rng.random() < MORE:
-        return plain(more.phrase(rng, more.LIMIT, mph=str(mph), kph=str(k)))
+        return plain(road_clauses.phrase(rng, road_clauses.LIMIT, mph=str(mph), kph=str(k)))
     return clause_words.LIMIT.drawn(rng).format(mph=mph, k=k)
 
 
@@ -81,8 +80,8 @@ def lanes(count: int, way: str = "") -> str:
 
 @dataclass(frozen=True)
 class LaneName:
-    """How a lane is named: the words, whether they say its direction (`headed`), and whether only who knows the lanes
-    beside it can number it, from the right as answers do (`from_left`)."""
+    """How a lane is named: the words, whether they say its direction (`headed`), and whether its number from the
+    right, which answers want, follows only from the lanes beside it (`from_left`)."""
 
     text: str
     headed: bool
@@ -94,9 +93,11 @@ def lane(rng: Random, leg: Leg, number: int | None, xb: str, held_out: bool) -> 
     if not held_out and leg.lanes_in == 1 and rng.random() < COUNTED:
         return _named(_one(rng, clause_words.LANE["only"]), xb)
     if not held_out and rng.random() < MORE and (kind := _kind_of_lane(rng, leg, number)):
-        clause = clause_of(rng, more.LANE[kind], False)
+        clause = clause_of(rng, road_clauses.LANE[kind], False)
         slots = {"xb": xb, "number": NUMBERS[number or 1], "ordinal": ORDINALS[number or 1]}
-        return LaneName(plain(more.put(clause, **slots)), "xb" in slots_of(clause), kind in ("left", "turn_left"))
+        return LaneName(
+            plain(road_clauses.put(clause, **slots)), "xb" in slots_of(clause), kind in ("left", "turn_left")
+        )
     use = leg.turns_in[number - 1] if leg.turns_in and number else ""
     if use in ("left", "right") and rng.random() < 0.85:
         return _named(_one(rng, clause_words.LANE["turn"]), xb, use == "left", use=use)
@@ -128,7 +129,7 @@ def _named(form: str, xb: str, from_left: bool = False, **slots: str) -> LaneNam
 
 
 def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:
-    """Which list of `clauses_road.LANE` names a lane; "" if none does."""
+    """Which list of `road_clauses.LANE` names a lane; "" if none does."""
     use = leg.turns_in[number - 1] if leg.turns_in and number else ""
     if use in ("left", "right"):
         return f"turn_{use}"
@@ -144,7 +145,7 @@ def _kind_of_lane(rng: Random, leg: Leg, number: int | None) -> str:
 def junction(rng: Random, crash: Crash, held_out: bool) -> str:
     """`a T-intersection`, `a four-leg intersection`, or the plain word."""
     if not held_out and rng.random() < MORE:
-        return "a " + plain(more.phrase(rng, more.JUNCTION[crash.layout]))
+        return "a " + plain(road_clauses.phrase(rng, road_clauses.JUNCTION[crash.layout]))
     return "a " + _one(rng, clause_words.JUNCTION[FOUR if crash.layout == FOUR else T])
 
 

@@ -146,8 +146,8 @@ class Writer(SceneMixin, ApproachMixin, EventsMixin, BlocksMixin):
         return text + chr(MARK + len(self.sentences) - 1)
 
     def _hints(self, clause: str, v: int, w: int) -> set[str]:
-        """How a clause is built, which is no fact of the crash but what its facts are read from: who is named first and
-        second, and whether an impact is told from the one who strikes (active) or from the one who is struck."""
+        """How a clause is built, which is no fact of the crash but what its facts are read from: the actors named
+        first and second, and whether an impact is told from the striker (active) or from the struck one."""
         named = [slot for slot in slots_of(clause) if slot in "VWST"]
         order = list(dict.fromkeys(v if slot in "VS" else w for slot in named))
         hints = {f"{HINT}named{place}.{self.id_of(index)}" for place, index in enumerate(order[:2])}

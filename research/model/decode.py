@@ -1,4 +1,4 @@
-"""Free-running greedy answers of many reports at once, held to the walks of `answers`.
+"""Free-running greedy answers of many reports at once, held to the walks of `answer_grammar`.
 
 For measuring during and after training, with torch alone; the product decodes through its own engine. Every row
 has its own cached keys and values and its own position, so rows of any length share a batch.
@@ -19,7 +19,9 @@ from research.model import answer_grammar
 from research.model.fast_layers import norm, rotate
 from research.model.model import Forward
 from research.model.tokens import ROAD, SCENARIO, Coder
-from research.rows.rows import Row, collate, positions, road_ids
+from research.rows.collate import collate, positions
+from research.rows.report_rows import road_ids
+from research.rows.row import Row
 
 
 class Cache:

@@ -1,7 +1,7 @@
 """A report's diagram: view, roads, vehicles at their poses, north arrow, captions, scan.
 
-Everything follows from the report's seed. What a drawing tells is in `generator.targets.drawn_facts`; speeds and
-names are only captions, too small to read at the size that the model sees.
+Everything follows from the report's seed. What a drawing tells is in `research.generator.targets.drawn_facts`; speeds
+and names are only captions, too small to read at the size that the model sees.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _lane_widths(rng: Random, crash: Crash) -> dict[int, float]:
 
 def _aim(rng: Random, pen: Pen, tracks: list[Track]) -> None:
     """Center the sheet somewhere between the hub and the impact, so that both are on it and, if that can be, where
-    everyone came from."""
+    all actors came from."""
     at = [track.poses[track.contact] for track in tracks]
     came = [track.poses[track.contact - 1] for track in tracks if track.contact]
     x, y = sum(p.x for p in at) / len(at), sum(p.y for p in at) / len(at)

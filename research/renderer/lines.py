@@ -1,7 +1,7 @@
 """Where things lie on the ground, in metres: legs as bands, lanes as lines, the ways of the actors.
 
 x east, y north, the hub at (0, 0). A leg's lateral coordinate counts from its center line and is positive to the right
-of a driver who comes towards the hub, so inbound lanes are positive. Knows no pixels.
+of a driver on the way to the hub, so inbound lanes are positive. Knows no pixels.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Band:
         return self.right - (k - 0.5) * self.lane
 
     def lane_out(self, lane: int) -> float:
-        """Lateral center of an outbound lane, 1 at the right curb of those who drive out."""
+        """Lateral center of an outbound lane, 1 at the right curb as one drives out."""
         k = min(max(lane, 1), max(self.leg.lanes_out, 1))
         return self.left + (k - 0.5) * self.lane
 
@@ -80,7 +80,7 @@ class Ground:
     """All bands of a crash and how far the junction reaches; `lanes` has the width of lanes by axis.
 
     `centered`: whether the pavement of a leg lies evenly about the line through the hub, as where a road is widened for
-    turn lanes so that those who drive straight on stay in line; else its center line does.
+    turn lanes so that through traffic stays in line; else its center line does.
     """
 
     def __init__(
@@ -137,7 +137,7 @@ class Ground:
 
 
 def bend(inbound: Points, away: Points, turn: int) -> Points:
-    """The curve that joins two lines: a cubic whose ends keep the directions, nearly a chord for those who drive on."""
+    """The curve that joins two lines: a cubic whose ends keep the directions, nearly a chord for through traffic."""
     a, b = inbound[-1], away[0]
     u = (inbound[-1] - inbound[-2]) / STEP
     v = (away[1] - away[0]) / STEP

@@ -1,4 +1,4 @@
-"""Who stands where in the drawing: the contact first, then poses before and after it.
+"""Poses of all actors in the drawing: the contact first, then those before and after it.
 
 At a contact the two boxes touch with the sides that the crash names. The actor that keeps its course is put on
 its way, where the other, put against it and turned as far as its side demands, is nearest to its own. Knows no pixels.
@@ -77,12 +77,12 @@ class Stage:
         return found
 
     def _parked(self, way: Points, actor: Actor) -> Points:
-        """At the curb or beyond it, where nobody drives."""
+        """At the curb or beyond it, where no traffic is."""
         band = self.ground.bands[actor.leg]
         return shift(way, -2, -1, -(band.right - band.lane_in(actor.lane)) * self.rng.uniform(0.6, 1.3))
 
     def _keeper(self, first: int, second: int) -> int:
-        """Who stays on its line at the contact."""
+        """The actor that stays on its line at the contact."""
         actors = self.crash.actors
         for i in (second, first):
             if actors[i].maneuver in KEEPS and actors[i].vehicle:
@@ -200,7 +200,7 @@ class Stage:
         return track
 
     def _leader(self, index: int) -> int | None:
-        """Whom an actor runs into from behind, on the same road."""
+        """The actor that another runs into from behind, on the same road."""
         return next((c.struck for c in self.crash.queue if c.striker == index and c.struck in self.at), None)
 
     def _ahead(self, index: int) -> int:
@@ -249,7 +249,7 @@ class Stage:
         return found[::-1]
 
     def _hidden(self, index: int, pose: Pose, others: Mapping[int, Track]) -> bool:
-        """Whether a box would lie where another actor is hit or came from, so that nobody could tell them apart."""
+        """Whether a box would lie where another actor is hit or came from, so that the two could not be told apart."""
         taken = [(at, self.sizes[other]) for other, at in self.at.items() if other != index]
         taken += [(one, other.size) for other in others.values() for one in other.poses[: other.contact]]
         return any(overlap(pose, self.sizes[index], one, size) for one, size in taken)
@@ -296,5 +296,5 @@ def _turned(actor: Actor) -> float:
 
 
 def _areas(contact: Contact) -> dict[int, str]:
-    """Which side of whom is touched."""
+    """The touched sides, by actor."""
     return {contact.striker: contact.striker_area, contact.struck: contact.struck_area}

@@ -226,7 +226,7 @@ class RoadMarks:
         return usual
 
     def _one_way(self, band: Band, start: float, arrows: bool) -> None:
-        """Arrows on a one-way road, without which nobody could tell; on a plain one the vehicles mostly do."""
+        """Arrows on a one-way road, which nothing else would show; on a plain one the vehicles mostly do."""
         leg = band.leg
         if leg.kind != ROAD or leg.two_way or (arrows and leg.turns_in):
             return

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +16,7 @@ from research.generator.crash.compass_ties import VAGUE
 from research.generator.phrase_notes import NOTES
 from research.generator.report import Report
 from research.rows import evidence_labels
-
-if TYPE_CHECKING:
-    from research.rows.rows import Row
+from research.rows.row import Row
 
 
 def sources(row: Row, report: Report, path: tuple[Any, ...]) -> list[int]:

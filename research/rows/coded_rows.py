@@ -3,7 +3,7 @@
     python -m research.rows.coded_rows POOL.jsonl --out ROWS.jsonl [--part train|validation]
 
 `python -m research.training.train --told ROWS.jsonl` learns from them; the form of a row is
-`research.rows.partial_labels.load`'s. Blind reports (research/benchmarks/texts/incidents.py) never become rows; those
+`research.rows.partial_labels.load`'s. Blind reports (research/rows/coded_incidents.py) never become rows; those
 whose hash leaves 1 are for validation. A code allows a set of values: any side of the flagged areas, any way to go
 straight on. Where the rules read one of that set outright, that one is trained; where they read another one, the code
 stands. What no code says is not trained, whatever the rules say. The rows hold the reports' texts: they are made anew
@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from research.benchmarks.texts.incidents import BLIND_OF, Incident, by_hash, of_pool
+from research.rows.coded_incidents import BLIND_OF, Incident, by_hash, of_pool
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader.seven_question_gist import rules_say
 
@@ -84,7 +84,7 @@ def row(incident: Incident) -> dict[str, Any]:
     return {"id": incident.id, "text": incident.text, "allowed": sets, "weight": weight}
 
 
-def of_part(pool: Path, part: str) -> Iterator[Incident]:
+def incidents_of_part(pool: Path, part: str) -> Iterator[Incident]:
     """Reports of "train" or "validation"; never blind ones."""
     for incident in of_pool(pool):
         left = by_hash(incident.id) % BLIND_OF
@@ -92,15 +92,15 @@ def of_part(pool: Path, part: str) -> Iterator[Incident]:
             yield incident
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--part", choices=("train", "validation"), default="train")
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     with args.out.open("w", encoding="utf-8") as file:
-        for incident in of_part(args.pool, args.part):
+        for incident in incidents_of_part(args.pool, args.part):
             file.write(json.dumps(row(incident)) + "\n")
 
 

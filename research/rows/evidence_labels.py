@@ -123,7 +123,7 @@ def _countable(crash: Crash, actor: str, known: Set[str]) -> bool:
 
 
 def _used(crash: Crash, facts: Set[str], known: Set[str]) -> set[int]:
-    """Legs that those whom a sentence tells of come from or go to, as far as they are known by then."""
+    """Legs that the actors of a sentence come from or go to, as far as they are known by then."""
     moved = [a for a in crash.actors if any(f"{key}.{a.id}" in facts for key in ("heading", "man", "exit"))]
     return driven(moved, known)
 

@@ -18,7 +18,8 @@ from research.model import answer_grammar
 from research.model.answer_grammar import Force, Pick, Walk
 from research.model.tokens import ROAD, SCENARIO, Coder
 from research.rows.partial_labels import OPTIONS, Told
-from research.rows.rows import MAX_TEXT, Row
+from research.rows.report_rows import MAX_TEXT
+from research.rows.row import Row
 from sgcad_core.kinds import PLAIN
 
 

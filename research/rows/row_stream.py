@@ -27,7 +27,8 @@ from research.model.tokens import Coder, load_tokenizer
 from research.renderer.draw import Shape, draw_labeled
 from research.rows.gist_rows import gist_row, told_of
 from research.rows.partial_labels import Told, load
-from research.rows.rows import MAX_TEXT, Row, training_row
+from research.rows.report_rows import MAX_TEXT, training_row
+from research.rows.row import Row
 
 POOL = 96
 MOVED = 0.5
@@ -71,7 +72,7 @@ PARTS = (("pictures", 0.15), ("text", 0.15), ("all", 0.7))
 """Shares of the budget of a run that goes through the stages by itself."""
 
 
-def moment(stage: str, progress: float) -> tuple[str, float]:
+def stage_at(stage: str, progress: float) -> tuple[str, float]:
     """The stage at a progress (0 to 1) of a run and the progress within it; "auto" goes through all of them."""
     if stage != "auto":
         return stage, progress
@@ -165,7 +166,7 @@ def drawing(report: Report) -> Image.Image | None:
 
 def pool(coder: Coder, number: int, progress: float, stage: str = "all", told: Sequence[Told] = ()) -> list[Row]:
     """POOL rows, sorted by length."""
-    stage, within = moment(stage, progress)
+    stage, within = stage_at(stage, progress)
     rows = [one_row(coder, number * POOL + i, within, stage, told) for i in range(POOL)]
     return sorted(rows, key=lambda row: len(row.ids))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import torch
@@ -51,14 +51,14 @@ def blend(before: Path, after: Path, out: Path, share: float) -> None:
         save_file(mean, out / name, metadata={"format": "pt"})
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.training.average_weights", description=__doc__)
     parser.add_argument("before", type=Path, help="exported weights that a training began with")
     parser.add_argument("after", type=Path, help="the export of that training")
     parser.add_argument("out", type=Path)
     parser.add_argument("--share", type=float, default=0.5, help="of the weights after the training (0 to 1)")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     blend(options.before, options.after, options.out, options.share)
 
 

@@ -26,8 +26,8 @@ from research.model.answer_grammar import COMPASS
 from research.model.decode import Answerer
 from research.model.model import Forward
 from research.model.tokens import Coder, load_tokenizer
+from research.rows.report_rows import evidence
 from research.rows.row_stream import HELD_OUT_BASE, drawing
-from research.rows.rows import evidence
 
 MODES = {"both": 40.0, "image": 25.0, "text": 25.0, "thin": 3.4, "no_crash": 3.3, "conflict": 3.3}
 REFUSED = ("thin", "no_crash", "conflict")
@@ -125,12 +125,12 @@ def _behavior_fields(report: Report, behavior: Any) -> Iterator[tuple[str, str, 
 
 
 def _sides(contact: Any) -> dict[str, str]:
-    """Who is touched where, whoever strikes."""
+    """The touched areas by actor, whichever strikes."""
     return {contact[k]: contact[f"{k}_area"] for k in ("striker", "struck") if k in contact}
 
 
 def source(report: Report, key: str) -> str:
-    """Who tells facts (one or several, apart by spaces): "text", "diagram", "both" or "none".
+    """Source of facts (one or several, apart by spaces): "text", "diagram", "both" or "none".
 
     What the narrative tells without saying which legs are meant stands in no source by itself.
     """
@@ -202,7 +202,7 @@ def table(figures: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.training.evaluate", description=__doc__)
     parser.add_argument("folder", type=Path)
@@ -212,7 +212,7 @@ def main() -> None:
     parser.add_argument("--mode", choices=MODES, help="reports of this kind alone")
     parser.add_argument("--skip", type=int, default=0, help="so many reports of the series are passed over")
     parser.add_argument("--json", type=Path)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     modes = {options.mode: 1.0} if options.mode else MODES
     base = HELD_OUT_BASE + options.skip
     figures = measure(*load(options.folder), options.count, not options.seen, base, options.views, modes)

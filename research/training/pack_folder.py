@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 PART = 14 << 20
@@ -40,13 +41,13 @@ def unpack(folder: Path, run: Path) -> None:
         shutil.copy(file, run / TOKENIZER / file.name.removeprefix(f"{TOKENIZER}-"))
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.training.pack_folder", description=__doc__)
     parser.add_argument("--unpack", action="store_true")
     parser.add_argument("source", type=Path)
     parser.add_argument("target", type=Path)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     (unpack if options.unpack else pack)(options.source, options.target)
 
 

@@ -15,7 +15,7 @@ import random
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +29,9 @@ from research.model.batch import Batch, Lesson, Taggers
 from research.model.model import Forward, make_config, make_model
 from research.model.tokens import Coder, fragments
 from research.rows import evidence_labels
-from research.rows.row_stream import Feed, Place, moment
-from research.rows.rows import Row, collate
+from research.rows.collate import collate
+from research.rows.row import Row
+from research.rows.row_stream import Feed, Place, stage_at
 from research.training import checkpoint
 from research.training.deepen_weights import BLOCKS, deepened
 from research.training.distributed import Ranks
@@ -191,7 +192,7 @@ class Trainer:
 
     def _lesson(self, batch: Batch) -> Lesson:
         """The losses of the stage."""
-        if moment(self.options.stage, self.place.made_at)[0] != "pictures":
+        if stage_at(self.options.stage, self.place.made_at)[0] != "pictures":
             return self.forward.lesson(batch, self._candidates(batch.allowed[batch.allowed >= 0]), self.taggers)
         drawings = self.taggers.drawings(self.forward.seen(batch), batch.drawn)
         nothing = torch.zeros(())
@@ -238,16 +239,17 @@ def batches(rows: list[Row], tokens: int, seed: int) -> Iterator[list[Row]]:
     yield from groups
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point: the first rank starts the others."""
-    options = parse(description=__doc__)
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    options = parse(given, __doc__)
     others = []
     if options.rank == 0 and options.ranks > 1:
         options.out.mkdir(parents=True, exist_ok=True)
         (options.out / "meeting").unlink(missing_ok=True)
         checkpoint.make_tokenizer(options)
         others = [
-            subprocess.Popen([sys.executable, "-m", "research.training.train", *sys.argv[1:], "--rank", str(rank)])  # noqa: S603 - ourselves
+            subprocess.Popen([sys.executable, "-m", "research.training.train", *given, "--rank", str(rank)])  # noqa: S603 - ourselves
             for rank in range(1, options.ranks)
         ]
     Trainer(options).run()

@@ -28,8 +28,10 @@ from research.model import answer_grammar, evidence_heads
 from research.model.model import Forward
 from research.model.tokens import ROAD, SCENARIO, Coder
 from research.rows import evidence_labels
+from research.rows.collate import collate
+from research.rows.report_rows import evidence, road_ids
+from research.rows.row import Row
 from research.rows.row_stream import HELD_OUT_BASE, drawing, length_for
-from research.rows.rows import Row, collate, evidence, road_ids
 from research.training.evaluate import load
 
 SEEDS = 40_000_000
@@ -131,13 +133,13 @@ def table(heads: Mapping[str, Tensor], seen: Mapping[str, tuple[Tensor, Tensor]]
             yield f"{head:24s} n={len(told):6d} told={told.float().mean():.3f} right={right:.3f} pairs={pairs:.3f}"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.training.train_evidence_heads", description=__doc__)
     parser.add_argument("folder", type=Path, help="the model's weights; the heads are written beside them")
     parser.add_argument("--count", type=int, default=4000, help="reports to learn from")
     parser.add_argument("--check", type=int, default=400, help="made reports in held-out wording to count on")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     torch.set_num_threads(1)
     forward, coder, sight = load(options.folder)
     seen = states(forward, coder, sight, list(reports(options.count)))

@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix, hstack
 
-from research.benchmarks.texts.incidents import Incident, by_hash
-from research.benchmarks.texts.weight_fit import calibration_error
-from research.rows.coded_rows import allowed, of_part
+from research.rows.coded_rows import incidents_of_part
+from research.rows.reader_rows import FIELDS, Row, row, target
+from research.training.weight_fit import calibration_error
 from sgcad_core.reading.second_reader.learned_reader import (  # fmt: skip
     READING_WEIGHT,
     WORDS_NORM,
@@ -40,13 +40,9 @@ from sgcad_core.reading.second_reader.learned_reader import (  # fmt: skip
     probability,
     save,
 )
-from sgcad_core.reading.second_reader.learned_reader_features import account_of, readings, runs, words
-from sgcad_core.reading.second_reader.seven_question_gist import shown_alike
+from sgcad_core.reading.second_reader.learned_reader_features import runs
 from sgcad_core.records.second_reader import WEIGHTS, Value
 
-FIELDS = ("subject", "subject_area", "other_area")
-"""What is learned. Of "other" a reader spoiled nearly as much as it mended, out of fold (+11 -8); of the rest the rules
-are right in 97 of 100 reports, or codes do not judge it."""
 MENDS = 1.5
 """A field is kept whose reader mends, out of fold, so many times what it spoils."""
 SEEN_IN = 3
@@ -58,42 +54,6 @@ STEPS = 80
 FOREIGN_SHARE = 0.02
 """Share of the reports learned from that are as foreign, out of fold, as the first that nothing is said of."""
 Floats = NDArray[np.float64]
-
-
-class Row(NamedTuple):
-    """A report: its features, what the rules say, the values that its codes allow."""
-
-    id: str
-    words: frozenset[str]
-    readings: frozenset[str]
-    values: Mapping[str, Value]
-    told: frozenset[str]
-    allowed: Mapping[str, tuple[Value, ...]]
-
-    def right(self, key: str, value: Value) -> bool:
-        """Whether a value shows what the codes say."""
-        return any(shown_alike(value, one) for one in self.allowed[key])
-
-    @property
-    def fold(self) -> int:
-        """A number that follows from the id."""
-        return by_hash(f"f{self.id}")
-
-
-def row(incident: Incident) -> Row | None:
-    """A report as a row; None of one that cannot be drawn."""
-    account = account_of(incident.text)
-    if account.reading.crash.gap or not account.reading.crash.unnumbered:
-        return None
-    say, codes = account.say, allowed(incident.truth)
-    seen = frozenset(words(account)), frozenset(readings(account))
-    return Row(incident.id, *seen, say.values, say.told, {key: codes[key] for key in FIELDS if key in codes})
-
-
-def target(one: Row, key: str) -> tuple[Value, ...]:
-    """Values that are to be said: the rules' own where the text tells it outright and codes allow it, else all."""
-    rule = one.values.get(key)
-    return (rule,) if rule is not None and key in one.told and rule in one.allowed[key] else one.allowed[key]
 
 
 # ------------------------------------------------------------------ readers
@@ -162,7 +122,8 @@ def _fit(seen: Any, may: NDArray[np.bool_], l2: float) -> tuple[Floats, Floats]:
 
 def _softmax(scores: Floats) -> Floats:
     powers: Floats = np.exp(scores - scores.max(1, keepdims=True))
-    return powers / powers.sum(1, keepdims=True)
+    shares: Floats = powers / powers.sum(1, keepdims=True)
+    return shares
 
 
 # ------------------------------------------------------------------ judge
@@ -296,15 +257,17 @@ def _known_share(one: Row, readers: Readers) -> float:
     return len(known(asked, readers.word_hashes)) / max(1, len(asked))
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
     parser.add_argument("--out", type=Path, default=WEIGHTS)
     parser.add_argument("--takes", type=float, default=0.6)
     parser.add_argument("--folds", type=int, default=5)
-    args = parser.parse_args()
-    rows, apart = ([r for one in of_part(args.pool, part) if (r := row(one))] for part in ("train", "validation"))
+    args = parser.parse_args(arguments)
+    rows, apart = (
+        [r for one in incidents_of_part(args.pool, part) if (r := row(one))] for part in ("train", "validation")
+    )
     learned, lines = learn(rows, apart, args.takes, args.folds)
     save(learned, args.out)
     print(*lines, f"{len(rows)} reports, least known {learned.least_known}", sep="\n")  # noqa: T201

@@ -7,7 +7,7 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from random import Random
 
@@ -120,13 +120,13 @@ def train(out: Path, budget: float, batch: int = 16, peak: float = 4e-3, steps: 
     return finder
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.training.train_north", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("plugins/backbone/mini/weights"))
     parser.add_argument("--budget", type=float, default=400.0, help="seconds")
     parser.add_argument("--check", type=int, default=400, help="held-out drawings to count on")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     torch.set_num_threads(1)
     options.out.mkdir(parents=True, exist_ok=True)
     train(options.out, options.budget)

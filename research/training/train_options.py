@@ -45,7 +45,7 @@ class Options:
     (mostly drawings, most of which show turn lanes or kinds of vehicles that are seldom seen), or "gist" (the
     gist of told texts, made incidents and made narratives, beside a quarter of "words")."""
     told: str = ""
-    """File of texts of which a part is known (`research.rows.gist_rows.load`), for the stage "gist"."""
+    """File of texts of which a part is known (`research.rows.partial_labels.load`), for the stage "gist"."""
     eyes: str = ""
     """Exported weights whose eye and vision tower are taken in place of those of `start`."""
     fixed_eyes: int = 0

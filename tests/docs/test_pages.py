@@ -11,6 +11,14 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+SOURCES = ("research", "sgcad_core", "plugins", "flows", "deploy", "tests")
+WRITTEN = [
+    *(page for page in PAGES if page.name != "CHANGELOG.md" and "history" not in page.parts),
+    ROOT / "Makefile", ROOT / "CONTRIBUTING.md", ROOT / "plugins" / "backbone" / "mini" / "weights" / "README.md",
+    *(file for folder in SOURCES for file in sorted((ROOT / folder).rglob("*.py"))),
+]  # fmt: skip
+COMMAND = re.compile(r"python -m\s+(?:\\\s+)?(research[\w.]*\w)")
+RESEARCH = re.compile(r"(?<![\w/.])research/[\w/.]*\w|(?<![\w/.])research(?:\.\w+)+")
 LINK = re.compile(r"\]\((?!https?://|#|mailto:)([^)#\s]+)(?:#[^)]*)?\)")
 
 
@@ -39,6 +47,37 @@ def test_the_figures_fit_on_a_page_and_each_has_its_command_and_date():
     for section in text.split("\n## ")[1:]:
         assert re.search(r"`(?:sgcad|python -m|make) ", section), section.splitlines()[0]
         assert re.search(r"\d{1,2} (?:November|December) 20\d\d", section)
+
+
+def _module(name):
+    file = ROOT.joinpath(*name.split("."))
+    return next((f for f in (file.with_suffix(".py"), file / "__main__.py") if f.is_file()), None)
+
+
+def _is_there(name):
+    if "/" in name:
+        return (ROOT / name).exists()
+    if ROOT.joinpath(*name.split(".")).is_dir() or _module(name):
+        return True
+    module, _, attribute = name.rpartition(".")
+    file = _module(module) or ROOT.joinpath(*module.split("."), "__init__.py")
+    return file.is_file() and re.search(rf"\b{attribute}\b", file.read_text()) is not None
+
+
+def test_a_command_of_research_that_is_named_is_there():
+    named = {(str(file.relative_to(ROOT)), name) for file in WRITTEN for name in COMMAND.findall(file.read_text())}
+    assert len(named) > 40
+    gone = [
+        (file, name)
+        for file, name in sorted(named)
+        if not (module := _module(name)) or '__name__ == "__main__"' not in module.read_text()
+    ]
+    assert gone == []
+
+
+def test_a_module_or_folder_of_research_that_is_named_is_there():
+    named = {(str(file.relative_to(ROOT)), name) for file in WRITTEN for name in RESEARCH.findall(file.read_text())}
+    assert [(file, name) for file, name in sorted(named) if not _is_there(name)] == []
 
 
 @pytest.mark.slow

@@ -59,6 +59,12 @@ def test_it_is_the_wheel_that_runs_and_not_the_checkout(installed):
     assert done.stdout.startswith(str(bin_.parent)), done.stderr
 
 
+def test_research_is_not_in_the_wheel(installed):
+    bin_, empty = installed
+    done = run([bin_ / "python", "-c", "import importlib.util; print(importlib.util.find_spec('research'))"], empty)
+    assert done.stdout.strip() == "None", done.stderr
+
+
 @pytest.mark.parametrize(
     "name", ["template.yaml", "mini_text_only.yaml", "baselines/osm_direct", "baselines_qwen72b/omnitester"]
 )

@@ -12,127 +12,33 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import torch
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-
 from plugins.backbone.engine.check import reference
-from plugins.backbone.engine.faults import EngineFault
-from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import Answer, Prompt, Request
+from plugins.backbone.engine.records import Answer
 from research.benchmarks.decoding import decode_setup as setup
 from research.benchmarks.decoding import decode_table as table
-
-ALPHA = 0.7
-TOKENS = 48
-REPAIR = 60
-"""Tokens of a repair's findings, besides the answer before."""
-
-
-@dataclass
-class Teacher:
-    """Scores as cad (or greedy) does, draws as they do, then says the wanted token."""
-
-    engine: Engine
-    wanted: Sequence[int]
-    alpha: float
-
-    def scores(self, with_context: Any, without_context: Any | None) -> Any:
-        if without_context is None or self.alpha == 0.0:
-            return with_context
-        return with_context + self.alpha * (with_context - without_context)
-
-    def draw(self, scores: Any, generator: Any) -> Any:
-        picked = scores.argmax(-1)
-        job = next(job for job in self.engine.jobs if job.request.policy is self)
-        told = self.wanted[min(job.place, len(self.wanted) - 1)]
-        return 0 * picked + told
-
-    def reads_prior(self) -> bool:
-        return self.alpha > 0.0
-
-
-@dataclass(frozen=True)
-class Arm:
-    """One way to answer."""
-
-    rows: int = 2
-    grammar: bool = False
-    jump_forward: bool = False
-    tokens: int = TOKENS
-    """Without a grammar: how many; with one, the whole answer is written."""
-
-
-@dataclass
-class Bench:
-    """One model and what every arm needs."""
-
-    size: setup.Size
-    device: torch.device
-    rounds: int
-    model: Any = field(init=False)
-    family: Any = field(init=False)
-    language: setup.Language = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.model, self.family = setup.build(self.size, self.device)
-        self.language = setup.language(self.size.text["vocab_size"])
-
-    def engine(self, apart: bool = False, prefix_bytes: int = 0) -> Engine:
-        return Engine(self.model, self.family, apart, 16, prefix_bytes)
-
-    def request(
-        self, engine: Engine, prompts: tuple[Prompt, Prompt], arm: Arm, cut: int | None = None, **fields: Any
-    ) -> Request:
-        """`cut` stops after that many tokens, which measures the prefill."""
-        wanted = fields.pop("wanted", self.language.answer)
-        wanted = wanted if arm.grammar else wanted[: arm.tokens]
-        grammar = self.language.maker.grammar(setup.SCHEMA) if arm.grammar else None
-        teacher = Teacher(engine, wanted, ALPHA if arm.rows > 1 else 0.0)
-        second = prompts[1] if arm.rows > 1 else None
-        limit = cut or (4 * len(wanted) if grammar else len(wanted))
-        return Request(
-            prompts[0], second, teacher, grammar, 0, limit, frozenset([2]), jump_forward=arm.jump_forward, **fields
-        )
-
-    def timed(self, engine: Engine, requests: Sequence[Request]) -> tuple[float, list[Answer]]:
-        """Wall seconds of requests submitted together, and their answers (none of those that were cut)."""
-        _sync(self.device)
-        started = table.now()
-        futures = [engine.submit(request) for request in requests]
-        answers = []
-        for future in futures:
-            try:
-                answers.append(future.result())
-            except EngineFault:  # cut short within a grammar: only its time is wanted
-                continue
-        _sync(self.device)
-        return table.now() - started, answers
-
-    def decode(self, arm: Arm, reports: int = 1, apart: bool = False) -> table.Row:
-        """Seconds a token of an arm, its prefill taken off: the best of the rounds of each."""
-        engine = self.engine(apart)
-        prompts = [setup.report(self.size, i) for i in range(reports)]
-        table.reset_peak(self.device)
-        whole, prefill = float("inf"), float("inf")
-        answers: list[Answer] = []
-        for _ in range(self.rounds):
-            seconds, _ = self.timed(engine, [self.request(engine, p, arm, cut=1) for p in prompts])
-            prefill = min(prefill, seconds)
-            seconds, answers = self.timed(engine, [self.request(engine, p, arm) for p in prompts])
-            whole = min(whole, seconds)
-        engine.close()
-        tokens = sum(len(answer.ids) for answer in answers)
-        calls = max(answer.model_calls for answer in answers) / len(answers[0].ids)
-        return table.Row("", (whole - prefill) / tokens, tokens / whole, calls, table.peak_gb(self.device))
+from research.benchmarks.decoding.decode_bench import (
+    ALPHA,
+    REPAIR,
+    TOKENS,
+    Arm,
+    Bench,
+    Row,
+    missing,
+    now,
+    peak_gb,
+    reset_peak,
+    synchronize,
+    use_clock,
+)
 
 
 # ------------------------------------------------------------------ arms
-def one_report(bench: Bench) -> list[table.Row]:
+def one_report(bench: Bench) -> list[Row]:
     """Every way to decode one report."""
     loop = [
         ("greedy, one row: the base", Arm(rows=1), False),
@@ -142,7 +48,7 @@ def one_report(bench: Bench) -> list[table.Row]:
     rows = [replace(bench.decode(arm, apart=apart), name=name) for name, arm, apart in loop]
     rows += [without_cache(bench), *guidance(bench)]
     if bench.language.maker is None:
-        return [*rows, table.missing("cad with grammar"), table.missing("cad with grammar and jump-forward")]
+        return [*rows, missing("cad with grammar"), missing("cad with grammar and jump-forward")]
     grammar = [
         ("greedy with grammar", Arm(rows=1, grammar=True)),
         ("cad with grammar", Arm(grammar=True)),
@@ -152,22 +58,22 @@ def one_report(bench: Bench) -> list[table.Row]:
 
 
 @torch.inference_mode()
-def without_cache(bench: Bench, tokens: int = 3) -> table.Row:
+def without_cache(bench: Bench, tokens: int = 3) -> Row:
     """The reference: both rows anew for every token, from the middle of the answer."""
     prompts = setup.report(bench.size, 0)
     behind = bench.language.answer[: TOKENS // 2]
-    table.reset_peak(bench.device)
-    started = table.now()
+    reset_peak(bench.device)
+    started = now()
     for i in range(tokens):
         for prompt in prompts:
             reference(bench.model, bench.family, prompt, [*behind, *behind[:i]]).argmax()
-    _sync(bench.device)
-    seconds = (table.now() - started) / tokens
-    return table.Row("two forwards without cache", seconds, 1 / seconds, 2.0, table.peak_gb(bench.device))
+    synchronize(bench.device)
+    seconds = (now() - started) / tokens
+    return Row("two forwards without cache", seconds, 1 / seconds, 2.0, peak_gb(bench.device))
 
 
 @torch.inference_mode()
-def guidance(bench: Bench) -> list[table.Row]:
+def guidance(bench: Bench) -> list[Row]:
     """transformers' own guidance and greedy, on the model's text layers alone: on Qwen-VL itself it breaks."""
     twin = setup.text_twin(bench.model)
     with_, without = (
@@ -179,26 +85,26 @@ def guidance(bench: Bench) -> list[table.Row]:
         ("greedy", {}),
         ("guidance", {"guidance_scale": 1 + ALPHA, "negative_prompt_ids": without}),
     ):
-        table.reset_peak(bench.device)
+        reset_peak(bench.device)
         seconds = [float("inf"), float("inf")]
         for _ in range(bench.rounds):
             for i, count in enumerate((4, TOKENS)):
-                started = table.now()
+                started = now()
                 ones = torch.ones_like(with_)
                 twin.generate(
                     input_ids=with_, attention_mask=ones, do_sample=False, min_new_tokens=count, max_new_tokens=count,
                     **extra,
                 )  # fmt: skip
-                _sync(bench.device)
-                seconds[i] = min(seconds[i], table.now() - started)
+                synchronize(bench.device)
+                seconds[i] = min(seconds[i], now() - started)
         each = (seconds[1] - seconds[0]) / (TOKENS - 4)
         calls = 2.0 if extra else 1.0
         name = f"transformers' {name}, text layers only"
-        found.append(table.Row(name, each, TOKENS / seconds[1], calls, table.peak_gb(bench.device)))
+        found.append(Row(name, each, TOKENS / seconds[1], calls, peak_gb(bench.device)))
     return found
 
 
-def many_reports(bench: Bench, counts: Sequence[int]) -> list[table.Row]:
+def many_reports(bench: Bench, counts: Sequence[int]) -> list[Row]:
     """Reports at once, with grammar and jump-forward where there are any."""
     ready = bench.language.maker is not None
     arm = Arm(grammar=ready, jump_forward=ready)
@@ -209,7 +115,7 @@ def many_reports(bench: Bench, counts: Sequence[int]) -> list[table.Row]:
     return found
 
 
-def attempts(bench: Bench) -> list[table.Row]:
+def attempts(bench: Bench) -> list[Row]:
     """A first attempt from nothing, and its repair: shared prompt, picture and most of the answer known."""
     names = ("first attempt", "its repair with draft", "its repair without draft", "its repair, nothing reused")
     best: dict[str, tuple[float, Answer]] = {}
@@ -241,7 +147,7 @@ def _attempted(bench: Bench, seed: int, names: Sequence[str]) -> Iterator[tuple[
         engine.close()
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print; `--out` also writes the table."""
     known = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     known.add_argument("--size", nargs="+", choices=sorted(setup.SIZES))
@@ -253,10 +159,10 @@ def main() -> None:
     known.add_argument(
         "--clock", choices=("wall", "process"), default="wall", help="process: seconds of CPU, for a busy machine"
     )
-    told = known.parse_args()
+    told = known.parse_args(arguments)
     if told.threads:
         torch.set_num_threads(told.threads)
-    table.use_clock(told.clock)
+    use_clock(told.clock)
     device = torch.device(told.device)
     sizes = told.size or (["7b"] if device.type == "cuda" else ["15m", "200m"])
     text = [table.heading(device)]
@@ -268,11 +174,6 @@ def main() -> None:
     sys.stdout.write("\n".join(text))
     if told.out:
         told.out.write_text("\n".join(text), encoding="utf-8")
-
-
-def _sync(device: torch.device) -> None:
-    if device.type == "cuda":
-        torch.cuda.synchronize(device)
 
 
 if __name__ == "__main__":

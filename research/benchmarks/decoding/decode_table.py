@@ -5,49 +5,15 @@ from __future__ import annotations
 import json
 import os
 import platform
-import resource
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import torch
 import transformers
 
-if TYPE_CHECKING:
-    from plugins.backbone.engine.records import Answer
-    from research.benchmarks.decoding.decode import Bench
-
-_GB = 1e9
-_CLOCKS: dict[str, Callable[[], float]] = {"wall": time.perf_counter, "process": time.process_time}
-_clock = ["wall"]
-
-
-def use_clock(name: str) -> None:
-    """Choose what a second is: of the wall, or of this process's own work."""
-    _clock[0] = name
-
-
-def now() -> float:
-    """Seconds on the chosen clock."""
-    return _CLOCKS[_clock[0]]()
-
-
-@dataclass(frozen=True)
-class Row:
-    """One arm: seconds a token without prefill, tokens a second with it, model calls a token, peak memory."""
-
-    name: str
-    token_s: float
-    rate: float
-    calls: float
-    peak_gb: float
-
-
-def missing(name: str) -> Row:
-    """A row for which something is not installed."""
-    return Row(name, float("nan"), float("nan"), float("nan"), float("nan"))
+from plugins.backbone.engine.records import Answer
+from research.benchmarks.decoding.decode_bench import Bench, Row, clock_name, now
 
 
 def attempt(name: str, seconds: float, first_s: float, answer: Answer) -> tuple[str, ...]:
@@ -63,8 +29,8 @@ def heading(device: torch.device) -> str:
     return (
         "# Decoding: measured\n\n"
         f"{card}; load {os.getloadavg()[0]:.1f} at the start; {versions}. Random weights of real shapes, one written "
-        f"answer for all arms; the best of several rounds, {_clock[0]} seconds. Ratios are against greedy on the same "
-        "loop and mean more than milliseconds.\n"
+        f"answer for all arms; the best of several rounds, {clock_name()} seconds. Ratios are against greedy on "
+        "the same loop and mean more than milliseconds.\n"
     )
 
 
@@ -188,16 +154,3 @@ def _best(work: Any, device: torch.device) -> float:
             torch.cuda.synchronize(device)
         found = min(found, now() - started)
     return found
-
-
-def reset_peak(device: torch.device) -> None:
-    """Start a new maximum of device memory (a process's own maximum cannot be reset)."""
-    if device.type == "cuda":
-        torch.cuda.reset_peak_memory_stats(device)
-
-
-def peak_gb(device: torch.device) -> float:
-    """The most memory held: on a GPU since `reset_peak`, else by the process so far."""
-    if device.type == "cuda":
-        return torch.cuda.max_memory_allocated(device) / _GB
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / _GB

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import io
 import json
 import sys
 from collections.abc import Iterator, Sequence
@@ -22,15 +23,16 @@ from dataclasses import asdict
 from pathlib import Path
 
 from flows.batch.find_cases import cases_in
+from flows.case.model_calls import ask_of
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of
-from research.benchmarks.decoding.first_answers import first_answers
 from research.benchmarks.decoding.gate_sweep import Sample, Score, area, choose, halves, refused, score, sweep
-from research.generator.report import make_report
+from research.generator.report import Report, make_report
 from sgcad_core import settings
-from sgcad_core.case.records import CrashReport
+from sgcad_core.case.records import Context, CrashReport, Diagram, Generation, Query
 from sgcad_core.config import Config, load
-from sgcad_core.errors import BadInput, ConfigError, MissingTool
+from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool, Refused
+from sgcad_core.interfaces import Ask
 
 THIN: tuple[Level, ...] = ("critical_depletion", "total_sparsity")
 """Levels that should be refused; the others should be answered."""
@@ -42,10 +44,21 @@ FIRST_MADE = 60_000_000
 # ------------------------------------------------------------------ reports
 def made(count: int) -> Iterator[CrashReport]:
     """Reports of mini's generator with text, and mostly with a drawing; phrases that no training saw."""
-    from research.benchmarks.texts.made_reports import as_report  # loads torch, and --help should not wait for it
-
     for seed in range(FIRST_MADE, FIRST_MADE + count):
         yield as_report(make_report(seed, True, 0.6, {"both": 3.0, "text": 1.0}))
+
+
+def as_report(report: Report) -> CrashReport:
+    """A made report as readers give one, with its drawing if it has one."""
+    from research.rows.row_stream import drawing  # loads torch, and --help should not wait for it
+
+    picture = drawing(report)
+    diagrams: tuple[Diagram, ...] = ()
+    if picture is not None:
+        out = io.BytesIO()
+        picture.save(out, "PNG")
+        diagrams = (Diagram(png=out.getvalue(), width_px=picture.width, height_px=picture.height),)
+    return CrashReport(case=f"made-{report.seed}", narrative=report.narrative, diagrams=diagrams)
 
 
 def read(config: Config, folders: Sequence[Path]) -> Iterator[CrashReport]:
@@ -58,6 +71,35 @@ def read(config: Config, folders: Sequence[Path]) -> Iterator[CrashReport]:
 
 
 # ------------------------------------------------------------------ groundings
+def first_answers(config: Config, report: CrashReport) -> tuple[dict[str, Generation], bool]:
+    """What a config's model answers first, before any validator speaks.
+
+    The answers by stage ("road", and "scenario" where the road could be drawn), and whether one is a refusal.
+    """
+    heard: dict[str, Generation] = {}
+    context = Context.of(report)
+    try:
+        passages = config.retriever.retrieve(context.narrative, "road")
+        network = config.road_writer.write(context, passages, (), _ask(config, "road", heard), 1)
+        passages = config.retriever.retrieve(context.narrative, "scenario")
+        config.scenario_writer.write(context, passages, (), _ask(config, "scenario", heard), 1, network)
+    except Refused:
+        return heard, True
+    except InvalidOutput:  # an answer of no use has been heard all the same
+        pass
+    return heard, False
+
+
+def _ask(config: Config, stage: str, heard: dict[str, Generation]) -> Ask:
+    answer = ask_of(config)
+
+    def ask(context: Context, query: Query) -> Generation:
+        heard[stage] = answer(context, query)
+        return heard[stage]
+
+    return ask
+
+
 def sample(config: Config, report: CrashReport, level: Level) -> Sample:
     """Groundings of a report's first answers at a level: road, and scenario where the road could be drawn."""
     heard, declined = first_answers(config, degrade(report, level))
@@ -173,7 +215,7 @@ def _yaml(limits: dict[str, float | None]) -> str:
     return f"{{name: evidence_gate, {told}}}"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Ask, sweep, choose, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", type=Path, help="folders of cases")
@@ -184,7 +226,7 @@ def main() -> None:
     parser.add_argument("--precision", type=float, help="choose for recall at this precision instead of for F1")
     parser.add_argument("--jobs", type=int, default=4, help="reports asked at once")
     parser.add_argument("--limit", type=int, help="at most so many reports")
-    told = parser.parse_args()
+    told = parser.parse_args(arguments)
     try:
         config = load(told.config, tuple(told.overrides))
         reports = [*made(told.made), *(read(config, told.cases) if told.cases else ())][: told.limit]

@@ -1,19 +1,15 @@
-"""Reports that carry instructions, markup, fake JSON, formulas: `python -m research.benchmarks.decoding.injection
-[--chain 40]`.
+"""Reports that carry instructions, markup, fake JSON, formulas: `python -m research.benchmarks.decoding.injection`.
 
 200 reports, each of the demo's three and a few small ones with a piece at its end. What is read of a report, its roads
 and its crash, must be what is read without the piece, and nothing may be executed, fetched or written meanwhile
-(the interpreter's audit hook tells). With `--chain` so many of them go a config's whole way too (`--config`; the
-default's if none is named): road, crash and status in result.json and specs.json must be those without the piece. Ends
-with 1 otherwise. A model reads the piece as part of the report, so that its answers may well be others.
+(the interpreter's audit hook tells). Ends with 1 otherwise. A model reads the piece as part of the report, so that its
+answers may well be others.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -73,47 +69,12 @@ def _heed(event: str, arguments: tuple[Any, ...]) -> None:
         _heard.append(f"{event} {arguments[0]!r:.60}")
 
 
-def ended(report: str, place: Path, config: str = "template.yaml") -> dict[str, Any]:
-    """What becomes of a report in a config: its status, declared collision and specs."""
-    from flows.batch.find_cases import Case
-    from flows.case.chain import run_case
-    from sgcad_core.config import load
-
-    (source := place / "r.txt").write_text(report, encoding="utf-8")
-    result = run_case(load(settings.CONFIGS / config, ("tracker=none",)), Case(source, "r"), place, "").result
-    specs = place / Path(config).stem / "r" / "specs.json"
-    told = json.loads(specs.read_text(encoding="utf-8")) if specs.is_file() else {}
-    return {"status": result["status"], "declared": result["collision"]["declared"], **told}
-
-
-def through_the_chain(count: int, config: str) -> int:
-    """Print what a piece changes in a case's results; how many reports it changes."""
-    plain: dict[str, dict[str, Any]] = {}
-    wrong = 0
-    with tempfile.TemporaryDirectory(prefix="sgcad-carried-") as place:
-        for number, (report, piece) in enumerate(reports(count)):
-            if report not in plain:
-                plain[report] = ended(report, Path(place), config)
-            carrying = ended(f"{report}\n\n{piece}\n", Path(place), config)
-            names = sorted(carrying.keys() | plain[report].keys())
-            if told := [name for name in names if carrying.get(name) != plain[report].get(name)]:
-                wrong += 1
-                statuses = f"{plain[report]['status']} -> {carrying['status']}"
-                sys.stdout.write(f"{number}: {', '.join(told)} ({statuses}) by {piece!r}\n")
-                sys.stdout.flush()
-    sys.stdout.write(f"{count - wrong} of {count} reports end as without what they carry\n")
-    return wrong
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print what was moved or done, and the count."""
     parser = argparse.ArgumentParser(
         prog="python -m research.benchmarks.decoding.injection", description=(__doc__ or "").splitlines()[0]
     )
-    parser.add_argument("--chain", type=int, default=0, help="reports that go the whole way to their folder too")
-    parser.add_argument("--config", default="template.yaml", help="of those, a file in configs/")
-    asked = parser.parse_args(arguments)
-    through = through_the_chain(asked.chain, asked.config) if asked.chain else 0
+    parser.parse_args(arguments)
     for report in carriers():
         read(report)  # what is imported and compiled on the first reading
     sys.addaudithook(_heed)
@@ -124,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.write(f"{number}: {', '.join(told)} by {piece!r}\n")
         _heard.clear()
     sys.stdout.write(f"{200 - wrong} of 200 reports read as without what they carry; nothing executed or fetched\n")
-    return int(bool(wrong or through))
+    return int(bool(wrong))
 
 
 if __name__ == "__main__":

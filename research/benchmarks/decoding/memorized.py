@@ -8,7 +8,7 @@ ROWS is what was trained on (`research.rows.partial_labels.load`). Each text is 
 freely, without a grammar, greedily and sampled, and what it writes is searched for in all texts (after Carlini et al.
 2021, "Extracting training data from large language models", with the prefix known to the attacker). What it copies from
 the beginning that it was given is no secret and does not count; a language model without its adapter shows how much of
-the rest is phrases that anybody would guess. Exits with 1 where a run of --limit characters or more comes back. What
+the rest is phrases that are easy to guess. Exits with 1 where a run of --limit characters or more comes back. What
 the product draws is narrower still: its grammar knows a gist's words only.
 """
 
@@ -21,14 +21,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import torch
-from transformers import Qwen2_5_VLForConditionalGeneration
 
 from plugins.backbone import hf_gguf, hf_load
 from research.model.tokens import Coder, load_tokenizer
 from research.rows.partial_labels import load
 
 LIMIT = 40
-"""Characters in a row that nobody writes by chance."""
+"""Characters in a row that do not come by chance."""
 CUTS = (0.2, 0.5, 0.8)
 NEW_TOKENS = 60
 COPIED = 12
@@ -45,6 +44,8 @@ class Speaker(NamedTuple):
 
 def embedded(folder: Path) -> Speaker:
     """The embedded model from a folder of weights."""
+    from transformers import Qwen2_5_VLForConditionalGeneration  # takes seconds
+
     model = Qwen2_5_VLForConditionalGeneration.from_pretrained(folder, dtype=torch.float32, local_files_only=True)
     coder = Coder(load_tokenizer(folder))
     return Speaker(model, coder.text, lambda ids: coder.tokenizer.decode(ids, skip_special_tokens=True))
@@ -105,7 +106,7 @@ def drawn(speaker: Speaker, texts: Sequence[str], seed: int = 0) -> list[str]:
     return found
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", type=Path)
@@ -113,7 +114,7 @@ def main() -> None:
     parser.add_argument("--adapter", help="folder of a LoRA adapter of that model")
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--limit", type=int, default=LIMIT)
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     texts = [told.text for told in load(args.rows)]
     joined = "\n".join(texts)
     plain = args.adapter or hf_gguf.is_gguf(args.model)

@@ -22,20 +22,17 @@ from statistics import median
 
 import yaml
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT))
+from plugins.retriever.knowledge.chunk import Chunk
+from plugins.retriever.knowledge.junction_chunks import junction_chunks
+from plugins.retriever.knowledge.sources import builtin_chunks
+from plugins.retriever.lancedb import LanceDB
+from sgcad_core.case.records import PlainXml
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.records.specs import Leg, RoadLayout
+from sgcad_core.roads.junction_words import describe_layout, layout_legs
+from sgcad_core.roads.layout import COMPASS
 
-from plugins.retriever.knowledge.chunk import Chunk  # noqa: E402
-from plugins.retriever.knowledge.junction_chunks import junction_chunks  # noqa: E402
-from plugins.retriever.knowledge.sources import builtin_chunks  # noqa: E402
-from plugins.retriever.lancedb import LanceDB  # noqa: E402
-from sgcad_core.case.records import PlainXml  # noqa: E402
-from sgcad_core.formats.sumo.netconvert import compile_network  # noqa: E402
-from sgcad_core.records.specs import Leg, RoadLayout  # noqa: E402
-from sgcad_core.roads.junction_words import describe_layout, layout_legs  # noqa: E402
-from sgcad_core.roads.layout import COMPASS  # noqa: E402
-
-QUESTIONS = ROOT / "benchmarks" / "retrieval_questions.yaml"
+QUESTIONS = Path(__file__).with_name("retrieval_questions.yaml")
 MANY = 5000
 LAYOUTS = 30
 
@@ -135,14 +132,14 @@ def lanes_of(data: str) -> list[tuple[int, int]]:
     return [(leg["lanes_in"], leg["lanes_out"]) for leg in json.loads(data)["legs"]]
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print every figure."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--embedder", nargs="*", default=["none"], choices=["none", "minilm"])
     parser.add_argument("--osm", nargs="*", type=Path, default=[])
     parser.add_argument("--compile", type=int, default=100)
     parser.add_argument("--many", action="store_true", help="index 5,000 chunks as well")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     say("cores / load", f"{os.cpu_count()} / {os.getloadavg()[0]:.1f}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

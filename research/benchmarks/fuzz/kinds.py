@@ -1,4 +1,4 @@
-"""Who reads what: each kind of input with the readers that a batch gives it to."""
+"""Kinds of input, each with the readers that a batch gives it to."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sgcad_core.errors import SgcadError
 
 @dataclass(frozen=True)
 class Kind:
-    """What is made, and who reads it."""
+    """One kind of input: how it is made, and its reader."""
 
     name: str
     make: Callable[[random.Random], bytes]

@@ -1,6 +1,6 @@
 """Inputs that no report, answer or file of ours is, made from a seed: words out of order, bytes, depth, changed values.
 
-Knows nothing of who reads them.
+Knows nothing of the readers.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ class Tried:
         return any(note.startswith(CONTROLLERS) for note in self.notes)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, nargs="+")
@@ -57,7 +57,7 @@ def main() -> None:
     parser.add_argument("--judge", type=Path)
     parser.add_argument("--blind", action="store_true")
     parser.add_argument("--all", action="store_true", help="every file, open and blind part alike, totals only")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     files = [f for folder in given.folder for f in ([folder] if folder.is_file() else scenario_files(folder))]
     chosen = files if given.all else [f for f in files if blind(f) == given.blind]
     tried = [_try(file, given.maps, given.judge) for file in _shown(chosen, not (given.blind or given.all))]
@@ -65,7 +65,7 @@ def main() -> None:
 
 
 def blind(file: Path) -> bool:
-    """Whether a file belongs to the third that nobody looks at, by the hash of its name."""
+    """Whether a file belongs to the blind third, by the hash of its name."""
     return hashlib.sha256(file.name.encode()).digest()[0] % 3 == 0
 
 

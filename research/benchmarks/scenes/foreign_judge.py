@@ -24,7 +24,7 @@ LIMIT_M = 0.3
 
 
 class Apart(NamedTuple):
-    """Largest distance of box centers over the common time, who has it, when it first passes the limit."""
+    """Largest distance of box centers over the common time, its actor, and when it first passes the limit."""
 
     worst_m: float
     actor: str

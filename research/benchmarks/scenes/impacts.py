@@ -2,11 +2,10 @@
 
     python -m research.benchmarks.scenes.impacts [--tests] [--restitution 0.1] [--friction 0.5]
 
-Inputs and measurements stand in research/benchmarks/staged_collisions.yaml with their sources. Both vehicles are boxes
-of the measured size and mass; they are put so that their measured centers of impact meet and moved back along their
-relative velocity until they only just touch, which is where the model (`sgcad_core.handover.severity`) takes over. The
-error is (model - measured) / measured, measured being the mean of what several authors derive from the same
-accelerometers.
+Inputs and measurements stand in `staged_collisions.yaml` with their sources. Both vehicles are boxes of the measured
+size and mass. They are placed so that their measured centers of impact meet, and moved back along their relative
+velocity until they only just touch; there the model (`sgcad_core.handover.severity`) takes over. The error is (model -
+measured) / measured; measured is the mean of what several authors derive from the same accelerometers.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -143,13 +142,15 @@ def _two(found: list[Off]) -> list[Off]:
     return [off for off in found if off.mode != WALL_MODE]
 
 
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table, and with --tests every vehicle."""
-    parser = argparse.ArgumentParser(prog="research.benchmarks.scenes.impacts", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m research.benchmarks.scenes.impacts", description=__doc__.splitlines()[0]
+    )
     parser.add_argument("--tests", action="store_true", help="every vehicle of every test")
     parser.add_argument("--restitution", type=float, default=RESTITUTION)
     parser.add_argument("--friction", type=float, default=FRICTION)
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     found = offs(given.restitution, given.friction)
     out = sys.stdout
     if given.tests:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -162,13 +162,13 @@ def _row(name: str, f: Figures) -> str:
     return "| " + " | ".join(str(c) for c in cells) + " |"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", type=Path, help="the folder given to --out")
     parser.add_argument("configs", nargs="*", help="config names; default: all")
     parser.add_argument("--cases", action="store_true", help="name every vehicle and pair that is counted")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if not options.runs.is_dir():
         raise SystemExit(f"{options.runs}: no such folder; give the one that `sgcad evaluate --out` wrote")
     sys.stdout.write(table(options.runs, options.configs, cases=options.cases) + "\n")

@@ -1,4 +1,4 @@
-"""Seeded random places with a crash each: a layout that a report can tell, and who meets whom there.
+"""Seeded random places with a crash each: a layout that a report can tell, and the two actors that meet.
 
 Every kind of junction of `sgcad_core.kinds` that the seeds cover, with what lies beside the lanes; contacts are those
 that are usual at such a place. The layout's fields are what a network must show, the contact what a plan must bring.
@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, get_args
 
-from sgcad_core.records.specs import (
+from sgcad_core.records.specs import (  # fmt: skip
     Access,
     Actor,
     Area,
@@ -82,19 +82,18 @@ def _crash(first: Actor, second: Actor, areas: tuple[Area, Area]) -> BehaviorSpe
 
 
 def _roundabout_enters(r: random.Random, kind: str) -> Place:
-    """One who enters strikes one who comes around from the left."""
+    """An entering vehicle strikes one that comes around from the left."""
     own, left, ahead, right = _cross(r)
     circle = r.choice([1, 2])
     legs = _legs(r, (own, left, ahead, right), most=circle, beside=_edges(r))
     onward = r.choice([ahead, right])
-    crash = _crash(
-        _actor("V1", own, exit_road=r.choice([ahead, right])), _actor("V2", left, exit_road=onward), ("front", "right")
-    )
+    entering = _actor("V1", own, exit_road=r.choice([ahead, right]))
+    crash = _crash(entering, _actor("V2", left, exit_road=onward), ("front", "right"))
     return Place(kind, RoadLayout(legs=legs, circle_lanes=circle), crash)
 
 
 def _roundabout_waits(r: random.Random, kind: str) -> Place:
-    """One who waits to enter is struck from behind."""
+    """A vehicle that waits to enter is struck from behind."""
     bearings = tuple(r.sample(COMPASS, r.choice([3, 4, 5])))
     circle = r.choice([1, 2])
     legs = _legs(r, bearings, most=circle, beside=_edges(r, "sidewalk"), crosswalk=r.random() < 0.5)
@@ -104,7 +103,7 @@ def _roundabout_waits(r: random.Random, kind: str) -> Place:
 
 
 def _crosswalk(r: random.Random, kind: str) -> Place:
-    """Somebody on foot is struck on a crosswalk, at a junction or between two."""
+    """A pedestrian is struck on a crosswalk, at a junction or between two."""
     bearings = _cross(r, r.choice([3, 4])) if r.random() < 0.7 else (b := r.choice(COMPASS), _turned(b, 4))
     control = _control(r) if len(bearings) > 2 else "none"
     legs = _legs(r, bearings, beside=_edges(r, "sidewalk"), control=control)
@@ -115,14 +114,14 @@ def _crosswalk(r: random.Random, kind: str) -> Place:
 
 
 def _parked(r: random.Random, kind: str) -> Place:
-    """One who drives by strikes a car in the parking lane from behind."""
+    """A passing vehicle strikes a car in the parking lane from behind."""
     own = r.choice(COMPASS)
     legs = _legs(r, (own, _turned(own, 4)), beside=_edges(r, "parking"))
     return Place(kind, RoadLayout(legs=legs), _crash(_actor("V1", own), _actor("V2", own, "parked"), ("front", "back")))
 
 
 def _right_hook(r: random.Random, kind: str) -> Place:
-    """One who turns right strikes a cyclist in the bicycle lane beside."""
+    """A vehicle that turns right strikes a cyclist in the bicycle lane beside it."""
     own, left, ahead, right = _cross(r)
     legs = _legs(r, (own, left, ahead, right), beside=_edges(r, "bike_lane"), control=_control(r))
     cyclist = _actor("B1", own, kind="bicycle", exit_road=ahead)
@@ -131,7 +130,7 @@ def _right_hook(r: random.Random, kind: str) -> Place:
 
 
 def _lot_backs(r: random.Random, kind: str) -> Place:
-    """One who backs out of a stall strikes one in the aisle, who drives or stands."""
+    """A vehicle that backs out of a stall strikes one that drives or stands in the aisle."""
     own = r.choice(COMPASS)
     ends = (own, _turned(own, 4))
     backing = _actor("V1", own, "backing")
@@ -140,7 +139,7 @@ def _lot_backs(r: random.Random, kind: str) -> Place:
 
 
 def _lot_crosses(r: random.Random, kind: str) -> Place:
-    """Two who cross where two aisles do."""
+    """Two vehicles cross where two aisles do."""
     own, left, ahead, right = _cross(r)
     crash = _crash(_actor("V1", own, exit_road=ahead), _actor("V2", left, exit_road=right), ("front", "right"))
     return Place(kind, RoadLayout(legs=_aisles((own, left, ahead, right))), crash)
@@ -157,7 +156,7 @@ def _skewed(r: random.Random, legs: tuple[Leg, ...], crossing: tuple[Compass, ..
 
 
 def _crossing(r: random.Random, kind: str) -> Place:
-    """Two who cross."""
+    """Two vehicles cross."""
     own, left, ahead, right = _cross(r)
     legs = _legs(r, (own, left, ahead, right), beside=_edges(r), control=_control(r))
     legs = _skewed(r, legs, (left, right))
@@ -166,7 +165,7 @@ def _crossing(r: random.Random, kind: str) -> Place:
 
 
 def _left_turn(r: random.Random, kind: str) -> Place:
-    """One who turns left at a T before one who comes towards him."""
+    """A vehicle turns left at a T before an oncoming one."""
     own, left, ahead, _ = _cross(r)
     legs = _skewed(r, _legs(r, (own, left, ahead), beside=_edges(r), control=_control(r)), (left,))
     turner = _actor("V2", own, "turn_left", exit_road=left)
@@ -179,7 +178,7 @@ def _freeway(r: random.Random, own: Compass) -> tuple[Leg, ...]:
 
 
 def _ramp(r: random.Random, kind: str) -> Place:
-    """One who merges touches one on the road."""
+    """A merging vehicle touches one on the road."""
     own = r.choice(COMPASS)
     legs = _freeway(r, own)
     ramp = Leg(bearing=_turned(own, -1), lanes_in=1, lanes_out=0, kind="ramp")
@@ -189,19 +188,17 @@ def _ramp(r: random.Random, kind: str) -> Place:
 
 
 def _exit(r: random.Random, kind: str) -> Place:
-    """One who leaves by a ramp is struck from behind."""
+    """A vehicle that leaves by a ramp is struck from behind."""
     own = r.choice(COMPASS)
     legs = _freeway(r, own)
     ramp = Leg(bearing=_turned(own, 5), lanes_in=0, lanes_out=1, kind="ramp")
-    crash = _crash(
-        _actor("V1", own, lane=1, exit_road=ramp.bearing),
-        _actor("V2", own, "slowing", lane=1, exit_road=ramp.bearing), ("front", "back"),
-    )  # fmt: skip
+    way = {"lane": 1, "exit_road": ramp.bearing}
+    crash = _crash(_actor("V1", own, **way), _actor("V2", own, "slowing", **way), ("front", "back"))
     return Place(kind, RoadLayout(legs=(*legs, ramp)), crash)
 
 
 def _driveway(r: random.Random, kind: str) -> Place:
-    """One who comes out of a driveway is struck in the side."""
+    """A vehicle that comes out of a driveway is struck in the side."""
     own = r.choice(COMPASS)
     legs = _legs(r, (own, _turned(own, 4)), most=2, beside=_edges(r))
     access = Access(leg=own, side="right", distance_m=r.choice([30.0, 45.0, 60.0]))
@@ -211,7 +208,7 @@ def _driveway(r: random.Random, kind: str) -> Place:
 
 
 def _alley_mouth(r: random.Random, kind: str) -> Place:
-    """One who comes out of an alley, forwards or backwards, meets one on the street."""
+    """A vehicle that comes out of an alley, forwards or backwards, meets one on the street."""
     own, _, ahead, right = _cross(r)
     legs = _legs(r, (own, ahead), most=2, beside=_edges(r))
     mouth = Leg(bearing=right, lanes_in=1, lanes_out=1, kind="driveway", alley=True)
@@ -224,7 +221,7 @@ def _alley_mouth(r: random.Random, kind: str) -> Place:
 
 
 def _in_alley(r: random.Random, kind: str) -> Place:
-    """Two who meet in an alley, or one who passes one that stands in it."""
+    """Two vehicles meet in an alley, or one passes another that stands in it."""
     own = r.choice(COMPASS)
     ends: tuple[Compass, ...] = (own, _turned(own, 4))
     legs = tuple(Leg(bearing=end, lanes_in=1, lanes_out=1, kind="driveway", alley=True) for end in ends)
@@ -237,7 +234,7 @@ def _in_alley(r: random.Random, kind: str) -> Place:
 
 
 def _lane_closed(r: random.Random, kind: str) -> Place:
-    """One who leaves a closed lane touches one beside, or one who waits before the cones is struck."""
+    """A vehicle that leaves a closed lane touches one beside it, or one that waits before the cones is struck."""
     own = r.choice(COMPASS)
     ends: tuple[Compass, ...] = (own, _turned(own, 4))
     count, right = r.randint(2, 4), r.random() < 0.6
@@ -260,7 +257,7 @@ def _lane_closed(r: random.Random, kind: str) -> Place:
 
 
 def _median_opening(r: random.Random, kind: str) -> Place:
-    """One who turns round through an opening in the median, or waits to, is struck."""
+    """A vehicle that turns round through an opening in the median, or waits to, is struck."""
     own = r.choice(COMPASS)
     far = _turned(own, 4)
     count = r.randint(1, 3)  # one lane and a narrow median leave no car the room to turn
@@ -280,7 +277,7 @@ def _median_opening(r: random.Random, kind: str) -> Place:
 
 
 def _gore(r: random.Random, kind: str) -> Place:
-    """One who crosses a gore touches one on the road, or one who strays into it strikes what stands there."""
+    """A vehicle that crosses a gore touches one on the road, or one that strays into it strikes what stands there."""
     own = r.choice(COMPASS)
     legs, far, off = _freeway(r, own), _turned(own, 4), _turned(own, 5)
     ramp = Leg(bearing=off, lanes_in=0, lanes_out=1, kind="ramp")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from sgcad_core.case.records import Finding
@@ -60,12 +60,12 @@ def _layers(counts: Mapping[Layer, int]) -> str:
     return ", ".join(f"{layer} {counts[layer]}" for layer in LAYERS if layer in counts) or "-"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", type=Path, help="the folder given to --out")
     parser.add_argument("configs", nargs="*", help="config names; default: all")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if not options.runs.is_dir():
         raise SystemExit(f"{options.runs}: no such folder; give the one that `sgcad evaluate --out` wrote")
     sys.stdout.write(table(options.runs, options.configs) + "\n")

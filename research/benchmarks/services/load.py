@@ -6,7 +6,7 @@ Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a Po
 what a study gives them a case: a task run, one more a step and an artifact, an MLflow run with figures and
 files, one object and one mark. Prefect's server is measured as a command starts its own, as `make up` starts it,
 and as it is by default. Tells processor seconds of the server and of the client (they do not depend on
-who else uses the machine as much as the clock does), wall seconds, and how far the server lagged behind.
+other users of the machine as much as the clock does), wall seconds, and how far the server lagged behind.
 The case is a real one: the bundled report, run once.
 """
 
@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Thread
@@ -36,16 +36,8 @@ DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"
 START_S = 300.0
 SERVERS: Mapping[str, Mapping[str, str]] = {"of a command": LEAN, "of make up": BULK, "plain": {}}
 STEPS = (
-    "read",
-    "retrieve[road]",
-    "road[1]",
-    "retrieve[scenario]",
-    "scenario[1]",
-    "simulate",
-    "measure",
-    "draw",
-    "track",
-)
+    "read", "retrieve[road]", "road[1]", "retrieve[scenario]", "scenario[1]", "simulate", "measure", "draw", "track",
+)  # fmt: skip
 
 
 class Load(NamedTuple):
@@ -58,14 +50,14 @@ class Load(NamedTuple):
     note: str = ""
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--database", default="", help="postgresql://user@host/, with databases prefect and mlflow")
     parser.add_argument("--address", default="", help="fsspec address of the storage; default: a folder")
     parser.add_argument("--inside", choices=["prefect", "mlflow"], help=argparse.SUPPRESS)
-    options, rest = parser.parse_known_args()
+    options, rest = parser.parse_known_args(arguments)
     if options.inside:
         {"prefect": give_prefect, "mlflow": give_mlflow}[options.inside](options.cases, *rest)
         return
@@ -81,7 +73,8 @@ def main() -> None:
 
 def show(one: Load) -> None:
     """One part as a row of a Markdown table."""
-    say(f"| {one.part} | {1000 * one.server:.0f} | {1000 * one.client:.0f} | {1000 * one.wall:.0f} | {one.note} |")
+    ms = " | ".join(f"{1000 * seconds:.0f}" for seconds in (one.server, one.client, one.wall))
+    say(f"| {one.part} | {ms} | {one.note} |")
 
 
 def say(line: str) -> None:
@@ -167,7 +160,7 @@ def spent(process: psutil.Process) -> float:
 
 
 def free_port() -> int:
-    """A port that nobody listens on now."""
+    """A port that is free now."""
     with socket.socket() as bound:
         bound.bind(("127.0.0.1", 0))
         return int(bound.getsockname()[1])
@@ -205,16 +198,8 @@ def per_case(
     few = max(2, cases // 10)
     results = []
     for count in (few, cases):
-        client = [
-            sys.executable,
-            "-m",
-            "research.benchmarks.services.load",
-            "--inside",
-            inside,
-            "--cases",
-            str(count),
-            *words,
-        ]
+        module = "research.benchmarks.services.load"
+        client = [sys.executable, "-m", module, "--inside", inside, "--cases", str(count), *words]
         results.append(run_client(server, client, environment))
     (s0, c0, w0, _), (s1, c1, w1, note) = results
     more = cases - few

@@ -159,14 +159,14 @@ def cards() -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the tables of docs/scale.md."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rate", type=float, nargs="+", default=[1e4, 1e6], help="reports a day")
     parser.add_argument("--set", action="append", default=[], help="a cost, such as prefect=0.02")
     parser.add_argument("--servers", action="append", default=[], help="of a shared part, such as mlflow=4")
     parser.add_argument("--model", type=float, default=0.0, help="seconds a report on a card; 0: no model")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     costs = replace(Costs(), **{key: float(value) for key, _, value in (one.partition("=") for one in options.set)})
     shared = {key: int(value) for key, _, value in (one.partition("=") for one in options.servers)}
     parts = [table(rate, costs, options.model, shared) for rate in options.rate]

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -97,13 +98,13 @@ def table(count: int, overrides: list[str]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=48)
     parser.add_argument("--set", action="append", default=[], dest="overrides")
     parser.add_argument("--inside", nargs=2, metavar=("CASES", "OUT"), help=argparse.SUPPRESS)
-    options, rest = parser.parse_known_args()
+    options, rest = parser.parse_known_args(arguments)
     if options.inside:
         inside(Path(options.inside[0]), Path(options.inside[1]), rest)
     else:

@@ -179,7 +179,7 @@ def compare(options: argparse.Namespace, place: Path) -> str:
     )
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print the comparison."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--config", default="openai.yaml")
@@ -188,7 +188,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--delay", type=float, default=1.0, help="seconds an answer takes")
     parser.add_argument("--inside", nargs=4, help=argparse.SUPPRESS)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if options.inside:
         inside(options.inside, options.shards, options.jobs)
         return

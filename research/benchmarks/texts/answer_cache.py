@@ -19,7 +19,7 @@ def answers(
     asked for again; the others are, so many at once, and are written there as they come. No file: nothing is kept.
 
     What an answer raises is raised when all that were begun are written. Raises OSError for a file that cannot be
-    written, before anybody is asked.
+    written, before the first question.
     """
     known = _remembered(file, key)
     faults = []

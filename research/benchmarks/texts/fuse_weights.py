@@ -24,9 +24,9 @@ import numpy as np
 
 from flows.case.model_calls import ask_of
 from research.benchmarks.texts import answer_cache
-from research.benchmarks.texts.incidents import Incident
-from research.benchmarks.texts.weight_fit import calibration_error, logistic, versus
-from research.rows.coded_rows import WAYS, allowed, of_part
+from research.rows.coded_incidents import Incident
+from research.rows.coded_rows import WAYS, allowed, incidents_of_part
+from research.training.weight_fit import calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import seconded
 from sgcad_core.case.records import CrashReport
 from sgcad_core.config import Config
@@ -52,7 +52,7 @@ class Case(NamedTuple):
 
 def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None = None) -> list[Case]:
     """Every report of a part, or the first so many, asked or remembered; a model that can answers several at once."""
-    incidents = {one.id: one for one in list(of_part(pool, part))[:most]}
+    incidents = {one.id: one for one in list(incidents_of_part(pool, part))[:most]}
     ask = ask_of(config)
 
     def heard(incident: Incident) -> dict[str, Any]:
@@ -141,7 +141,7 @@ def table(cases: Sequence[Case]) -> list[str]:
     return lines
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pool", type=Path)
@@ -151,7 +151,7 @@ def main() -> None:
     parser.add_argument("--part", choices=("train", "validation"), default="validation")
     parser.add_argument("--most", type=int, help="so many reports at most")
     parser.add_argument("--fit", type=Path)
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     cases = ask_all(args.pool, args.part, load_config(args.config, tuple(args.set)), args.out, args.most)
     for genre in sorted({case.id.partition("-")[0] for case in cases}):
         print(genre, *table([case for case in cases if case.id.startswith(genre)]), sep="\n")  # noqa: T201

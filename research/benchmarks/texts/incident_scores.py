@@ -1,7 +1,7 @@
-"""Measures of one run against the coded fields of an incident report: who met whom, where, doing what.
+"""Measures of one run against the coded fields of an incident report: which actors met, where, in which maneuvers.
 
-The subject of a report is actor V1; whom it met has an id of the coded kind (a vehicle V, a pedestrian P, a cyclist B,
-an animal A, an object O). Contacts, areas and maneuvers are those of the trajectories, the junction that of
+The subject of a report is actor V1; the other actor has an id of the coded kind (a vehicle V, a pedestrian P, a cyclist
+B, an animal A, an object O). Contacts, areas and maneuvers are those of the trajectories, the junction that of
 road.net.xml; of what a run says of itself only the status and the sizes of its actors are believed. Codes flag damage,
 so each of several areas may be the right one, and a corner is either of its sides. Knows no narrative.
 """
@@ -59,7 +59,7 @@ class Run:
         return Run(str(result.get("status", "none")), tracks, sizes, drawn.intersections if drawn else 0, silent)
 
     def meeting(self) -> ObservedContact | None:
-        """The subject's first contact with anybody."""
+        """The subject's first contact with any actor."""
         if SUBJECT not in self.tracks:
             return None
         others = [track for name, track in self.tracks.items() if name != SUBJECT]
@@ -98,7 +98,7 @@ def false_success(run: Run, truth: Mapping[str, Any]) -> bool:
 
 
 def _seen(hit: ObservedContact | None) -> tuple[str | None, str, str]:
-    """Whom the subject met, and the areas of both."""
+    """The actor that the subject met, and the areas of both."""
     if hit is None:
         return None, "", ""
     if hit.actor == SUBJECT:

@@ -6,8 +6,8 @@
 
 Runs `sgcad evaluate` with a config, the template one unless told otherwise, over the cases and scores what it leaves
 (research/benchmarks/texts/incident_scores.py). A pool's line is a report with its codes: {"id", "text", "contact",
-"subject", "other", "road"}. Of the pool the reports whose id's SHA-256 is a multiple of six are *blind*: nobody reads
-them, and only their totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their
+"subject", "other", "road"}. Of the pool the reports whose id's SHA-256 is a multiple of six are *blind*: never
+read, only their totals are printed; the others are *seen*. `--sample` takes that many of the seen ones, as their
 hashes fall; blind and dev are always taken whole. Beside the measures stand how many were generated, refused and
 exhausted, and the false successes: a contact is told, none came about, and the status is "generated". The first part of
 an id, up to "-", is its genre; `--only` takes one. Where some reports give no account of a crash (they refer to another
@@ -17,61 +17,17 @@ report, or it is blacked out), a second line has the figures of those that do: w
 from __future__ import annotations
 
 import argparse
-import hashlib
-import json
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
 
 from research.benchmarks.texts.incident_scores import MEASURES, Run, false_success, scores
+from research.rows.coded_incidents import Incident, of_dev, of_pool
 
 CONFIG = Path(__file__).resolve().parents[3] / "configs" / "template.yaml"
-BLIND_OF = 6
 STATUSES = ("generated", "refused", "exhausted", "failed")
-
-
-class Incident(NamedTuple):
-    """A report with its codes; its group is dev, seen or blind."""
-
-    id: str
-    text: str
-    truth: Mapping[str, Any]
-    group: str
-
-    @property
-    def genre(self) -> str:
-        """The first part of the id."""
-        return self.id.partition("-")[0]
-
-
-def by_hash(text: str) -> int:
-    """A number that follows from an id or a text and from nothing else: what parts are chosen by."""
-    return int(hashlib.sha256(text.encode()).hexdigest(), 16)
-
-
-def is_blind(id: str) -> bool:
-    """Whether a report of the pool is one that nobody reads."""
-    return by_hash(id) % BLIND_OF == 0
-
-
-def of_pool(file: Path, sample: int | None = None) -> list[Incident]:
-    """The pool's reports; of the seen ones at most `sample`."""
-    lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line.strip()]
-    found = [Incident(p["id"], p["text"], p, "blind" if is_blind(p["id"]) else "seen") for p in lines]
-    seen = sorted((i for i in found if i.group == "seen"), key=lambda i: by_hash(i.id))
-    return [*seen[:sample], *(i for i in found if i.group == "blind")]
-
-
-def of_dev(cases: Path, truth: Path) -> list[Incident]:
-    """Case folders that have codes beside them."""
-    files = sorted(truth.glob("*.json"))
-    return [
-        Incident(f.stem, (cases / f.stem / "report.txt").read_text(encoding="utf-8"), json.loads(f.read_text()), "dev")
-        for f in files
-    ]
 
 
 def write_cases(incidents: Iterable[Incident], folder: Path) -> None:
@@ -115,7 +71,7 @@ def _line(name: str, members: Sequence[Incident], runs: Path) -> str:
     return f"{name}: {', '.join(shares)}; {', '.join(counts) or 'none run'}; false success {wrong}"
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Write cases, run them, print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dev", type=Path, nargs=2, metavar=("CASES", "TRUTH"))
@@ -125,7 +81,7 @@ def main() -> None:
     parser.add_argument("--config", type=Path, default=CONFIG, help="whose runs are scored (template.yaml)")
     parser.add_argument("--only", default="", help="a genre, such as sgo")
     parser.add_argument("--score-only", action="store_true", help="score what --out holds from before")
-    args = parser.parse_args()
+    args = parser.parse_args(arguments)
     incidents = (of_dev(*args.dev) if args.dev else []) + (of_pool(args.pool, args.sample) if args.pool else [])
     incidents = [i for i in incidents if i.genre == args.only or not args.only]
     if not incidents:

@@ -2,7 +2,7 @@
 
     python -m research.benchmarks.texts.outside [--config fused.yaml] [--answers FILE.jsonl] [--fit configs/prompts]
     python -m research.benchmarks.texts.outside --drawings ...      each report also with a made drawing of its crash
-    python -m research.benchmarks.texts.outside --rules [--folder research/generator/writer_texts] [--show KIND]
+    python -m research.benchmarks.texts.outside --rules [--folder research/generator/written] [--show KIND]
 
 `research/benchmarks/texts/outside/*.jsonl` (the form of `research.generator.writer_texts`) was written by people who
 had seen neither the rules nor the phrases of made reports, nor a real one. Half of it, by the hash of the id, may be
@@ -29,10 +29,10 @@ from pathlib import Path
 
 import numpy as np
 
-from research.benchmarks.texts.incidents import by_hash
 from research.benchmarks.texts.outside_cases import DRAWN, Case, asked, cases, with_drawing
-from research.benchmarks.texts.weight_fit import SIGNS, calibration_error, logistic, versus
 from research.generator.writer_texts import Written, load
+from research.rows.coded_incidents import by_hash
+from research.training.weight_fit import SIGNS, calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import load_weights
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS, Claim, kind_of, rules_claim
@@ -188,7 +188,7 @@ def by_part(some: Sequence[Case], texts: Mapping[str, Sequence[Written]]) -> Ite
     yield WITH_DRAWING, [case for case in some if case.id.endswith(DRAWN)]
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Ask, fit, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=FOLDER)
@@ -199,7 +199,7 @@ def main() -> None:
     parser.add_argument("--drawings", action="store_true", help="each report also with a drawing of its crash")
     parser.add_argument("--rules", action="store_true", help="the rules alone")
     parser.add_argument("--show", choices=KINDS, help="print the texts that may be looked at and are read wrong")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if options.fit is not None and not options.fit.is_dir():
         parser.error(f"--fit {options.fit}: no such folder; give the one for the weights, such as configs/prompts")
     try:

@@ -15,10 +15,10 @@ from typing import Any
 
 from flows.case.model_calls import ask_of
 from research.benchmarks.texts import answer_cache
-from research.benchmarks.texts.incidents import by_hash
 from research.generator.report import Report
 from research.generator.writer_texts import Written, report_of
 from research.renderer.draw import draw_report
+from research.rows.coded_incidents import by_hash
 from sgcad_core.asking.second_opinion import whole
 from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.config import load as load_config

@@ -1,4 +1,4 @@
-"""Are plain facts read in words that nobody's report used? Prints, for a file of paraphrases, what share is read right.
+"""Are plain facts read in words that no report used? Prints, for a file of paraphrases, what share is read right.
 
     python -m research.benchmarks.texts.paraphrases [FILE.yaml ...]
 
@@ -19,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from research.benchmarks.texts.incidents import by_hash
+from research.rows.coded_incidents import by_hash
 from sgcad_core.reading.crash_facts import ContactFacts
 from sgcad_core.reading.reading import Reading, read
 
@@ -80,11 +80,11 @@ def line(name: str, told: Sequence[Mapping[str, Any]]) -> str:
     return f"{name}: " + ", ".join(f"{field} {right[field]} of {of[field]}" for field in of)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print a line a file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE.yaml")
-    files = parser.parse_args().files
+    files = parser.parse_args(arguments).files
     lines = [line(file.stem, paraphrases(file)) for file in files or [SEEN, HELD_OUT]]
     if not files:
         lines += [line(f"styles, {'held out' if held else 'seen'}", of_styles(held_out=held)) for held in (False, True)]

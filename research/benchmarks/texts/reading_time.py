@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 
 from sgcad_core.reading.reading import road_facts
 
@@ -56,12 +57,12 @@ def seconds(text: str) -> float:
     return time.process_time() - began
 
 
-def main(argv: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line a kind of text."""
     parser = argparse.ArgumentParser(prog="python -m research.benchmarks.texts.reading_time")
     parser.add_argument("--largest", type=int, default=100_000, help="characters")
     parser.add_argument("--kind", choices=list(KINDS), default=None)
-    args = parser.parse_args(argv)
+    args = parser.parse_args(arguments)
     seconds(PROSE)  # patterns compile
     for kind in [args.kind] if args.kind else list(KINDS):
         took = [seconds(text_of(kind, args.largest // part)) for part in (4, 2, 1)]

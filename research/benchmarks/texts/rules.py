@@ -15,22 +15,18 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT))
-
-from research.generator.report import Report, make_report  # noqa: E402
-from research.rows.row_stream import HELD_OUT_BASE  # noqa: E402
-from research.training.evaluate import Answer, fields, source, tally  # noqa: E402
-from sgcad_core.errors import Refused  # noqa: E402
-from sgcad_core.reading.behavior.behavior import behavior_of_facts  # noqa: E402
-from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts  # noqa: E402
-from sgcad_core.reading.reading import road_facts  # noqa: E402
-from sgcad_core.records.specs import Compass  # noqa: E402
-from sgcad_core.roads.layout import COMPASS, road_spec  # noqa: E402
+from research.generator.report import Report, make_report
+from research.rows.row_stream import HELD_OUT_BASE
+from research.training.evaluate import Answer, fields, source, tally
+from sgcad_core.errors import Refused
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
+from sgcad_core.reading.reading import road_facts
+from sgcad_core.records.specs import Compass
+from sgcad_core.roads.layout import COMPASS, road_spec
 
 DEFAULTS = Defaults(lanes_each_way=1, speed_limit_mph=35)
 NOISE = 0.6
@@ -51,7 +47,7 @@ def report_of(seed: int, held_out: bool) -> Report:
 
 
 def answer_of(report: Report) -> Answer:
-    """What the rules make of a report, in the form of the model's answers; nobody and nothing where they refuse it."""
+    """The rules' reading of a report in the form of the model's answers; no actors and no contacts if refused."""
     facts = road_facts(report.narrative)
     layout = layout_of_facts(facts, DEFAULTS)
     try:
@@ -105,14 +101,14 @@ def _answer_part(field: str, answer: Answer) -> str:
     return json.dumps([actors, behavior["contacts"]])
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m research.benchmarks.texts.rules", description=__doc__)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--held-out", action="store_true", help="phrase families that nothing was made on")
     parser.add_argument("--base", type=int, default=HELD_OUT_BASE, help="first seed")
     parser.add_argument("--show", metavar="FIELD", help="print the reports in which this field is wrong")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if options.held_out and options.show:
         parser.error("--show would look at held-out failures; drop one of the two")
     reports = [report_of(options.base + i, options.held_out) for i in range(options.count)]

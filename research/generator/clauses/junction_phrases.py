@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from research.generator import words
-from research.generator.clauses import scene_clauses as scene
+from research.generator.clauses import scene_clauses
 from research.generator.clauses.road_phrases import RoadsMixin
 from research.generator.crash.compass_ties import STEM, VAGUE
 from sgcad_core.kinds import FOUR, INTERSECTIONS
@@ -82,4 +82,4 @@ class JunctionMixin(RoadsMixin):
         if self.crash.layout not in INTERSECTIONS or self.rng.random() > odds:
             return []
         self.stated.add("control")
-        return [self.say(scene.CONTROL[self._control_kind()])]
+        return [self.say(scene_clauses.CONTROL[self._control_kind()])]

@@ -1,7 +1,7 @@
 """The blocks on single vehicles: noise, and what is coded and stated of the crash, which is true.
 
-A part of the writer. In NMVCCS reports every vehicle has a critical event, and who turned or crossed the line is
-often told there, or by a driver, more plainly than among the events.
+A part of the writer. In NMVCCS reports every vehicle has a critical event, and the vehicle that turned or crossed
+the line is often told there, or by a driver, more plainly than among the events.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from functools import cache
 from random import Random
 
 from research.generator import phrase_labels, words
-from research.generator.clauses import codes as said
+from research.generator.clauses import code_clauses
 from research.generator.clauses.noise_clauses import GROUPS, SPEED
 from research.generator.crash.world import WORDS, Actor, Contact, Crash
 from research.generator.grammar import StatedFacts, clause_of, fill
@@ -43,7 +43,7 @@ TELLING = {"spd", "dir", "lane", "doing", "code", "move"}
 
 
 def event_of(crash: Crash, index: int, who: tuple[int, int]) -> str | None:
-    """Key of the critical event of an actor, as `clauses_codes.EVENT` has it; None where nothing is coded."""
+    """Key of the critical event of an actor, as `code_clauses.EVENT` has it; None where nothing is coded."""
     if index == who[0]:
         return _own_event(crash, crash.actors[index], crash.actors[who[1]])
     if index == who[1] and crash.actors[index].vehicle:
@@ -125,7 +125,7 @@ class BlocksMixin:
         return self.people[index]
 
     def _clear(self, options: Group, index: int, untrue: Sequence[str] = ()) -> list[str]:
-        """Clauses of its side of the split without some labels that leave nobody in doubt whom they are about.
+        """Clauses of its side of the split without some labels, of which it is clear which vehicle they are about.
 
         "He was driving 30 mph" says whose speed that is only behind a sentence of the block that names the vehicle.
         """
@@ -188,15 +188,15 @@ class BlocksMixin:
         if key and rng.random() < 0.9 * share:
             out.append(self._event(index, key))
         maneuver = self.crash.actors[index].maneuver
-        if maneuver in said.MOVEMENT and rng.random() < 0.2 * share:
-            move = self._phrase(said.MOVEMENT[maneuver])
+        if maneuver in code_clauses.MOVEMENT and rng.random() < 0.2 * share:
+            move = self._phrase(code_clauses.MOVEMENT[maneuver])
             if not maneuver.startswith("lane_change") or has(move, "side"):
                 self.stated |= {f"man.{self.id_of(index)}"}
-            out.append(self.say(self._clear(said.MOVEMENT_FRAMES, index), index, move=plain(move)))
-        if self.crash.config in said.CRASH_TYPE and rng.random() < 0.06 * share:
-            kind = self._phrase(said.CRASH_TYPE[self.crash.config])
+            out.append(self.say(self._clear(code_clauses.MOVEMENT_FRAMES, index), index, move=plain(move)))
+        if self.crash.config in code_clauses.CRASH_TYPE and rng.random() < 0.06 * share:
+            kind = self._phrase(code_clauses.CRASH_TYPE[self.crash.config])
             if index == self.who[0] or not has(kind, "turner"):
-                out.append(self.say(said.TYPE_FRAMES, index, kind=plain(kind)))
+                out.append(self.say(code_clauses.TYPE_FRAMES, index, kind=plain(kind)))
         return out
 
     def _event(self, index: int, key: str) -> str:
@@ -211,11 +211,14 @@ class BlocksMixin:
             self.stated |= {f"heading.{erring.id}"} if f"heading.{self.id_of(index)}" in self.stated else set()
         same = erring.out == self.crash.actors[index].heading and not self.held_out
         onto = {"onto": "same" if same else "opposite"}
-        frames, code = self._clear(said.EVENT_FRAMES, index), self._phrase(said.EVENT[key], index, other, onto)
+        frames, code = (
+            self._clear(code_clauses.EVENT_FRAMES, index),
+            self._phrase(code_clauses.EVENT[key], index, other, onto),
+        )
         return self.say(frames, index, other, code=plain(code))
 
     def _on_foot(self, slot: str) -> str:
-        """What a code calls one whom a vehicle hits: as the slot says, but a cyclist no pedestrian."""
+        """Words of a code for the person that a vehicle hits: as the slot says, but a cyclist is no pedestrian."""
         rides = any(actor.kind == "bicycle" for actor in self.crash.actors)
         return "bicyclist" if rides else slot.replace("_", " ")
 
@@ -223,15 +226,15 @@ class BlocksMixin:
         """What a driver says of the own maneuver and of the other's, and the impact told once more."""
         rng, out, share = self.rng, [], min(1.0, self.length)
         actor, other = self.crash.actors[index], self._opponent(index)
-        person, does = self._person(index), actor.maneuver in said.DOING
-        if does and rng.random() < 0.3 * share and (frames := self._clear(said.SELF_FRAMES, index)):
+        person, does = self._person(index), actor.maneuver in code_clauses.DOING
+        if does and rng.random() < 0.3 * share and (frames := self._clear(code_clauses.SELF_FRAMES, index)):
             self.stated |= {f"man.{actor.id}"}
-            doing = self._phrase(said.DOING[actor.maneuver], index, other, person)
+            doing = self._phrase(code_clauses.DOING[actor.maneuver], index, other, person)
             out.append(self.say(frames, index, other, doing=plain(doing), **person))
         key = None if other is None else self._seen(other)
-        if key and rng.random() < 0.25 * share and (frames := self._clear(said.OTHER_FRAMES, index)):
+        if key and rng.random() < 0.25 * share and (frames := self._clear(code_clauses.OTHER_FRAMES, index)):
             self.stated |= {f"man.{self.id_of(other)}"}
-            did = self._phrase(said.DID[key], index, other, person)
+            did = self._phrase(code_clauses.DID[key], index, other, person)
             out.append(self.say(frames, index, other, did=plain(did), **person))
         if rng.random() < 0.1 * share:
             contact: Contact = self.crash.contacts[0]
@@ -248,7 +251,7 @@ class BlocksMixin:
         if self.crash.config == "crossing":
             return "crossing"
         maneuver = self.crash.actors[index].maneuver
-        return maneuver if maneuver in said.DID else None
+        return maneuver if maneuver in code_clauses.DID else None
 
     def _phrase(self, options: Group, v: int = 0, w: int | None = None, extra: dict[str, str] | None = None) -> str:
         """One phrase of its side of the split, with its slots filled, and behind it its labels."""

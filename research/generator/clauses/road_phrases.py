@@ -5,8 +5,7 @@ from __future__ import annotations
 from random import Random
 
 from research.generator import phrase_labels, phrase_notes, words
-from research.generator.clauses import clause_words
-from research.generator.clauses import road as more
+from research.generator.clauses import clause_words, road_clauses
 from research.generator.clauses.lane_lists import split
 from research.generator.crash.compass_ties import AXIS, FLOW, ROAD_HINT, VAGUE
 from research.generator.crash.world import Crash, Leg
@@ -55,8 +54,8 @@ class RoadsMixin:
         if not bare and (key in self.worded or not self.roads_left):
             if not self.held_out and self._differs(leg) and rng.random() < 0.7:
                 self.spoken_of = axis % 4
-                again = more.TWO_WAY_AGAIN if leg.two_way else more.ONE_WAY_AGAIN
-                return plain(self._uncounted(leg, again, clause_of(rng, more.ROAD_WORD, False)))
+                again = road_clauses.TWO_WAY_AGAIN if leg.two_way else road_clauses.ONE_WAY_AGAIN
+                return plain(self._uncounted(leg, again, clause_of(rng, road_clauses.ROAD_WORD, False)))
             return self._again(axis % 4)
         self.worded.add(key)
         self.spoken_of = axis % 4
@@ -100,10 +99,10 @@ class RoadsMixin:
         turns = any(side.turns_in for side in legs)
         simple = not turns and not (leg.twltl and leg.lanes_in != leg.lanes_out)
         if not leg.two_way and not self.held_out and rng.random() < UNCOUNTED:
-            noun = f"{kind} {clause_of(rng, more.ROAD_WORD, False)}".strip()
-            return self._uncounted(leg, more.UNCOUNTED, noun), False
+            noun = f"{kind} {clause_of(rng, road_clauses.ROAD_WORD, False)}".strip()
+            return self._uncounted(leg, road_clauses.UNCOUNTED, noun), False
         if simple and not self.held_out and rng.random() < words.MORE:
-            return self._further(leg, f"{kind} {clause_of(rng, more.ROAD_WORD, False)}".strip()), True
+            return self._further(leg, f"{kind} {clause_of(rng, road_clauses.ROAD_WORD, False)}".strip()), True
         return self._counted_lanes(leg, legs, kind, turns)
 
     def _counted_lanes(self, leg: Leg, legs: list[Leg], kind: str, turns: bool) -> tuple[str, bool]:
@@ -152,27 +151,28 @@ class RoadsMixin:
         return total
 
     def _further(self, leg: Leg, noun: str) -> str:
-        """A phrase of `clauses_road` for a road without turn lanes at the junction, whatever its lanes."""
+        """A phrase of `road_clauses` for a road without turn lanes at the junction, whatever its lanes."""
         rng, axis = self.rng, leg.bearing % 4
         total = words.NUMBERS[min(leg.lanes_in + leg.lanes_out + leg.twltl, len(words.NUMBERS) - 1)]
         to, fro = words.bound(rng, leg.bearing + 4), words.bound(rng, leg.bearing)
         if not leg.two_way:
             xb, count = (to, leg.lanes_in) if leg.lanes_in else (fro, leg.lanes_out)
-            clause = clause_of(rng, more.ONE_WAY, False)
+            clause = clause_of(rng, road_clauses.ONE_WAY, False)
             self._flowing(leg, clause)
-            return more.put(clause, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
+            return road_clauses.put(clause, noun=noun, n=total, lanes=words.lanes(count), xb=xb)
         if leg.lanes_in != leg.lanes_out:
             self.stated.add(f"{AXIS}.{axis}")
             a, b = self._sides(leg, to, fro)
             a, b = (a, b) if rng.random() < 0.5 else (b, a)
-            return more.phrase(rng, more.SIDES, noun=noun, a=a, b=b)
-        options = more.CENTER_TURN if leg.twltl else more.EVEN if leg.median == "none" else more.DIVIDED
-        median = more.phrase(rng, more.MEDIAN[leg.median]) if leg.median in more.MEDIAN else ""
-        return more.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
+            return road_clauses.phrase(rng, road_clauses.SIDES, noun=noun, a=a, b=b)
+        by_median = road_clauses.EVEN if leg.median == "none" else road_clauses.DIVIDED
+        options = road_clauses.CENTER_TURN if leg.twltl else by_median
+        median = road_clauses.phrase(rng, road_clauses.MEDIAN[leg.median]) if leg.median in road_clauses.MEDIAN else ""
+        return road_clauses.phrase(rng, options, noun=noun, n=total, each=words.lanes(leg.lanes_in), median=median)
 
     @staticmethod
     def _sides(leg: Leg, to: str, fro: str) -> list[str]:
-        """`two northbound lanes` and `one southbound lane`: of those who come in by a leg, and who leave by it."""
+        """`two northbound lanes` and `one southbound lane`: the lanes into the hub and out of it by a leg."""
         back = (leg.bearing + 4) % 8
         return [
             phrase_notes.item(words.lanes(leg.lanes_in, to), leg.bearing, "through", leg.lanes_in),
@@ -213,7 +213,7 @@ class RoadsMixin:
         self.stated.add(f"ways.{leg.bearing % 4}")
         clause = clause_of(self.rng, options, False)
         self._flowing(leg, clause)
-        return more.put(clause, noun=noun, xb=xb)
+        return road_clauses.put(clause, noun=noun, xb=xb)
 
     def _ways_text(self, leg: Leg, even: bool, total: int, word: str) -> str:
         """`a road with two northbound lanes and one southbound lane` and the like."""
@@ -241,7 +241,7 @@ class RoadsMixin:
         return (self._first + 2 * (slot == "lim2")) % 4
 
     def _limit_of(self, slot: str) -> int | None:
-        """That limit; None where nobody set one."""
+        """The limit of the road that a slot names; None where none is set."""
         return next((leg.limit for leg in self._legs_on(self._axis_of(slot)) if leg.limit), None)
 
     def _limit(self, slot: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from research.generator.clauses import motion
+from research.generator.clauses import motion_clauses
 from research.generator.clauses.clause_words import NEARING
 from research.generator.crash.compass_ties import STEM
 from research.generator.crash.world import Actor, Crash
@@ -63,43 +63,45 @@ class ApproachMixin:
         actor = self.crash.actors[index]
         ahead = next((i for i in before if self.crash.actors[i].leg == actor.leg), None)
         options = {
-            "stopped": motion.APPROACH_STOPPED,
-            "parked": motion.APPROACH_PARKED,
-            "slowing": motion.APPROACH_SLOWING,
+            "stopped": motion_clauses.APPROACH_STOPPED,
+            "parked": motion_clauses.APPROACH_PARKED,
+            "slowing": motion_clauses.APPROACH_SLOWING,
         }.get(actor.maneuver)
         presented = not self.ciren and index not in self.mentions.introduced and self.rng.random() < 0.22
         if options:
             self.stated |= {f"man.{actor.id}"} | (set() if actor.meant else {f"exit.{actor.id}"})
-            if presented and actor.maneuver in motion.PRESENTED:
-                options = motion.PRESENTED[actor.maneuver]
+            if presented and actor.maneuver in motion_clauses.PRESENTED:
+                options = motion_clauses.PRESENTED[actor.maneuver]
             return self.say(options, index, ahead, why=lambda: self._why(actor))
         if how := self._pauses(index):
-            options = motion.APPROACH_SLOWING if how == "slowing" else motion.APPROACH_WAITING
-            options = motion.PRESENTED[how] if presented else options
+            options = motion_clauses.APPROACH_SLOWING if how == "slowing" else motion_clauses.APPROACH_WAITING
+            options = motion_clauses.PRESENTED[how] if presented else options
             return self.say(options, index, ahead, why=lambda: self._why_waiting(actor))
         order = self._drives_behind(index, ahead)
         if order is not None and self.rng.random() < 0.6:
             self.stated |= {f"heading.{actor.id}"} | ({f"man.{actor.id}"} if actor.maneuver == "straight" else set())
-            return self.say(motion.SAME if order else motion.AHEAD, index, ahead)
+            return self.say(motion_clauses.SAME if order else motion_clauses.AHEAD, index, ahead)
         if self.crash.leg(actor.leg).curve != "none" and self.rng.random() < 0.6:  # type: ignore[union-attr]
             self.stated |= {"curve"} | ({f"man.{actor.id}"} if actor.maneuver == "negotiating_curve" else set())
-            return self.say(motion.APPROACH_CURVE, index, ahead)
-        alone = self.crash.layout in motion.FROM_STEM and [leg.bearing for leg in self.crash.stems] == [actor.leg]
+            return self.say(motion_clauses.APPROACH_CURVE, index, ahead)
+        alone = self.crash.layout in motion_clauses.FROM_STEM and [leg.bearing for leg in self.crash.stems] == [
+            actor.leg
+        ]
         if alone and actor.maneuver != "backing" and not self.held_out and self.rng.random() < UNSAID:
             return self._from_stem(actor, index, ahead, before)
         leaves = not self.held_out and actor.maneuver.startswith(LEAVES)
-        moving = motion.PRESENTED["moving"] if presented else motion.APPROACH
+        moving = motion_clauses.PRESENTED["moving"] if presented else motion_clauses.APPROACH
         clauses = moving.without(self.held_out, ["goes_on"] * leaves)
         return self.say(clauses, index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _from_stem(self, actor: Actor, index: int, ahead: int | None, before: list[int]) -> str:
         """One on the leg that ends at the junction, without a word of the compass."""
-        clause = self.fitting(motion.FROM_STEM[self.crash.layout], actor)
+        clause = self.fitting(motion_clauses.FROM_STEM[self.crash.layout], actor)
         self.stated |= {f"heading.{actor.id}"} if STEM in self.stated else set()
         return self.say([self.spoken(clause)], index, ahead, appr=lambda: self._approaching(index, bool(before)))
 
     def _pauses(self, index: int) -> str:
-        """ "waiting" or "slowing" where one who is about to cross or turn is said to have done so; else "".
+        """ "waiting" or "slowing" where an actor about to cross or turn is said to have done so; else "".
 
         Then the error must be told. Of turning vehicles in real narratives two in five had stopped, one in six slowed.
         """
@@ -123,7 +125,7 @@ class ApproachMixin:
         """What for: a sign, a light, a gap in traffic, a turn."""
         control = self.crash.leg(actor.leg).control  # type: ignore[union-attr]
         keys = ["sign" if control == "stop" else "light" if control == "signal" and not self.held_out else "traffic"]
-        keys += [actor.maneuver] * 2 if actor.maneuver in motion.WHY else []
+        keys += [actor.maneuver] * 2 if actor.maneuver in motion_clauses.WHY else []
         key = self.rng.choice(keys)
         if key.startswith("turn"):
             self.stated |= {f"man.{actor.id}", f"exit.{actor.id}"}
@@ -151,7 +153,9 @@ class ApproachMixin:
             same = later and (self.junction_named or self.held_out)
             place = "the same intersection" if same else self.scene_junction()
             text = " " + rng.choice(NEARING.side(False)).format(place=place)
-        if actor.maneuver in motion.INTENT and rng.random() < 0.3:
+        if actor.maneuver in motion_clauses.INTENT and rng.random() < 0.3:
             self.stated |= {f"man.{actor.id}", f"exit.{actor.id}"}
-            text += (", " if text else " ") + plain(self.spoken(self.fitting(motion.INTENT[actor.maneuver], actor)))
+            text += (", " if text else " ") + plain(
+                self.spoken(self.fitting(motion_clauses.INTENT[actor.maneuver], actor))
+            )
         return text

@@ -34,11 +34,11 @@ BY_AXIS = ("lanes", "ways", "turns", "median", "limit")
 """Facts of one road; "ways" is whether it is one-way, of however many lanes."""
 
 
-def unsettled(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
-    """Facts that sentences tell in part or of no known leg; "legs" where nobody could say which legs there are.
+def uncertain_facts(crash: Crash, sentences: Iterable[frozenset[str]]) -> set[str]:
+    """Facts that sentences tell in part or of no known leg; "legs" where it stays open which legs there are.
 
-    Then nothing about the legs beside the main road is known either, nor which legs a control stands at, unless all who
-    come here meet the same.
+    Then nothing about the legs beside the main road is known either, nor which legs a control stands at, unless all
+    legs have the same.
     """
     sentences = list(sentences)
     told = {fact for facts in sentences for fact in facts}
@@ -66,7 +66,7 @@ def _uncounted(crash: Crash, sentences: Iterable[frozenset[str]], known: Set[str
 
 
 def lanes_beside(crash: Crash, actor: Actor) -> set[str]:
-    """The facts that who counts lanes from the right must know to number one that is named from the left."""
+    """Facts without which a lane that is named from the left cannot be numbered from the right."""
     leg = crash.leg(actor.leg)
     return {f"{key}.{actor.leg % 4}" for key in ("lanes", *(("turns",) if leg and leg.turns_in else ()))}
 
@@ -98,7 +98,7 @@ def _placed(crash: Crash, fact: str, facts: frozenset[str], tied: bool, sentence
 
 
 def _directed(crash: Crash, axis: int, told: set[str]) -> bool:
-    """Whether a reader could say which way a one-way road leads: it is told, or somebody drives on it."""
+    """Whether the direction of a one-way road is known: it is told, or an actor drives on it."""
     if all(leg.two_way for leg in crash.legs if leg.bearing % 4 == axis and leg.kind == ROAD):
         return True
     used = {leg % 4 for leg in driven(crash.actors, told)}

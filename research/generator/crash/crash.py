@@ -1,6 +1,6 @@
 """The crash sampler: roads, a configuration that fits them, then numbers, lanes and speeds.
 
-`configurations` knows who strikes whom; a configuration that the roads do not allow is tried again.
+`configurations` knows striker and struck; a configuration that the roads do not allow is tried again.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def _roads(rng: Random, config: str) -> Crash:
     return Crash(config, layout, main % 8, legs, [], [], light, weather, surface, roads.accesses(rng, legs), area)
 
 
-def glanced(rng: Random, crash: Crash) -> Crash:
+def with_glancing_sides(rng: Random, crash: Crash) -> Crash:
     """Now and then one that crosses the center line meets the side of the oncoming vehicle instead of its front."""
     first = crash.contacts[0]
     ends = first.striker_area == first.struck_area == "front"
@@ -88,9 +88,9 @@ def glanced(rng: Random, crash: Crash) -> Crash:
     return replace(crash, contacts=[replace(first, struck_area="left"), *crash.contacts[1:]])
 
 
-def seldom(rng: Random, crash: Crash) -> Crash:
-    """More often than on roads, as far as a drawing can show it: somebody on foot or a bicycle, or a vehicle of a kind
-    that is seldom seen."""
+def with_rare_actor(rng: Random, crash: Crash) -> Crash:
+    """The crash with rare actors more often than on roads, as far as a drawing can show them: pedestrians, bicycles,
+    vehicles of rare kinds."""
     if rng.random() < WALKS:
         crash = sample_crash(rng, "pedestrian")
     vehicles = [i for i, actor in enumerate(crash.actors) if actor.vehicle]

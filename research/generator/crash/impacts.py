@@ -1,11 +1,11 @@
-"""Sentences of contacts: who strikes whom with which sides. A part of the writer."""
+"""Sentences of contacts: striker, struck and the sides of both. A part of the writer."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from random import Random
 
-from research.generator.clauses import contact as clauses_contact
+from research.generator.clauses import contact_clauses
 from research.generator.crash.world import Contact, Crash
 from research.generator.grammar import StatedFacts, choose, clause_of
 from research.generator.phrase_labels import has, plain
@@ -33,16 +33,16 @@ class ImpactsMixin:
         follows = self.held_out or self.crash.config == "rear_end"
         swipe = {contact.striker_area, contact.struck_area} <= {"left", "right"}
         later = number > 0
-        options, areas = (clauses_contact.THEN if later else clauses_contact.IMPACT), True
+        options, areas = (contact_clauses.THEN if later else contact_clauses.IMPACT), True
         if swipe and self.rng.random() < 0.6:
-            options = clauses_contact.SWIPE
+            options = contact_clauses.SWIPE
         elif rear and follows and self.rng.random() < 0.3:
-            options = clauses_contact.THEN_REAR if later else clauses_contact.IMPACT_REAR
+            options = contact_clauses.THEN_REAR if later else contact_clauses.IMPACT_REAR
         elif self.rng.random() < 0.06 and not later:
-            options, areas = clauses_contact.IMPACT_BARE, False
+            options, areas = contact_clauses.IMPACT_BARE, False
         if not struck.vehicle:
-            options, areas = clauses_contact.FIXED, True
-        sides = ("left", "right", "left", "right") if options is clauses_contact.SWIPE else None
+            options, areas = contact_clauses.FIXED, True
+        sides = ("left", "right", "left", "right") if options is contact_clauses.SWIPE else None
         sa = contact.striker_area if sides else self._area(contact.striker_area, striker.kind)
         ta = contact.struck_area if sides else self._area(contact.struck_area, struck.kind)
         head_first = contact.striker_area == "front" != contact.struck_area
@@ -57,9 +57,9 @@ class ImpactsMixin:
         return self.say([clause], contact.striker, contact.struck, touching, sa=sa, ta=ta)
 
     def _contact(self, options: Group, number: int, alike: bool) -> str:
-        """A clause of a contact. In training its choices are made, it is true of those whom it means, and where sides
-        do not tell who strikes (`alike`) each order of words comes as often as the others, as far as there are such
-        clauses: most name the striker first, and the rest would hardly be learned.
+        """A clause of a contact. In training its choices are made, it is true of the actors that it means, and where
+        sides do not tell the striker (`alike`) each order of words comes as often as the others, as far as there are
+        such clauses: most name the striker first, and the rest would hardly be learned.
         """
         clauses = options.side(self.held_out)
         if self.held_out:
@@ -90,20 +90,20 @@ class ImpactsMixin:
         """A clause of a contact, now and then with a few words before or behind it that are true of both."""
         struck = self.crash.actors[contact.struck]
         two = struck.vehicle and struck.maneuver not in ("parked", "stopped")
-        tail = f" {clause_of(self.rng, clauses_contact.TAILS, False)}" if self.rng.random() < 0.12 else ""
+        tail = f" {clause_of(self.rng, contact_clauses.TAILS, False)}" if self.rng.random() < 0.12 else ""
         if (not two and has(tail, "both")) or (has(tail, "on_striker") and order_of(clause) != "striker"):
             tail = ""
         if contact.struck_area not in ("left", "right") and has(tail, "crosswise"):
             tail = ""
         if self.rng.random() >= 0.15 or has(clause, "unled"):
             return clause + tail
-        lead = clause_of(self.rng, clauses_contact.LEADS, False)
+        lead = clause_of(self.rng, contact_clauses.LEADS, False)
         return clause + tail if not two and has(lead, "both") else f"{lead}, {clause[:1].lower()}{clause[1:]}{tail}"
 
     def _area(self, area: str, kind: str) -> str:
         """Words for a side; in training, of motorcycles or of all others."""
         strange = [] if self.held_out else ["body" if kind == "motorcycle" else "cycle"]
-        return plain(clause_of(self.rng, clauses_contact.AREA[area].without(self.held_out, strange), self.held_out))
+        return plain(clause_of(self.rng, contact_clauses.AREA[area].without(self.held_out, strange), self.held_out))
 
 
 def order_of(clause: str) -> str:

@@ -1,6 +1,6 @@
 """Roads around a hub: how many legs, how many lanes, which control, with the frequencies of U.S. reports.
 
-Makes the legs only; who drives on them is `crash`'s business.
+Makes the legs only; `crash` decides which actors drive on them.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def accesses(rng: Random, legs: list[Leg]) -> list[Access]:
     ]
 
 
-def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
+def with_access_mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     """The crash with driveways beside the one that matters, as along shops, each drawn no further than its mouth.
 
     Around junctions investigators rarely draw any: where no text tells of them (not `told`), most have none.
@@ -192,7 +192,7 @@ def mouths(rng: Random, crash: Crash, told: bool) -> Crash:
     return replace(crash, legs=legs, accesses=found)
 
 
-def carriageway(crash: Crash) -> Crash | None:
+def one_carriageway(crash: Crash) -> Crash | None:
     """The crash on the one carriageway of a divided road that matters; None where both do, or none is divided."""
     found = next((i for i, leg in enumerate(crash.legs) if leg.bearing == crash.actors[0].leg), None)
     if crash.layout != PLAIN or crash.accesses or len(crash.legs) != 2 or found is None:
@@ -209,7 +209,7 @@ def carriageway(crash: Crash) -> Crash | None:
 
 
 def beside(crash: Crash) -> Crash | None:
-    """The same crash on a plain road, as one tells it who passes over the junction beside it; None where it matters."""
+    """The same crash on a plain road, without the junction beside it; None where the junction matters."""
     main = [replace(leg, control="none") for leg in crash.legs if crash.is_main(leg.bearing)]
     ways = {leg.bearing for leg in main}
     used = {way for a in crash.actors for way in (a.leg, a.out) if way is not None}
@@ -220,7 +220,7 @@ def beside(crash: Crash) -> Crash | None:
 
 
 def one_way(rng: Random, crash: Crash, odds: float) -> Crash:
-    """The crash with, at these odds, a one-way street for a two-way one whose other direction nobody uses.
+    """The crash with, at these odds, a one-way street for a two-way one whose other direction no actor uses.
 
     A through road keeps both legs, the third leg of a T only leads in or only out. Most such streets have one lane; one
     that several came by keeps its lanes.
@@ -271,12 +271,12 @@ def _uses(leg: Leg, closed: int) -> list[str]:
 
 
 def _lane_of(actor: Actor, lanes: int) -> int | None:
-    """The lane of the only one who came by a road that has so many now: who turns left keeps to the left."""
+    """The lane of the only actor on a road that has so many now: the left one for a left turn."""
     turns_left = actor.out is not None and (actor.out - actor.leg) % 8 == TURN_OF["left"]
     return lanes if turns_left else actor.lane
 
 
-def misdrawn(rng: Random, crash: Crash) -> Crash:
+def with_wrong_lanes(rng: Random, crash: Crash) -> Crash:
     """The crash as a careless hand draws it: other numbers of lanes, no turn lanes, no medians."""
     lanes = [(rng.choice((1, 1, 2, 2, 3)), rng.choice((1, 1, 2, 2, 3))) for _ in range(4)]
     legs = []

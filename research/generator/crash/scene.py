@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from research.generator import words
-from research.generator.clauses import road as roads
-from research.generator.clauses import scene_clauses as scene
+from research.generator.clauses import road_clauses, scene_clauses
 from research.generator.clauses.junction_phrases import JunctionMixin
 from research.generator.clauses.lane_lists import lane_phrase
 from research.generator.crash import conditions
@@ -93,17 +92,17 @@ class SceneMixin(JunctionMixin):
     # -------------------------------------------------------------- sentences
     def _opening(self) -> list[str]:
         kinds = {
-            FOUR: scene.OPENING_JUNCTION,
-            T: scene.OPENING_JUNCTION,
-            DRIVEWAY: scene.OPENING_DRIVEWAY,
-            MERGE: scene.OPENING_MERGE,
+            FOUR: scene_clauses.OPENING_JUNCTION,
+            T: scene_clauses.OPENING_JUNCTION,
+            DRIVEWAY: scene_clauses.OPENING_DRIVEWAY,
+            MERGE: scene_clauses.OPENING_MERGE,
         }
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         if self.crash.layout == DRIVEWAY and not self.held_out and self.rng.random() < PASSED_OVER:
-            return self._of_road(scene.OPENING_PLAIN, main)
+            return self._of_road(scene_clauses.OPENING_PLAIN, main)
         if self.crash.layout in (DRIVEWAY, MERGE, FOUR):
             self.stated.add("layout")
-        group = kinds.get(self.crash.layout, scene.OPENING_PLAIN)
+        group = kinds.get(self.crash.layout, scene_clauses.OPENING_PLAIN)
         options: Sequence[str] = group.without(self.held_out, ["two"] * self.crash.alone)
         if self.crash.layout == T and self.rng.random() < 0.85:
             options = [clause for clause in options if {"jn", "Jn"} & set(slots_of(clause))]
@@ -116,7 +115,7 @@ class SceneMixin(JunctionMixin):
         unset = {slot for slot in ("lim", "lim2") if self._limit_of(slot) is None}
         clauses = (c for c in sided(options, self.held_out) if not any(letter in c for letter in letters))
         true = [c for c in clauses if not unset.intersection(slots_of(c))]
-        if options is scene.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
+        if options is scene_clauses.ROAD and self.spoken_of not in (None, self._first) and not self.held_out:
             true = [clause for clause in true if "axis" in slots_of(clause) or not has(clause, "last_road")]
         self.of_road = True
         text = [self.say(true, main)] if true else []
@@ -135,13 +134,13 @@ class SceneMixin(JunctionMixin):
         rng = self.rng
         main = next((i for i, a in enumerate(self.crash.actors) if self.crash.is_main(a.leg)), 0)
         makers: list[Callable[[], list[str]]]
-        makers = [partial(self._of_road, scene.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
+        makers = [partial(self._of_road, scene_clauses.ROAD, main) for _ in range(rng.choice((0, 1, 1, 2)))]
         if self.crash.layout in INTERSECTIONS and rng.random() < 0.4:
-            makers.append(partial(self._of_road, scene.ROAD2, main))
+            makers.append(partial(self._of_road, scene_clauses.ROAD2, main))
         if not self.held_out:
             makers += self._more_of_roads(main)
         if self._leg_of(main).curve != "none" and rng.random() < 0.7:
-            makers.append(partial(self._of_road, scene.CURVE, main))
+            makers.append(partial(self._of_road, scene_clauses.CURVE, main))
         if self.crash.accesses and rng.random() < 0.8:
             makers.append(self._access)
         rng.shuffle(makers)
@@ -159,8 +158,8 @@ class SceneMixin(JunctionMixin):
             makers.append(self._alike_roads)
         if rng.random() < 0.25:
             makers.append(self._flows)
-        if self.crash.layout in roads.STEM and rng.random() < 0.3:
-            makers.append(lambda: [self.say(roads.STEM[self.crash.layout], main)])
+        if self.crash.layout in road_clauses.STEM and rng.random() < 0.3:
+            makers.append(lambda: [self.say(road_clauses.STEM[self.crash.layout], main)])
         return makers
 
     def _each_way(self) -> list[str]:
@@ -180,13 +179,13 @@ class SceneMixin(JunctionMixin):
             return [self._alike(one, axis, ab, bb)]
         lists = {"alist": lane_phrase(rng, one), "blist": lane_phrase(rng, other)}
         capital = ab[:1].upper() + ab[1:]
-        text = self.say(scene.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)
+        text = self.say(scene_clauses.ROAD_LANES, ab=ab, bb=bb, Ab=capital, axis0=words.axis(rng, axis), **lists)
         return [placed(text, {one.bearing: ab, other.bearing: bb})]
 
     def _alike(self, leg: Leg, axis: int, ab: str, bb: str) -> str:
         """A road with as many lanes the one way as the other."""
         ways = {"w1": WORDS[leg.bearing], "w2": WORDS[(leg.bearing + 4) % 8], "b1": bb, "b2": ab}
-        return self.say(roads.EACH_WAY, each=words.lanes(leg.lanes_in), axis0=words.axis(self.rng, axis), **ways)
+        return self.say(road_clauses.EACH_WAY, each=words.lanes(leg.lanes_in), axis0=words.axis(self.rng, axis), **ways)
 
     def _pair(self) -> list[str]:
         """Both roads of a junction in one sentence."""
@@ -194,7 +193,7 @@ class SceneMixin(JunctionMixin):
         one, other = self._road(first, bare=True), self._road(second, bare=True)
         self.stated |= {f"{AXIS}.{first}", f"{AXIS}.{second}"}
         axes = {"a1": words.axis(self.rng, first), "a2": words.axis(self.rng, second)}
-        return [self.say(roads.PAIR, one=one, other=other, Ione=one[:1].upper() + one[1:], **axes)]
+        return [self.say(road_clauses.PAIR, one=one, other=other, Ione=one[:1].upper() + one[1:], **axes)]
 
     def _alike_roads(self) -> list[str]:
         """Lanes of both roads of a junction at once, where they have the same and no others."""
@@ -208,7 +207,7 @@ class SceneMixin(JunctionMixin):
             return []
         lanes, kind = max(ways), "one_way" if 0 in ways else "two_way"
         self.stated |= {f"{key}.{leg.bearing % 4}" for leg in legs for key in ("lanes", ROAD_HINT)}
-        return [self.say(roads.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
+        return [self.say(road_clauses.ALIKE[kind], each=words.lanes(lanes), total=words.NUMBERS[2 * lanes])]
 
     def _two_way(self) -> bool:
         """Whether any road is driven either way."""
@@ -223,7 +222,7 @@ class SceneMixin(JunctionMixin):
         axis = self.spoken_of = leg.bearing % 4
         self.stated |= {f"{fact}.{axis}" for fact in ("ways", ROAD_HINT, AXIS, FLOW)}
         xb = words.bound(self.rng, leg.flow)
-        return [self.say(roads.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
+        return [self.say(road_clauses.FLOWS, axis0=words.axis(self.rng, axis), xb=xb)]
 
     def _limits(self) -> list[str]:
         """One limit of both roads, where they have one."""
@@ -232,7 +231,7 @@ class SceneMixin(JunctionMixin):
         if not limit:
             return []
         self.stated |= {f"limit.{leg.bearing % 4}" for leg in self.crash.legs}
-        return [self.say(roads.LIMITS, lim=words.limit(self.rng, limit, False))]
+        return [self.say(road_clauses.LIMITS, lim=words.limit(self.rng, limit, False))]
 
     def _access(self) -> list[str]:
         access = self.crash.accesses[0]
@@ -247,13 +246,13 @@ class SceneMixin(JunctionMixin):
         if self.rng.random() >= odds:
             return []
         alone = self.crash.alone and not self.held_out
-        return [self.say(scene.CONDITIONS.without(self.held_out, ["two"] * alone))]
+        return [self.say(scene_clauses.CONDITIONS.without(self.held_out, ["two"] * alone))]
 
     def _condition(self, slot: str) -> str:
         key, table = {
-            "light": ("light", scene.LIGHT),
-            "wx": ("weather", scene.WEATHER),
-            "surf": ("surface", scene.SURFACE),
+            "light": ("light", scene_clauses.LIGHT),
+            "wx": ("weather", scene_clauses.WEATHER),
+            "surf": ("surface", scene_clauses.SURFACE),
         }[slot]
         untrue = [] if self.held_out else conditions.untrue(key, self.crash.light, self.crash.weather)
         text = choose(self.rng, self.rng.choice(table[getattr(self.crash, key)].without(self.held_out, untrue)))

@@ -44,7 +44,7 @@ class Leg:
 
     @property
     def flow(self) -> int:
-        """Heading of its traffic as a bearing index; of a two-way one, of those who come in."""
+        """Heading of its traffic as a bearing index; of a two-way one, of its inbound traffic."""
         return (self.bearing + 4 * (self.lanes_in > 0)) % 8
 
 
@@ -90,11 +90,11 @@ class Actor:
 
     @property
     def vehicle(self) -> bool:
-        """Whether it is a motor vehicle: no tree, nobody on foot or on a bicycle."""
+        """Whether it is a motor vehicle: no tree, pedestrian or bicycle."""
         return self.id.startswith("V")
 
     def exit_of(self, told: Set[str]) -> int | None:
-        """The leg that it takes, if these facts say which; of whom no maneuver is told, the one straight ahead."""
+        """The leg that an actor takes, if these facts say which; without a told maneuver, the one straight ahead."""
         on = self.out is not None and (self.out - self.leg) % 8 == 4
         sure = f"man.{self.id}" in told or self.maneuver == "straight" or on
         open_ = self.meant or self.maneuver == "backing"  # which neither standing nor backing out tells

@@ -1,6 +1,6 @@
 """All word classes and rules as one immutable value, and patterns with their slots filled. Reads the data files.
 
-A `Language` can be made with changed records, which is how the tests are tested (`research/benchmarks/mutants.py`).
+A `Language` can be made with changed records, which is how tests try one with faults in it.
 """
 
 from __future__ import annotations

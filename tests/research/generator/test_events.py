@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 
 from research.generator import events, writer
-from research.generator.clauses import contact, motion, turning
+from research.generator.clauses import contact_clauses, error_clauses, motion_clauses
 from research.generator.crash.compass_ties import VAGUE
 from research.generator.crash.world import WORDS
 from research.generator.records import group
@@ -31,7 +31,7 @@ def test_one_that_keeps_its_lane_is_not_said_to_drift_into_a_parked_vehicle(monk
 
 @pytest.mark.parametrize("slot", ["outdir", "outxb"])
 def test_where_one_that_turns_goes_tells_where_it_came_from(slot: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(turning, "ONWARD", group(f"QQ {{V}} {{turn}} {{{slot}}}"))
+    monkeypatch.setattr(error_clauses, "ONWARD", group(f"QQ {{V}} {{turn}} {{{slot}}}"))
     monkeypatch.setattr(events, "BOUND", 1.0)
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     seen = 0
@@ -49,7 +49,7 @@ def test_where_one_that_turns_goes_tells_where_it_came_from(slot: str, monkeypat
 
 
 def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(turning, "STRAYS", group("QQ {turn} from {aside}"))
+    monkeypatch.setattr(error_clauses, "STRAYS", group("QQ {turn} from {aside}"))
     monkeypatch.setattr(events, "STRAYING", 1.0)
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     only(monkeypatch, lambda crash: crash.config == "lane_change")
@@ -67,8 +67,8 @@ def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monke
 
 
 def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(motion.WHY, "light", group("QLIGHT<signal>"))
-    monkeypatch.setitem(motion.WHY, "sign", group("QSIGN<sign>"))
+    monkeypatch.setitem(motion_clauses.WHY, "light", group("QLIGHT<signal>"))
+    monkeypatch.setitem(motion_clauses.WHY, "sign", group("QSIGN<sign>"))
     lights = signs = 0
     for seed in range(1200):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
@@ -86,7 +86,7 @@ def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.Monkey
 def test_the_one_that_is_pushed_is_the_one_that_was_struck(monkeypatch: pytest.MonkeyPatch) -> None:
     moved = ["QQ {V} was pushed aside<moved_v>", "QQ the impact [pushed|moved] {W} back<moved_w>"]
     clauses = group(*moved, "RR {V} stopped", "~SS {V} rolled")
-    monkeypatch.setattr(contact, "REST", clauses)
+    monkeypatch.setattr(contact_clauses, "REST", clauses)
     said = Counter[str]()
     for seed in range(400):
         report = make_report(seed, length=0.0, modes={"text": 1.0})

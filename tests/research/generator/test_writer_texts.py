@@ -9,8 +9,8 @@ import pytest
 from research.generator import writer_texts
 from research.generator.writer_texts import Written, load, renumbered, report_of, shipped, some_report, turned
 from research.model.tokens import Coder, load_tokenizer
+from research.rows.report_rows import MAX_TEXT
 from research.rows.row_stream import one_row
-from research.rows.rows import MAX_TEXT
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout
 from sgcad_core.settings import ROOT
 

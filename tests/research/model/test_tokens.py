@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from research.generator.report import make_report
 from research.model.tokens import ROAD, SCENARIO, SPECIAL, Coder, fragments, train_tokenizer
-from research.rows.rows import training_row
+from research.rows.report_rows import training_row
 from tests.research.reports import text_report
 
 _SPARED = (

@@ -2,7 +2,6 @@
 
 from bisect import bisect_left
 from dataclasses import replace
-from pathlib import Path
 from random import Random
 
 import numpy as np
@@ -20,10 +19,9 @@ from research.model.batch import Pass, Taggers
 from research.model.model import Forward
 from research.model.tokens import Coder, train_tokenizer
 from research.rows import evidence_labels
-from research.rows.row_stream import labeled, moment
-from research.rows.rows import collate, tag_picture, training_row
-from research.training.train import Trainer
-from research.training.train_options import parse
+from research.rows.collate import collate
+from research.rows.report_rows import tag_picture, training_row
+from research.rows.row_stream import labeled
 from tests.research.reports import text_report
 
 seeds = st.integers(0, 10**6)
@@ -151,37 +149,6 @@ def test_a_batch_carries_the_tags_of_its_rows(coder: Coder) -> None:
     assert len(batch.drawn) == len(batch.patch_index)
     at = [i * batch.ids.shape[1] + place for i, row in enumerate(rows) for place, _ in row.text_tags]
     assert batch.ends.tolist() == at
-
-
-@pytest.mark.slow
-def test_the_stage_of_drawings_moves_only_the_eyes_and_another_run_takes_them(tmp_path: Path) -> None:
-    usual = ["--size", "tiny", "--workers", "0", "--ranks", "1", "--texts", "100", "--tokens", "1500"]
-    usual += ["--total-steps", "2", "--max-steps", "2", "--budget", "1000"]
-    Trainer(parse([*usual, "--out", str(tmp_path / "a"), "--stage", "text"])).run()
-    start = str(tmp_path / "a" / "export")
-    eyes = Trainer(parse([*usual, "--out", str(tmp_path / "b"), "--stage", "pictures", "--start", start]))
-    before = {key: value.detach().clone() for key, value in eyes.optimizer.master.items()}
-    eyes.run()
-    moved = {key for key, value in eyes.optimizer.master.items() if not torch.equal(value, before[key])}
-    assert moved
-    assert all(key.startswith(("model.visual.", "heads.picture.", "eye.")) for key in moved)
-    joined = Trainer(
-        parse([*usual, "--out", str(tmp_path / "c"), "--start", start, "--eyes", str(tmp_path / "b" / "export")])
-    )
-    for key, value in eyes.optimizer.master.items():
-        if key.startswith(("model.visual.", "eye.")):
-            assert torch.allclose(
-                joined.optimizer.master[key], value, atol=0.01 * float(value.detach().abs().max()) + 1e-6
-            )
-
-
-def test_a_run_goes_through_the_stages_one_after_the_other() -> None:
-    assert [moment("auto", at)[0] for at in (0.0, 0.14, 0.16, 0.29, 0.31, 1.0)] == [
-        "pictures", "pictures", "text", "text", "all", "all",
-    ]  # fmt: skip
-    assert moment("auto", 0.3)[1] == pytest.approx(0.0, abs=1e-6)
-    assert moment("auto", 1.0)[1] == pytest.approx(1.0)
-    assert moment("text", 0.4) == ("text", 0.4)
 
 
 @settings(max_examples=60, deadline=None)

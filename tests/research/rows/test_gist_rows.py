@@ -13,10 +13,10 @@ from research.generator.report import make_report
 from research.model import answer_grammar
 from research.model.batch import Batch
 from research.model.tokens import ROAD, SCENARIO, Coder, load_tokenizer
+from research.rows.collate import collate
 from research.rows.gist_rows import gist_row, gist_walk, told_of
 from research.rows.partial_labels import OPTIONS, Told, load
 from research.rows.row_stream import one_row
-from research.rows.rows import collate
 from sgcad_core import settings
 from sgcad_core.asking.prompts import load_prompt
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, Gist

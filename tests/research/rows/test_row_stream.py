@@ -6,6 +6,7 @@ import pytest
 
 from research.generator.report import Report, make_report
 from research.rows import row_stream
+from research.rows.row_stream import stage_at
 
 SEEDS = range(31_000_000, 31_000_120)
 
@@ -36,3 +37,12 @@ def test_rare_is_what_the_drawing_itself_shows() -> None:
         arrows = any(leg.turns_in for leg in report.crash.legs) and any(f.startswith("turns.") for f in report.drawn)
         center = any(leg.twltl for leg in report.crash.legs)
         assert row_stream.shows_rare(report) == bool(kinds or arrows or center)
+
+
+def test_a_run_goes_through_the_stages_one_after_the_other() -> None:
+    assert [stage_at("auto", at)[0] for at in (0.0, 0.14, 0.16, 0.29, 0.31, 1.0)] == [
+        "pictures", "pictures", "text", "text", "all", "all",
+    ]  # fmt: skip
+    assert stage_at("auto", 0.3)[1] == pytest.approx(0.0, abs=1e-6)
+    assert stage_at("auto", 1.0)[1] == pytest.approx(1.0)
+    assert stage_at("text", 0.4) == ("text", 0.4)

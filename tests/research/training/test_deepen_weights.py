@@ -8,8 +8,9 @@ from research.generator.report import make_report
 from research.model.batch import Batch
 from research.model.model import Forward, make_config, make_model
 from research.model.tokens import Coder, train_tokenizer
+from research.rows.collate import collate
+from research.rows.report_rows import training_row
 from research.rows.row_stream import drawing
-from research.rows.rows import collate, training_row
 from research.training.deepen_weights import BLOCKS, deepened, places
 from tests.research.reports import text_report
 

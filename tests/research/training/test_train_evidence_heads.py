@@ -16,7 +16,7 @@ from research.generator.report import depleted, make_report
 from research.model import evidence_heads
 from research.model.evidence_heads import fit, right_and_ordered
 from research.model.tokens import Coder, load_tokenizer
-from research.rows.rows import evidence
+from research.rows.report_rows import evidence
 from research.training import train_evidence_heads
 from research.training.train_evidence_heads import head_of, is_told, labelled, reports
 from sgcad_core.settings import ROOT

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from research.rows.reader_rows import Row, row, target
 from research.training import train_learned_reader
-from research.training.train_learned_reader import Judge, Row, judged, learn, row, target, taught
+from research.training.train_learned_reader import Judge, judged, learn, taught
 from sgcad_core.reading.second_reader import learned_reader
-from tests.research.benchmarks.texts.test_fuse_weights_bench import pool
+from tests.research.benchmarks.texts.test_fuse_weights import pool
 
 WORDS = [f"U:w{n}" for n in range(20)] + [f"U:w{n}_w{n + 1}" for n in range(20)]
 
@@ -71,7 +72,7 @@ def test_weights_say_what_the_readers_said(tmp_path: Path) -> None:
 
 
 def test_reports_become_rows_and_what_cannot_be_drawn_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from research.benchmarks.texts.incidents import of_pool
+    from research.rows.coded_incidents import of_pool
 
     made = [row(one) for one in of_pool(pool(tmp_path / "pool.jsonl", 6))]
     known = [one for one in made if one]

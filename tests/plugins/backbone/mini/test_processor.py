@@ -11,7 +11,8 @@ import plugins.backbone.mini.processor
 from research.generator.report import make_report
 from research.model.tokens import ROAD
 from research.renderer.draw import draw_report
-from research.rows.rows import collate, evidence
+from research.rows.collate import collate
+from research.rows.report_rows import evidence
 from research.training.evaluate import load
 
 WEIGHTS = Path(__file__).parents[4] / "plugins" / "backbone" / "mini" / "weights"

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from research.generator.clauses import codes as said
+from research.generator.clauses import code_clauses
 from research.generator.clauses.noise_blocks import BY_MANEUVER, event_of
 from research.generator.clauses.noise_clauses import GROUPS, SPEED
 from research.generator.crash.crash import sample_crash
@@ -28,7 +28,7 @@ def test_critical_events_are_those_of_the_crash(seed: int) -> None:
     erring, other = crash.actors[v], crash.actors[w]
     own, met = event_of(crash, v, writer.who), event_of(crash, w, writer.who)
     for key in (own, met):
-        assert key is None or key in said.EVENT
+        assert key is None or key in code_clauses.EVENT
     if own in ("turn_left", "turn_right", "turn_around", "backing", "off_left", "off_right"):
         assert BY_MANEUVER[erring.maneuver] == own
     if own == "into_stopped":
@@ -54,7 +54,14 @@ def test_every_vehicle_of_a_common_crash_has_a_critical_event() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [said.EVENT_FRAMES, said.MOVEMENT_FRAMES, said.TYPE_FRAMES, said.SELF_FRAMES, said.OTHER_FRAMES]
+    "options",
+    [
+        code_clauses.EVENT_FRAMES,
+        code_clauses.MOVEMENT_FRAMES,
+        code_clauses.TYPE_FRAMES,
+        code_clauses.SELF_FRAMES,
+        code_clauses.OTHER_FRAMES,
+    ],
 )
 def test_frames_stand_on_both_sides_of_the_split_and_use_known_slots(options: Group) -> None:
     trained, held = options.side(False), options.side(True)
@@ -99,7 +106,7 @@ def test_speeds_are_told_of_those_whom_the_paragraph_has_named(held_out: bool) -
 def test_until_a_vehicle_is_named_clauses_that_tell_something_of_it_name_it(seed: int, held_out: bool) -> None:
     writer = Writer(Random(seed), sample_crash(Random(seed)), held_out, 1.0)
     assume(writer.crash.actors[0].maneuver not in ("stopped", "parked"))  # these have no speed to tell
-    clear = writer._clear(SPEED, 0) + writer._clear(said.SELF_FRAMES, 0)
+    clear = writer._clear(SPEED, 0) + writer._clear(code_clauses.SELF_FRAMES, 0)
     telling = [clause for clause in clear if {"spd", "doing"} & set(slots_of(clause))]
     several = sum(actor.id.startswith("V") for actor in writer.crash.actors) > 1
     assert telling
@@ -121,7 +128,7 @@ def test_trees_and_parked_cars_are_asked_nothing_and_trees_are_not_coded(monkeyp
     for kind in ("occupant", "interview", "health"):
         monkeypatch.setitem(GROUPS, kind, group("QQ of {V}"))
     for frames in ("SELF_FRAMES", "OTHER_FRAMES"):
-        monkeypatch.setattr(said, frames, group("QQ of {V}"))
+        monkeypatch.setattr(code_clauses, frames, group("QQ of {V}"))
     seen = 0
     for seed in range(400):
         writer = Writer(Random(seed), sample_crash(Random(seed)), False, 3.0)
@@ -146,7 +153,7 @@ def test_behind_a_sentence_on_somebody_else_pronouns_mean_nobody(clause: str) ->
 
 
 def test_a_left_turn_from_the_side_is_coded_into_the_direction_that_it_takes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(said.EVENT, "from_side_left", group("QQ into the {onto} direction"))
+    monkeypatch.setitem(code_clauses.EVENT, "from_side_left", group("QQ into the {onto} direction"))
     only(monkeypatch, lambda crash: crash.config == "left_lateral")
     seen = {"same": 0, "opposite": 0}
     for seed in range(180):
@@ -165,7 +172,7 @@ def test_a_left_turn_from_the_side_is_coded_into_the_direction_that_it_takes(mon
 
 def test_an_encroachment_over_a_line_tells_what_the_other_did(monkeypatch: pytest.MonkeyPatch) -> None:
     for key in ("from_opposite", "from_left_lane", "from_right_lane"):
-        monkeypatch.setitem(said.EVENT, key, group("QQ"))
+        monkeypatch.setitem(code_clauses.EVENT, key, group("QQ"))
     only(monkeypatch, lambda crash: crash.config in ("head_on", "lane_change"))
     seen = 0
     for seed in range(300):
@@ -197,7 +204,7 @@ def test_a_cyclist_is_coded_as_no_pedestrian() -> None:
     for seed in range(3000):
         crash = sample_crash(Random(seed), "pedestrian")
         writer = Writer(Random(seed), crash, False, 1.0)
-        code = writer._phrase(said.EVENT["pedestrian"], *writer.who)
+        code = writer._phrase(code_clauses.EVENT["pedestrian"], *writer.who)
         if any(actor.kind == "bicycle" for actor in crash.actors):
             assert "pedestrian" not in code or "cycl" in code or "nonmotor" in code, code
             codes.add(code)

@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from research.generator import words, writer
-from research.generator.clauses import lane_lists, scene_clauses
-from research.generator.clauses import road as clauses_road
+from research.generator.clauses import lane_lists, road_clauses, scene_clauses
 from research.generator.crash.compass_ties import AXIS, ROAD_HINT
 from research.generator.crash.world import WORDS, Crash, Leg
 from research.generator.grammar import unmark
@@ -119,7 +118,7 @@ def test_roads_that_are_told_are_noted_and_axes_where_a_direction_stands() -> No
 def test_names_of_junctions_tell_how_many_legs(layout: str) -> None:
     words_of = {"t": r"\bthree|\b3|\btee\b|\bT\b|no fourth", "four": r"\bfour\b|\b4|cross"}
     other = words_of["four" if layout == "t" else "t"]
-    names = [name for name in clauses_road.JUNCTION[layout].side(False) if not re.search(words_of[layout], name)]
+    names = [name for name in road_clauses.JUNCTION[layout].side(False) if not re.search(words_of[layout], name)]
     assert not [name for name in names if re.search(other, name)]
 
 
@@ -135,7 +134,7 @@ def _junction(crash: Crash) -> bool:
 
 
 def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "LIMITS", group("Everywhere {lim}"))
+    monkeypatch.setattr(road_clauses, "LIMITS", group("Everywhere {lim}"))
     found = 0
     only(monkeypatch, _junction)
     for text, facts, crash in _sentences(range(600)):
@@ -147,7 +146,7 @@ def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch
 
 
 def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "ALIKE", {"two_way": group("Twice {each}"), "one_way": group("Once {each}")})
+    monkeypatch.setattr(road_clauses, "ALIKE", {"two_way": group("Twice {each}"), "one_way": group("Once {each}")})
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
     only(monkeypatch, lambda crash: _junction(crash) and len({leg.two_way for leg in crash.legs}) == 1)
     found = set()
@@ -165,11 +164,11 @@ def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monke
 
 
 def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_road, "PAIR", group("QQ {a1}={one}; RR {a2}={other}"))
+    monkeypatch.setattr(road_clauses, "PAIR", group("QQ {a1}={one}; RR {a2}={other}"))
     monkeypatch.setattr(
-        clauses_road, "ONE_WAY", group("a one-way {xb} {noun} with {lanes}")
+        road_clauses, "ONE_WAY", group("a one-way {xb} {noun} with {lanes}")
     )  # else in words without "way"
-    monkeypatch.setattr(clauses_road, "UNCOUNTED", group("a one-way {noun}"))
+    monkeypatch.setattr(road_clauses, "UNCOUNTED", group("a one-way {noun}"))
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
     found = 0
     for text, _, crash in _sentences(range(1500)):

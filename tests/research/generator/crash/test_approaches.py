@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from research.generator import words, writer
-from research.generator.clauses import motion
+from research.generator.clauses import motion_clauses
 from research.generator.crash import approaches
 from research.generator.crash.compass_ties import STEM
 from research.generator.crash.crash import sample_crash
@@ -21,8 +21,10 @@ LISTS = ("APPROACH", "APPROACH_STOPPED", "APPROACH_SLOWING", "APPROACH_WAITING")
 @pytest.mark.parametrize("held_out", [False, True])
 def test_what_a_clause_has_no_place_for_is_not_told(held_out: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in LISTS:
-        monkeypatch.setattr(motion, name, group("{V} came {dir} QQ", "~{V} came {dir} QQ"))
-    monkeypatch.setattr(motion, "PRESENTED", {key: group("{Vi} came {dir} QQ") for key in motion.PRESENTED})
+        monkeypatch.setattr(motion_clauses, name, group("{V} came {dir} QQ", "~{V} came {dir} QQ"))
+    monkeypatch.setattr(
+        motion_clauses, "PRESENTED", {key: group("{Vi} came {dir} QQ") for key in motion_clauses.PRESENTED}
+    )
     seen = 0
     for seed in range(300):
         report = make_report(seed, held_out, 0.0, {"text": 1.0})
@@ -37,8 +39,8 @@ def test_what_a_clause_has_no_place_for_is_not_told(held_out: bool, monkeypatch:
 
 
 def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(motion, "APPROACH", group("{V} came {dir} QQ{appr}"))
-    monkeypatch.setattr(motion, "INTENT", {key: group("RR") for key in motion.INTENT})
+    monkeypatch.setattr(motion_clauses, "APPROACH", group("{V} came {dir} QQ{appr}"))
+    monkeypatch.setattr(motion_clauses, "INTENT", {key: group("RR") for key in motion_clauses.INTENT})
     told = plain = 0
     for seed in range(300):
         report = make_report(seed, False, 0.0, {"text": 1.0})
@@ -62,7 +64,7 @@ def test_the_same_intersection_is_one_that_was_named() -> None:
 
 
 def test_who_came_up_the_leg_that_ends_came_from_where_that_lies(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(motion, "FROM_STEM", {"t": group("QQ {V}"), "driveway": group("QQ {V}")})
+    monkeypatch.setattr(motion_clauses, "FROM_STEM", {"t": group("QQ {V}"), "driveway": group("QQ {V}")})
     monkeypatch.setattr(approaches, "UNSAID", 1.0)
     only(monkeypatch, lambda crash: len(crash.stems) == 1)
     known = open_ = 0
@@ -93,7 +95,7 @@ def test_the_only_lane_may_be_called_the_first_but_not_on_the_held_out_side() ->
 
 
 def test_a_lane_that_is_named_by_its_direction_tells_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(motion, "APPROACH", group("QQ {V} in the {lane}"))
+    monkeypatch.setattr(motion_clauses, "APPROACH", group("QQ {V} in the {lane}"))
     monkeypatch.setattr(writer, "slips", lambda _, text, __: text)
     named = other = 0
     for seed in range(300):

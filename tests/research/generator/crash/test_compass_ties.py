@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from research.generator.crash.compass_ties import AXIS, FLOW, FROM_LEFT, ROAD_HINT, STEM, VAGUE, unsettled
+from research.generator.crash.compass_ties import AXIS, FLOW, FROM_LEFT, ROAD_HINT, STEM, VAGUE, uncertain_facts
 from research.generator.crash.crash import sample_crash
 from research.generator.crash.world import Actor, Crash, Leg
 from research.generator.targets import GUESS, LIKELY, RARE, SURE
@@ -39,25 +39,25 @@ SAID = [frozenset({"layout", *LANES, f"{ROAD_HINT}.0", f"{ROAD_HINT}.2"})]
 
 
 def test_lanes_without_a_direction_belong_to_no_leg() -> None:
-    assert unsettled(_crash("four", *CROSS), SAID) == LANES | NOWHERE
+    assert uncertain_facts(_crash("four", *CROSS), SAID) == LANES | NOWHERE
 
 
 def test_a_control_that_all_meet_is_known_wherever_they_come_from() -> None:
     crash = _crash("four", *CROSS)
     for leg in crash.legs:
         leg.control = "signal"
-    assert unsettled(crash, SAID) == LANES | {"legs"}
+    assert uncertain_facts(crash, SAID) == LANES | {"legs"}
 
 
 @pytest.mark.parametrize("tie", [{"heading.V1", f"{ROAD_HINT}.0"}, {f"{AXIS}.2"}])
 def test_a_direction_beside_a_road_settles_both_roads(tie: set[str]) -> None:
     crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
-    assert not unsettled(crash, [*SAID, frozenset(tie)])
+    assert not uncertain_facts(crash, [*SAID, frozenset(tie)])
 
 
 def test_a_direction_alone_tells_the_legs_of_a_crossing_but_not_which_road_is_which() -> None:
     crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
-    assert unsettled(crash, [*SAID, frozenset({"heading.V1"})]) == LANES
+    assert uncertain_facts(crash, [*SAID, frozenset({"heading.V1"})]) == LANES
 
 
 @pytest.mark.parametrize("fact", ["lanes.2", "ways.2"])
@@ -67,10 +67,10 @@ def test_a_one_way_road_needs_its_direction(fact: str) -> None:
         "crossing", "four", 0, [*main, Leg(2, 0, 1), Leg(6, 1, 0)], [_car("V1", 0, 4)], [], "day", "clear", "dry"
     )
     said = [frozenset({"layout", "heading.V1", f"{ROAD_HINT}.0"}), frozenset({fact, f"{ROAD_HINT}.2"})]
-    assert unsettled(crash, said) == {fact}
-    assert not unsettled(crash, [*said, frozenset({f"{FLOW}.2"})])
+    assert uncertain_facts(crash, said) == {fact}
+    assert not uncertain_facts(crash, [*said, frozenset({f"{FLOW}.2"})])
     crash.actors.append(_car("V2", 6, 2))
-    assert not unsettled(crash, [*said, frozenset({"heading.V2"})])
+    assert not uncertain_facts(crash, [*said, frozenset({"heading.V2"})])
 
 
 def test_a_one_way_road_without_a_count_of_lanes_tells_the_side_that_has_none() -> None:
@@ -97,10 +97,10 @@ def test_a_lane_named_from_the_left_needs_the_lanes_beside_it(turns: list[str]) 
     crash.leg(0).turns_in = turns  # type: ignore[union-attr]
     heading, lanes = {"heading.V1", f"{ROAD_HINT}.0"}, frozenset({"layout", "lanes.0", f"{AXIS}.0"})
     named = frozenset({*heading, "lane.V1", f"{FROM_LEFT}.V1"})
-    assert "lane.V1" in unsettled(crash, [named])
-    assert ("lane.V1" in unsettled(crash, [named, lanes])) == bool(turns)
-    assert "lane.V1" not in unsettled(crash, [named, lanes | {"turns.0"}])
-    assert "lane.V1" not in unsettled(crash, [named, frozenset({*heading, "lane.V1"})])  # "lane two"
+    assert "lane.V1" in uncertain_facts(crash, [named])
+    assert ("lane.V1" in uncertain_facts(crash, [named, lanes])) == bool(turns)
+    assert "lane.V1" not in uncertain_facts(crash, [named, lanes | {"turns.0"}])
+    assert "lane.V1" not in uncertain_facts(crash, [named, frozenset({*heading, "lane.V1"})])  # "lane two"
 
 
 def test_the_left_lane_of_nobody_knows_how_many_is_a_guess() -> None:
@@ -117,35 +117,35 @@ def test_the_left_lane_of_nobody_knows_how_many_is_a_guess() -> None:
 
 def test_roads_alike_need_no_direction_of_their_own() -> None:
     crash = _crash("four", *((bearing, 2) for bearing in (0, 2, 4, 6)), actors=(_car("V1", 0, 4),))
-    assert not unsettled(crash, [*SAID, frozenset({"heading.V1", f"{ROAD_HINT}.0"})])
+    assert not uncertain_facts(crash, [*SAID, frozenset({"heading.V1", f"{ROAD_HINT}.0"})])
 
 
 def test_a_tee_needs_somebody_who_uses_its_stem() -> None:
     main, stem = _car("V1", 0, 4), _car("V2", 6, 0)
     crash = _crash("t", *TEE, actors=(main, stem))
     said = [*SAID, frozenset({"heading.V1", "man.V1", f"{ROAD_HINT}.0"})]
-    assert unsettled(crash, said) == {"lanes.2"} | NOWHERE
-    assert not unsettled(crash, [*said, frozenset({"heading.V2"})])
-    assert not unsettled(crash, [*said, frozenset({STEM})])
+    assert uncertain_facts(crash, said) == {"lanes.2"} | NOWHERE
+    assert not uncertain_facts(crash, [*said, frozenset({"heading.V2"})])
+    assert not uncertain_facts(crash, [*said, frozenset({STEM})])
 
 
 def test_turn_lanes_show_where_the_stem_lies() -> None:
     crash = _crash("t", *TEE, actors=(_car("V1", 0, 4),))
     crash.legs[1].turns_in = ["through", "left"]  # from the south: left is west
     said = [*SAID, frozenset({"heading.V1", "man.V1", "turns.0", f"{ROAD_HINT}.0", f"{AXIS}.0"})]
-    assert not unsettled(crash, said)
+    assert not uncertain_facts(crash, said)
 
 
 def test_a_limit_of_this_road_is_of_no_road() -> None:
     crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
     crash.legs[0].limit = crash.legs[2].limit = 35
     tied = [*SAID, frozenset({"heading.V1", f"{ROAD_HINT}.0"})]
-    assert unsettled(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
-    assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{AXIS}.0"})])
-    assert not unsettled(crash, [*tied, frozenset({"limit.0", f"{ROAD_HINT}.0"})])
+    assert uncertain_facts(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
+    assert not uncertain_facts(crash, [*tied, frozenset({"limit.0", f"{AXIS}.0"})])
+    assert not uncertain_facts(crash, [*tied, frozenset({"limit.0", f"{ROAD_HINT}.0"})])
     crash.legs[1].limit = crash.legs[3].limit = 35
-    assert unsettled(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
-    assert not unsettled(crash, [*tied, frozenset({"limit.0", "limit.2"})])
+    assert uncertain_facts(crash, [*tied, frozenset({"limit.0"})]) == {"limit.0"}
+    assert not uncertain_facts(crash, [*tied, frozenset({"limit.0", "limit.2"})])
 
 
 @settings(max_examples=100, deadline=None)
@@ -158,7 +158,7 @@ def test_more_said_never_unsettles(seed: int) -> None:
     some = [frozenset(fact for fact in sorted(headings | roads) if rng.random() < 0.4) for _ in range(3)]
     more = [*some, frozenset(fact for fact in sorted(headings) if rng.random() < 0.5)]
     known = {fact for facts in some for fact in facts} | {"legs"}
-    assert unsettled(crash, more) & known <= unsettled(crash, some)
+    assert uncertain_facts(crash, more) & known <= uncertain_facts(crash, some)
 
 
 def test_what_is_doubtful_counts_nowhere_in_a_text_and_weighs_as_a_guess() -> None:
@@ -185,8 +185,8 @@ def test_what_every_sentence_tells_in_part_is_doubtful() -> None:
     crash = _crash("four", *CROSS, actors=(_car("V1", 0, 4),))
     plain = [*SAID, frozenset({"heading.V1", f"{ROAD_HINT}.0"})]
     met = frozenset({"control", f"{VAGUE}.control"})
-    assert unsettled(crash, [*plain, met]) == {"control"}
-    assert not unsettled(crash, [*plain, met, frozenset({"control"})])
+    assert uncertain_facts(crash, [*plain, met]) == {"control"}
+    assert not uncertain_facts(crash, [*plain, met, frozenset({"control"})])
 
 
 @pytest.mark.parametrize("fact", ["control", "median"])
@@ -219,8 +219,8 @@ def test_what_is_told_in_part_alone_weighs_as_a_guess_and_tags_nothing(fact: str
 def test_what_is_told_plainly_stays_so_when_it_is_said_loosely_again(fact: str) -> None:
     crash = _crash("t", *TEE, actors=(_car("V1", 6, 4),))
     plain = [*SAID, frozenset({fact, f"{AXIS}.0"}), frozenset({"heading.V1", f"{ROAD_HINT}.2"})]
-    assert fact not in unsettled(crash, plain)
-    assert fact not in unsettled(crash, [*plain, frozenset({fact})])
+    assert fact not in uncertain_facts(crash, plain)
+    assert fact not in uncertain_facts(crash, [*plain, frozenset({fact})])
 
 
 def test_of_whom_no_maneuver_is_told_the_exit_is_a_guess_and_straight_ahead_where_it_drove_on() -> None:

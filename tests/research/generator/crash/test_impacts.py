@@ -9,7 +9,7 @@ import pytest
 
 from research.generator import report as reports
 from research.generator import writer
-from research.generator.clauses import contact as clauses_contact
+from research.generator.clauses import contact_clauses
 from research.generator.crash import impacts
 from research.generator.crash.crash import sample_crash
 from research.generator.crash.impacts import ORDERS, order_of
@@ -53,7 +53,7 @@ def _chosen(held_out: bool, count: int, monkeypatch: pytest.MonkeyPatch) -> list
 def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     made: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}
     for options, open_, clause in _chosen(False, 900, monkeypatch):
-        made[open_][order_of(clause)] += options is clauses_contact.IMPACT
+        made[open_][order_of(clause)] += options is contact_clauses.IMPACT
     alike, apart = made[True], made[False]
     assert min(alike[order] for order in ORDERS) > 0.25 * alike.total()
     assert apart["striker"] > 0.5 * apart.total() > 0 < apart["place"] < 0.2 * apart.total()
@@ -61,12 +61,12 @@ def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(m
 
 def test_held_out_clauses_of_a_contact_stand_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = _chosen(True, 150, monkeypatch)
-    assert set(clauses_contact.IMPACT.side(True)) < {clause for *_, clause in chosen}
+    assert set(contact_clauses.IMPACT.side(True)) < {clause for *_, clause in chosen}
     assert all(clause in options.side(True) for options, _, clause in chosen)
 
 
 def test_what_is_chosen_in_a_clause_decides_whether_it_tells(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_contact, "IMPACT", group("QQ the {sa} of {S} [met<mutual>|hit] the {ta} of {T}"))
+    monkeypatch.setattr(contact_clauses, "IMPACT", group("QQ the {sa} of {S} [met<mutual>|hit] the {ta} of {T}"))
     told = {"met": 0, "hit": 0}
     for seed in range(500):
         report = make_report(seed, length=0.0, modes={"text": 1.0})
@@ -96,8 +96,8 @@ def test_nobody_sits_in_a_parked_vehicle_that_is_struck(monkeypatch: pytest.Monk
         "The [driver|man] in {T} felt the {sa} of {S} at the {ta}<manned>",
         "{T}'s driver saw {S} hit the {ta} with its {sa}<manned>",
     ]
-    monkeypatch.setattr(clauses_contact, "IMPACT", group(*clauses))
-    monkeypatch.setattr(clauses_contact, "LEADS", group("While both were still moving<both>"))
+    monkeypatch.setattr(contact_clauses, "IMPACT", group(*clauses))
+    monkeypatch.setattr(contact_clauses, "LEADS", group("While both were still moving<both>"))
     told = [text for text, _ in _contacts("parked", 0, 200, monkeypatch)]
     assert len(told) > 100
     assert all(text.startswith("QQ") for text in told), told
@@ -108,7 +108,7 @@ def test_a_third_vehicle_was_not_in_the_first_impact_and_the_other_was(monkeypat
         "{S} was [knocked|propelled] into {T}, {sa} to {ta}<again>",
         "{T} got involved when {S} hit its {ta} with the {sa}<fresh>",
     ]
-    monkeypatch.setattr(clauses_contact, "THEN", group(*clauses, "QQ the {sa} of {S} hit the {ta} of {T}"))
+    monkeypatch.setattr(contact_clauses, "THEN", group(*clauses, "QQ the {sa} of {S} hit the {ta} of {T}"))
     told = 0
     for text, report in _contacts("head_on", 1, 1500, monkeypatch):
         first, then = report.crash.contacts[:2]
@@ -123,15 +123,15 @@ def test_a_third_vehicle_was_not_in_the_first_impact_and_the_other_was(monkeypat
 def test_nothing_is_said_of_both_where_one_strikes_a_thing(
     words: str, place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(clauses_contact, place, group(f"{words}<both>"))
+    monkeypatch.setattr(contact_clauses, place, group(f"{words}<both>"))
     assert not [text for text, _ in _contacts("departure", 0, 300, monkeypatch) if words in text.lower()]
     assert [text for text, _ in _contacts("crossing", 0, 300, monkeypatch) if words in text.lower()]
 
 
 def test_only_who_strikes_crosswise_strikes_at_an_angle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(clauses_contact, "TAILS", group("at an angle<crosswise>"))
+    monkeypatch.setattr(contact_clauses, "TAILS", group("at an angle<crosswise>"))
     monkeypatch.setattr(
-        clauses_contact, "IMPACT", group("The {sa} of {S} hit the {ta} of {T}[ in a T-type crash<crosswise>|]")
+        contact_clauses, "IMPACT", group("The {sa} of {S} hit the {ta} of {T}[ in a T-type crash<crosswise>|]")
     )
     angled = re.compile("at an angle|T-type")
     assert not [text for text, _ in _contacts("rear_end", 0, 200, monkeypatch) if angled.search(text)]
