@@ -20,7 +20,7 @@ from flows.drive.script_of_case import egos
 from sgcad_core.case.records import Floats
 from sgcad_core.errors import ConfigError
 from sgcad_core.handover.drive import drive
-from sgcad_core.handover.family.cross_entropy import Searched, decides, search
+from sgcad_core.handover.family.cross_entropy import Searched, rank_correlations, search
 from sgcad_core.handover.family.map_elites import Cell, illuminate
 from sgcad_core.handover.family.parameter import Parameter
 from sgcad_core.handover.family.variant import member, undisturbed
@@ -49,7 +49,7 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
         told = {"elites": [_elite(family, found, seen, k) | _cell(cell) for cell, k in sorted(lit.elites.items())]}
     else:
         found = search(lambda z: _hardness(drives(z)), dimensions, count, ROUNDS, seed)
-    share = decides(found.latents, found.hardness)
+    share = rank_correlations(found.latents, found.hardness)
     names = {p.name: round(float(v), 4) for p, v in zip(family.parameters, share, strict=True)}
     about = {
         "driver": look.driver.label,

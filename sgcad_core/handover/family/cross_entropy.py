@@ -55,9 +55,10 @@ def search(hardness: Callable[[Floats], float | None], dimensions: int, count: i
     rng = np.random.default_rng(seed)
     mean, spread = np.zeros(dimensions), np.ones(dimensions)
     latents, values, weights = [], [], []
-    for drawn in _shares(count, rounds):
+    for drawn in batch_sizes(count, rounds):
         z = mean + spread * rng.standard_normal((drawn, dimensions))
-        found = np.array([_number(hardness(row)) for row in z])
+        judged = [hardness(row) for row in z]
+        found = np.array([-math.inf if value is None else value for value in judged])
         latents.append(z)
         values.append(found)
         weights.append(_weights(z, mean, spread))
@@ -67,12 +68,9 @@ def search(hardness: Callable[[Floats], float | None], dimensions: int, count: i
     return Searched(np.vstack(latents), np.concatenate(values), np.concatenate(weights), mean, spread)
 
 
-def _shares(count: int, rounds: int) -> list[int]:
-    return [count // rounds + (k < count % rounds) for k in range(rounds) if count // rounds + (k < count % rounds)]
-
-
-def _number(value: float | None) -> float:
-    return -math.inf if value is None else value
+def batch_sizes(count: int, batches: int) -> list[int]:
+    """A number of samples split as evenly as possible; empty batches are left out."""
+    return [n for k in range(batches) if (n := count // batches + (k < count % batches))]
 
 
 def _weights(z: Floats, mean: Floats, spread: Floats) -> Floats:
@@ -88,26 +86,15 @@ def _towards(z: Floats, values: Floats, mean: Floats, spread: Floats) -> tuple[F
     return (1 - a) * mean + a * elite.mean(axis=0), np.maximum((1 - a) * spread + a * elite.std(axis=0), LEAST_SPREAD)
 
 
-def decides(latents: Floats, outcome: Floats) -> Floats:
-    """(d,) rank correlation (Spearman) of each parameter with the outcome; 0 where one of both does not vary."""
+def rank_correlations(latents: Floats, outcome: Floats) -> Floats:
+    """(d,) Spearman rank correlation of each parameter with the outcome; 0 where one of the two does not vary."""
+    from scipy.stats import spearmanr
+
     known = np.isfinite(outcome)
-    if known.sum() < 3:
+    if known.sum() < 3 or np.ptp(outcome[known]) == 0:
         return np.zeros(latents.shape[1])
-    ranks = _ranks(outcome[known])
-    return np.array([_correlation(_ranks(column), ranks) for column in latents[known].T])
-
-
-def _ranks(values: Floats) -> Floats:
-    """Mean ranks, ties shared."""
-    order = np.argsort(values, kind="stable")
-    rank = np.empty(len(values))
-    rank[order] = np.arange(len(values), dtype=float)
-    same = np.unique(values, return_inverse=True)[1]
-    shared: Floats = (np.bincount(same, rank) / np.bincount(same))[same]
-    return shared
-
-
-def _correlation(a: Floats, b: Floats) -> float:
-    if a.std() == 0 or b.std() == 0:
-        return 0.0
-    return float(np.corrcoef(a, b)[0, 1])
+    varies = np.ptp(latents[known], axis=0) > 0
+    return np.array([
+        float(spearmanr(column, outcome[known]).statistic) if moves else 0.0
+        for column, moves in zip(latents[known].T, varies, strict=True)
+    ])  # fmt: skip

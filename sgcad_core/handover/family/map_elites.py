@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sgcad_core.case.records import Floats
-from sgcad_core.handover.family.cross_entropy import Searched
+from sgcad_core.handover.family.cross_entropy import Searched, batch_sizes
 
 FAMILY_SHARE = 0.25
 """Of every batch, drawn from the family itself."""
@@ -68,17 +68,13 @@ def illuminate(judge: Callable[[Floats], Judged | None], dimensions: int, count:
     archive = _Archive(judge, dimensions)
     first = min(max(round(FIRST_SHARE * count), 1), count)
     archive.add(rng.standard_normal((first, dimensions)), np.ones(first))
-    for drawn in _shares(count - first, BATCHES):
+    for drawn in batch_sizes(count - first, BATCHES):
         kept = archive.kept
         batch = _drawn(rng, kept, drawn, dimensions)
         archive.add(batch, _weights(batch, kept))
     found = np.array(archive.hardness)
     latents = np.array(archive.latents).reshape(-1, dimensions)
     return Illuminated(Searched(latents, found, np.array(archive.weights)), archive.elites)
-
-
-def _shares(count: int, batches: int) -> list[int]:
-    return [n for k in range(batches) if (n := count // batches + (k < count % batches))]
 
 
 def _drawn(rng: np.random.Generator, kept: Floats, count: int, dimensions: int) -> Floats:

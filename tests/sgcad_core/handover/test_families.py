@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.handover.family.cross_entropy import decides, search
+from sgcad_core.handover.family.cross_entropy import rank_correlations, search
 from sgcad_core.handover.family.parameter_priors import spreads
 from sgcad_core.handover.family.variant import basis_of, member, undisturbed
 from sgcad_core.planner.aftermath.impact import mass_kg
@@ -127,7 +127,7 @@ def test_equal_seeds_search_alike_and_no_member_is_no_hardness():
 
 def test_what_decides_is_the_rank_correlation():
     z = np.random.default_rng(0).standard_normal((200, 3))
-    found = decides(z, np.exp(z[:, 1]))
+    found = rank_correlations(z, np.exp(z[:, 1]))
     assert found[1] == pytest.approx(1.0)
     assert abs(found[0]) < 0.2
-    assert decides(z[:2], np.array([1.0, 2.0])).tolist() == [0.0, 0.0, 0.0]
+    assert rank_correlations(z[:2], np.array([1.0, 2.0])).tolist() == [0.0, 0.0, 0.0]
