@@ -1,8 +1,8 @@
 """Confidence intervals of a figure over cases, and tests whether two arms differ.
 
 A figure is a ratio of sums over cases, sum(a) / sum(b): a mean where b = 1, a share where also a is 0 or 1. All random
-draws are seeded, so the same cases give the same digits. `scipy.stats` does the work where it has the method (bootstrap,
-binomial intervals and tests); it is imported on first use, since it takes a second to load.
+draws are seeded, so the same cases give the same digits. `scipy.stats` does the work where it has the method (bootstrap
+and binomial intervals and tests); it is imported on first use, since it takes a second to load.
 """
 
 from __future__ import annotations
