@@ -15,7 +15,6 @@ from pydantic import Field
 from plugins.simulator._exchange import Driven, Mover, Replayed
 from sgcad_core.case.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.execution.contact import poses
 from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.formats.xml import parse_xml
@@ -86,7 +85,7 @@ def _driven(name: str, rows: Floats) -> Trajectory:
 
 
 def _mover(actor: ActorInfo, t: Trajectory) -> Mover:
-    return Mover(actor.id, actor.length_m, actor.width_m, np.column_stack((poses(t), t.speed_mps)))
+    return Mover(actor.id, actor.length_m, actor.width_m, np.column_stack((t.pose, t.speed_mps)))
 
 
 def _seen(wanted: Trajectory, rows: Floats) -> Trajectory:

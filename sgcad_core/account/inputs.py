@@ -57,10 +57,7 @@ class Made:
     @cached_property
     def crash(self) -> Crash:
         """The execution as the scorers see it."""
-        paths = {
-            name: Path(t.t_s, np.column_stack((t.x_m, t.y_m, t.heading_rad)), self.sizes[name])
-            for name, t in self.tracks.items()
-        }
+        paths = {name: Path(t.t_s, t.pose, self.sizes[name]) for name, t in self.tracks.items()}
         return Crash(paths, self.graph)
 
     @cached_property

@@ -135,6 +135,16 @@ class Trajectory(Record):
     """About its long axis, positive to the right; None: on its wheels all the way."""
 
     @property
+    def pose(self) -> Floats:
+        """(n, 3) x, y and heading."""
+        return np.column_stack((self.x_m, self.y_m, self.heading_rad))
+
+    @property
+    def points(self) -> Floats:
+        """(n, 2) x and y."""
+        return np.column_stack((self.x_m, self.y_m))
+
+    @property
     def rolls(self) -> Floats:
         """Roll at every instant, radians."""
         return np.zeros(len(self.t_s)) if self.roll_rad is None else self.roll_rad

@@ -13,8 +13,8 @@ import numpy as np
 
 from sgcad_core.case.records import ClosestApproach, ObservedContact, Trajectory
 from sgcad_core.geometry.distances import box_distances
-from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
-from sgcad_core.records.specs import Area, Contact, NearCrash
+from sgcad_core.geometry.plane import Box, Size, contact_area, first_overlap
+from sgcad_core.records.specs import Contact, NearCrash
 
 STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""
@@ -61,7 +61,7 @@ def closest_approach(
         return None
     a, b = (found[name] for name in pair)
     n = min(len(a.t_s), len(b.t_s))
-    apart = box_distances(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
+    apart = box_distances(a.pose[:n], sizes[a.actor], b.pose[:n], sizes[b.actor])
     k = int(apart.argmin())
     return ClosestApproach(
         actor=a.actor, other=b.actor, clearance_m=round(float(apart[k]), 3), t_s=round(float(a.t_s[k]), 6)
@@ -77,10 +77,9 @@ def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestAp
 
 def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:
     """The contact of two actors at step k, with the sides that touch."""
-    one, two = _box(a, k, sizes[a.actor]), _box(b, k, sizes[b.actor])
-    areas = cast("tuple[Area, Area]", (contact_area(one, two), contact_area(two, one)))
-    t_s = round(float(a.t_s[k]), 6)
-    return ObservedContact(actor=a.actor, other=b.actor, actor_area=areas[0], other_area=areas[1], t_s=t_s)
+    one, two = (Box.at(t.pose[k], sizes[t.actor]) for t in (a, b))
+    areas = {"actor_area": contact_area(one, two), "other_area": contact_area(two, one)}
+    return ObservedContact(actor=a.actor, other=b.actor, t_s=round(float(a.t_s[k]), 6), **areas)
 
 
 def moves(trajectory: Trajectory) -> bool:
@@ -91,18 +90,5 @@ def moves(trajectory: Trajectory) -> bool:
 
 def _first_hit(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> int | None:
     n = min(len(a.t_s), len(b.t_s))
-    gaps = box_gaps(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
-    hits = np.flatnonzero(gaps <= 0)
-    if not len(hits) or (hits[0] == 0 and not moves(a) and not moves(b)):
-        return None
-    return int(hits[0])
-
-
-def poses(trajectory: Trajectory) -> Floats:
-    """(n, 3) x, y and heading."""
-    return np.column_stack((trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
-
-
-def _box(trajectory: Trajectory, k: int, size: Size) -> Box:
-    x, y, heading = (float(v[k]) for v in (trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
-    return Box(x, y, heading, *size)
+    hit = first_overlap(a.pose[:n], sizes[a.actor], b.pose[:n], sizes[b.actor])
+    return None if hit == 0 and not moves(a) and not moves(b) else hit

@@ -76,7 +76,7 @@ def _approach(move: Trajectory, control: Control, roads: XodrRoads, state: str) 
     if place is None:
         return None
     way = _way(move, roads, place)
-    along, gone = arc_lengths(way.points), arc_lengths(np.column_stack((move.x_m, move.y_m)))
+    along, gone = arc_lengths(way.points), arc_lengths(move.points)
     for number, (road, lane, _) in enumerate(way.lanes):
         heads = [s for s in control.signals if s.type == HEAD and s.road == road and lane in s.lanes]
         if heads:

@@ -7,7 +7,7 @@ heading, length (along the heading) and width.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Size = tuple[float, float]
 """Length and width, metres."""
+Side = Literal["front", "back", "left", "right"]
 
 
 class Box(NamedTuple):
@@ -25,6 +26,11 @@ class Box(NamedTuple):
     heading_rad: float
     length_m: float
     width_m: float
+
+    @classmethod
+    def at(cls, pose: Floats, size: Size) -> Box:
+        """The box of a size in a pose (x, y, heading)."""
+        return cls(float(pose[0]), float(pose[1]), float(pose[2]), *size)
 
 
 def wrap_angle(angle_rad: ArrayLike) -> Floats:
@@ -77,6 +83,12 @@ def gaps_where_near(first: Floats, first_size: Size, second: Floats, second_size
     return gaps
 
 
+def first_overlap(first: Floats, first_size: Size, second: Floats, second_size: Size) -> int | None:
+    """The first row in which two moving boxes overlap; None where they never do."""
+    hits = np.flatnonzero(gaps_where_near(first, first_size, second, second_size) <= 0)
+    return int(hits[0]) if len(hits) else None
+
+
 def overlap(first: Box, second: Box) -> bool:
     """Whether two boxes share a point (touching counts)."""
     gap = box_gaps(np.array([first[:3]]), (first[3], first[4]), np.array([second[:3]]), (second[3], second[4]))
@@ -109,7 +121,7 @@ def _clip(polygon: list[tuple[float, ...]], a: Floats, b: Floats) -> list[tuple[
     return out
 
 
-def contact_area(box: Box, other: Box) -> str:
+def contact_area(box: Box, other: Box) -> Side:
     """Side of `box` (front, back, left, right) on which `other` overlaps it.
 
     The centroid of the shared polygon's corners, measured in half lengths and half widths, decides.
@@ -135,6 +147,12 @@ def resample(points: Floats, s_m: ArrayLike) -> Floats:
     """(m, 2) points at the given distances along a polyline, clamped to its ends."""
     along = arc_lengths(points)
     return np.column_stack([np.interp(np.asarray(s_m, dtype=float), along, points[:, i]) for i in (0, 1)])
+
+
+def distinct(points: Floats, apart_m: float = 1e-3) -> Floats:
+    """The points of a polyline that lie further than `apart_m` from the one before."""
+    kept: Floats = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > apart_m)]
+    return kept
 
 
 def headings(points: Floats) -> Floats:
@@ -165,8 +183,8 @@ def parallel_polyline(points: Floats, left_m: float) -> Floats:
 
 def prolonged(points: Floats, by_m: float) -> Floats:
     """(m + 2, 2) polyline that goes on straight at both ends, `by_m` metres; points within 1 mm of the last one go."""
-    kept = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
-    points = points[kept] if kept.sum() > 1 else points[[0, -1]]
+    kept = distinct(points)
+    points = kept if len(kept) > 1 else points[[0, -1]]
     first, last = points[0] - points[1], points[-1] - points[-2]
     ahead, behind = (step / max(float(np.hypot(*step)), 1e-12) * by_m for step in (first, last))
     longer: Floats = np.vstack((points[0] + ahead, points, points[-1] + behind))
@@ -174,7 +192,7 @@ def prolonged(points: Floats, by_m: float) -> Floats:
 
 
 # ------------------------------------------------------------------ many boxes at once
-SIDES = ("front", "left", "back", "right")
+SIDES: tuple[Side, ...] = ("front", "left", "back", "right")
 """Names of the side codes 0 to 3, counter-clockwise from the front."""
 
 

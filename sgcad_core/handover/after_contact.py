@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats, arc_lengths, headings, resample
+from sgcad_core.geometry.distances import nearest_on
+from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, headings, resample
 from sgcad_core.roads.lane_graph import Connection, Direction, Lane, LaneGraph
 
 _NEAR_M = 3.5
@@ -104,12 +105,7 @@ def _cost(line: Floats, here: Floats, course_rad: float) -> float | None:
 
 def _from(line: Floats, here: Floats) -> float:
     """Station of the nearest point of a line."""
-    start, step = line[:-1], np.diff(line, axis=0)
-    length = np.maximum((step**2).sum(axis=1), 1e-12)
-    share = np.clip(((here - start) * step).sum(axis=1) / length, 0.0, 1.0)
-    away = np.hypot(*(start + share[:, None] * step - here).T)
-    k = int(away.argmin())
-    return float(arc_lengths(line)[k] + share[k] * math.sqrt(length[k]))
+    return float(nearest_on(line, here[None]).station_m[0])
 
 
 def _followed(graph: LaneGraph, strip: Strip, length_m: float, maneuver: str) -> Floats:
@@ -134,7 +130,7 @@ def _followed(graph: LaneGraph, strip: Strip, length_m: float, maneuver: str) ->
         line = place.via_shape if isinstance(place, Connection) else place.shape
         pieces.append(line)
         total += float(arc_lengths(line)[-1])
-    return _joined(pieces)
+    return distinct(np.vstack(pieces), 1e-2)
 
 
 def _onward(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connection | None:
@@ -143,13 +139,6 @@ def _onward(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connectio
     wanted = _TURNS.get(maneuver, "through")
     order = {wanted: 0, "through": 1, "right": 2, "left": 3, "u_turn": 4}
     return min(leaving, key=lambda c: order.get(c.direction, 5), default=None)
-
-
-def _joined(pieces: list[Floats]) -> Floats:
-    points = np.vstack(pieces)
-    apart = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-2)
-    kept: Floats = points[apart]
-    return kept
 
 
 def _extended(points: Floats, length_m: float) -> Floats:

@@ -80,16 +80,8 @@ def _left_m(staging: Staging, onset_s: float) -> float:
 # ------------------------------------------------------------------ the others, and whether they are met
 def _others(staging: Staging) -> dict[str, Floats]:
     """(n, 3) poses of everybody else on the script's clock, from 0 to the end of the look ahead."""
-    times = _clock(staging)
-    return {
-        name: np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
-        for name, line in staging.lines.items()
-        if name not in staging.coupled
-    }
-
-
-def _clock(staging: Staging) -> Floats:
-    return np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
+    times = np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
+    return {name: line.poses_when(times) for name, line in staging.lines.items() if name not in staging.coupled}
 
 
 def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats]) -> bool:

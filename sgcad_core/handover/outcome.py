@@ -17,9 +17,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from sgcad_core.case.driver_io import STEP_S, Way
+from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats, ObservedContact, Record, Trajectory
-from sgcad_core.execution.contact import poses, realised
+from sgcad_core.execution.contact import realised
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.handover.drive import Drive
 from sgcad_core.handover.severity import Severity, severity
@@ -30,7 +30,6 @@ Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
 OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")
 _BRAKES_MPS2 = 1.0
 """Deceleration beyond the script's that counts as braking."""
-_ASIDE_M = 0.3
 _GRAIN_S = 0.05
 
 
@@ -125,19 +124,15 @@ def _would_touch(drive: Drive) -> bool:
     other = contact.other if contact and contact.actor == staging.ego else contact.actor if contact else ""
     t = np.arange(0.0, 3 * clock.release_s + 4.0, _GRAIN_S)
     begun = staging.contact_s - clock.release_s
-    mine = _at(staging.way, begun + clock.lag_s + clock.rate * t)
-    theirs = _at(staging.lines[other], begun + clock.rate * t)
+    mine = staging.way.poses_when(begun + clock.lag_s + clock.rate * t)
+    theirs = staging.lines[other].poses_when(begun + clock.rate * t)
     sizes = staging.script.sizes
     return bool((box_gaps(mine, sizes[staging.ego], theirs, sizes[other]) <= 0).any())
 
 
-def _at(line: Way, times: Floats) -> Floats:
-    return np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
-
-
 # ------------------------------------------------------------------ figures on the way
 def _track(t: Trajectory, size: tuple[float, float]) -> Track:
-    return Track(t.t_s, poses(t), displacement.velocities(t), size)
+    return Track(t.t_s, t.pose, displacement.velocities(t), size)
 
 
 def _nearness(drive: Drive) -> tuple[tuple[float, float], Floats, conflict.Encroachment]:

@@ -16,7 +16,7 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S, Way
 from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.errors import ConfigError
-from sgcad_core.execution.contact import first_with, poses
+from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
 from sgcad_core.handover.after_contact import Start, gone_on
 from sgcad_core.metrics.thresholds import DRIVING
@@ -135,7 +135,7 @@ def _cut(script: Script, ego: str, track: Trajectory) -> int | None:
 
 def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
     """An actor's line: its script up to the cut, then on as before."""
-    table: Floats = poses(track)
+    table: Floats = track.pose
     last = len(table) - 1 if cut is None else min(cut, len(table) - 1)
     table = table[: last + 1].copy()
     table[:, 2] = np.unwrap(table[:, 2])

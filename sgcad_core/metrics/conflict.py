@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from sgcad_core.case.records import Floats
+from sgcad_core.geometry import plane
 from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import gaps_where_near
 
@@ -52,6 +53,11 @@ def overlaps(first: Track, second: Track) -> np.ndarray[tuple[int], np.dtype[np.
     return gaps_where_near(first.pose, first.size, second.pose, second.size) <= 0
 
 
+def first_overlap(first: Track, second: Track) -> int | None:
+    """The first instance in which the boxes share a point; None where there is none."""
+    return plane.first_overlap(first.pose, first.size, second.pose, second.size)
+
+
 # ------------------------------------------------------------------ time to collision
 def time_to_collision_paper(first: Track, second: Track) -> Floats:
     """TTC(t) = d(t) / |v_rel(t)|, s; inf where the relative speed is 0. No test of a collision course."""
@@ -84,14 +90,14 @@ def time_to_collision(first: Track, second: Track) -> Floats:
     return np.where(meets, np.maximum(enter, 0.0), np.inf)
 
 
-def required_deceleration(first: Track, second: Track) -> Floats:
+def required_deceleration(first: Track, second: Track, ttc: Floats | None = None) -> Floats:
     """Deceleration rate to avoid the crash (DRAC), m/s^2: what one of both needs at once so that they do not touch.
 
     Closing speed^2 / (2 * way to the contact), which is closing speed / (2 * TTC); 0 off a collision course, infinite
     on overlap. Two-dimensional form, along the relative velocity, of J. Archer, Indicators for Traffic Safety
     Assessment and Prediction, 2005, ch. 2 (there of one who follows another).
     """
-    ttc = time_to_collision(first, second)
+    ttc = time_to_collision(first, second) if ttc is None else ttc
     closing = np.hypot(*(first.velocity - second.velocity).T)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(np.isfinite(ttc), np.where(ttc > 0, closing / (2 * ttc), np.inf), 0.0)

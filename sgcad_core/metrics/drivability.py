@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from sgcad_core.case.records import Record, Trajectory
-from sgcad_core.geometry.plane import Floats, Size, box_gaps, wrap_angle
+from sgcad_core.geometry.plane import Floats, Size, box_gaps, first_overlap, wrap_angle
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import ActorKind, Surface
 
@@ -83,9 +83,8 @@ def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> d
     """Actor -> the sample at which it first overlaps anybody; actors that never do are left out."""
     found: dict[str, int] = {}
     for a, b in combinations(motions, 2):
-        hits = np.flatnonzero(gaps(a, b, sizes) <= 0)
-        for name in (a.actor, b.actor) if len(hits) else ():
-            found[name] = min(found.get(name, len(a.t_s)), int(hits[0]))
+        if (hit := first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])) is not None:
+            found |= {name: min(found.get(name, hit), hit) for name in (a.actor, b.actor)}
     return found
 
 
@@ -104,5 +103,4 @@ def deepest(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest
 
 def gaps(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> Floats:
     """Separation of two moving boxes at each sample, metres; negative where they overlap."""
-    first, second = (np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in (a, b))
-    return box_gaps(first, sizes[a.actor], second, sizes[b.actor])
+    return box_gaps(a.pose, sizes[a.actor], b.pose, sizes[b.actor])

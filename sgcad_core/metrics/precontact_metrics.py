@@ -44,9 +44,9 @@ def first_pair(tracks: dict[str, Track]) -> Pair | None:
     """The pair that overlaps first, neither from the start on; of several in one step the first by name."""
     found: tuple[int, str, str] | None = None
     for a, b in combinations(sorted(tracks), 2):
-        hits = np.flatnonzero(conflict.overlaps(tracks[a], tracks[b]))
-        if len(hits) and hits[0] > 1 and (found is None or hits[0] < found[0]):
-            found = int(hits[0]), a, b
+        hit = conflict.first_overlap(tracks[a], tracks[b])
+        if hit is not None and hit > 1 and (found is None or hit < found[0]):
+            found = hit, a, b
     if found is None:
         return None
     k, a, b = found
@@ -65,7 +65,7 @@ def told(tracks: dict[str, Track]) -> dict[str, Any]:
     if pair is None:
         return {}
     ttc = conflict.time_to_collision(pair.a, pair.b)
-    drac = deceleration_rate(pair.a, pair.b, ttc)
+    drac = conflict.required_deceleration(pair.a, pair.b, ttc)
     figures: dict[str, Any] = {}
     for before in BEFORE_S:
         k = _step(pair, before)
@@ -78,14 +78,6 @@ def told(tracks: dict[str, Track]) -> dict[str, Any]:
     figures["time_integrated_ttc_s2"] = round(float(short.sum()) * step, 4)
     figures["time_exposed_drac_s"] = round(float((drac > HARD_MPS2).sum()) * step, 3)
     return figures | _braking(pair, ttc)
-
-
-def deceleration_rate(first: Track, second: Track, ttc: Floats) -> Floats:
-    """DRAC in the plane, m/s2: |v_rel| / (2 TTC); 0 where there is no collision course, infinite on contact."""
-    closing = np.hypot(*(first.velocity - second.velocity).T)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rate: Floats = np.where(np.isfinite(ttc), closing / (2 * ttc), 0.0)
-    return rate
 
 
 def _step(pair: Pair, before_s: float) -> int | None:

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.case.records import ObservedContact, Trajectory
-from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near
+from sgcad_core.geometry.plane import Box, Floats, Size, contact_area, first_overlap, gaps_where_near
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import Hitch, hitched
@@ -23,7 +24,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
-from sgcad_core.records.specs import ActorKind, Area, Surface
+from sgcad_core.records.specs import ActorKind, Surface
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
@@ -168,25 +169,18 @@ class Scene:
 
     def first_contact(self) -> ObservedContact | None:
         """The first overlap of any two actors, as any observer of the trajectories sees it."""
-        names = sorted(self.tracks)
         found: tuple[int, str, str] | None = None
-        for i, a in enumerate(names):
-            for b in names[i + 1 :]:
-                one, two = self.tracks[a], self.tracks[b]
-                hits = np.flatnonzero(gaps_where_near(one.poses, one.size, two.poses, two.size) <= 0)
-                if len(hits) and (found is None or hits[0] < found[0]):
-                    found = (int(hits[0]), a, b)
-        return None if found is None else self._observed(*found)
-
-    def _observed(self, k: int, a: str, b: str) -> ObservedContact:
-        p, q = self._box(a, k), self._box(b, k)
-        sides = _area(contact_area(p, q)), _area(contact_area(q, p))
-        return ObservedContact(actor=a, other=b, actor_area=sides[0], other_area=sides[1], t_s=round(k * STEP_S, 3))
-
-    def _box(self, name: str, k: int) -> Box:
-        track = self.tracks[name]
-        x, y, heading = (float(v) for v in track.poses[k])
-        return Box(x, y, heading, *track.size)
+        for a, b in combinations(sorted(self.tracks), 2):
+            one, two = self.tracks[a], self.tracks[b]
+            hit = first_overlap(one.poses, one.size, two.poses, two.size)
+            if hit is not None and (found is None or hit < found[0]):
+                found = (hit, a, b)
+        if found is None:
+            return None
+        k, a, b = found
+        p, q = (Box.at(self.tracks[name].poses[k], self.tracks[name].size) for name in (a, b))
+        t_s = round(k * STEP_S, 3)
+        return ObservedContact(actor=a, other=b, actor_area=contact_area(p, q), other_area=contact_area(q, p), t_s=t_s)
 
     def replay(self, name: str, from_s: float, to_s: float) -> Motion:
         """An actor's track as a motion whose own time 0 is the first contact; to be met in a span of time."""
@@ -216,11 +210,6 @@ def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
         roll_rad=rolled(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
     )  # fmt: skip
-
-
-def _area(name: str) -> Area:
-    names: tuple[Area, ...] = ("front", "left", "back", "right")
-    return names[SIDES.index(name)]
 
 
 def _braked(motion: Motion, own: Floats, start: int) -> Floats:

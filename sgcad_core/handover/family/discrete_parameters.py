@@ -57,7 +57,7 @@ def _until_contact(script: Script, actor: str) -> Floats:
     track = next(t for t in script.trajectories if t.actor == actor)
     contact = script.contact_of(actor)
     last = len(track.t_s) if contact is None else max(int(np.searchsorted(track.t_s, contact.t_s - 1e-6)), 2)
-    return np.column_stack((track.x_m[:last], track.y_m[:last], track.heading_rad[:last]))
+    return track.pose[:last]
 
 
 def _lane(who: str, offsets: Sequence[float]) -> Parameter:

@@ -121,7 +121,7 @@ def prolonged(made: Script, back_s: float) -> tuple[Trajectory, ...]:
     n = round(back_s / STEP_S)
     found = []
     for t in made.trajectories:
-        pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+        pose = t.pose
         step = pose[1, :2] - pose[0, :2]
         run = np.repeat(pose[:1], n, axis=0)
         run[:, :2] += np.arange(-n, 0)[:, None] * step
@@ -154,7 +154,7 @@ def _moved(basis: Basis, actor: str, values: Values) -> Trajectory:
 
 def _poses(line: Way, own: Floats) -> Floats:
     """Poses at own times; before the line begins straight back at its first speed."""
-    pose = np.column_stack([np.interp(own, line.t_s, line.pose[:, i]) for i in range(3)])
+    pose = line.poses_when(own)
     before = own < 0
     if before.any() and len(line.t_s) > 1:
         step = (line.pose[1, :2] - line.pose[0, :2]) / STEP_S
@@ -173,7 +173,7 @@ def _trajectory(actor: str, t: Floats, pose: Floats) -> Trajectory:
 def _settled(made: Script, basis: Basis) -> tuple[Trajectory, ...]:
     movers = [_mover(made, t) for t in made.trajectories]
     count = len(made.trajectories[0].t_s)
-    table = {t.actor: np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in made.trajectories}
+    table = {t.actor: t.pose for t in made.trajectories}
     hitches = [
         hitched((tractor, trailer), table[tractor][0], table[trailer][0], coupling_m(made.sizes[tractor]))
         for tractor, with_it in basis.coupled.items()
@@ -187,7 +187,7 @@ def _mover(made: Script, track: Trajectory) -> Mover:
     info = made.info(track.actor)
     size: Size = (info.length_m, info.width_m)
     mass = None if info.type == "object" else mass_kg(info.type, size)
-    script = np.column_stack((track.x_m, track.y_m, track.heading_rad))
+    script = track.pose
     return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), script, _drag(made, info.type))
 
 

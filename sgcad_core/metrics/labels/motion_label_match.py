@@ -68,16 +68,12 @@ def first_touch(paths: Mapping[str, Path]) -> Touch | None:
             continue
         k = int(hits[0])
         if found is None or paths[a].t_s[i[k]] < found[0]:
-            one, two = _box(first[k], paths[a].size), _box(second[k], paths[b].size)
+            one, two = Box.at(first[k], paths[a].size), Box.at(second[k], paths[b].size)
             found = float(paths[a].t_s[i[k]]), a, b, one, two
     if found is None:
         return None
     t, a, b, one, two = found
     return Touch(t, {a: contact_area(one, two), b: contact_area(two, one)})
-
-
-def _box(pose: Floats, size: Size) -> Box:
-    return Box(float(pose[0]), float(pose[1]), float(pose[2]), *size)
 
 
 # ------------------------------------------------------------------ single fields

@@ -13,6 +13,7 @@ from itertools import combinations
 
 import numpy as np
 
+from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import Floats, box_gaps, prolonged, wrap_angle
 from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.rest_error import rest_errors
@@ -99,9 +100,10 @@ class Driven:
         best: tuple[float, Edge, Lane] | None = None
         for edge in self.crash.graph.edges.values():
             for lane in edge.car_lanes:
-                off, way = beside(lane.shape, self.before[:1, :2])
-                turned = abs(float(wrap_angle(way[0] - heading)))
-                cost = abs(float(off[0])) + (_FAR_M if turned > math.pi / 2 else 0.0)
+                near = nearest_on(lane.shape, self.before[:1, :2])
+                way = np.diff(lane.shape, axis=0)[near.segment[0]]
+                turned = abs(float(wrap_angle(math.atan2(way[1], way[0]) - heading)))
+                cost = abs(float(near.left_m[0])) + (_FAR_M if turned > math.pi / 2 else 0.0)
                 best = (cost, edge, lane) if best is None or cost < best[0] else best
         return None if best is None or best[0] > _FAR_M else best[1:]
 
@@ -116,7 +118,7 @@ class Driven:
         return self._aside_of(self.home[1].shape if self.home else self.before[:2, :2])
 
     def _aside_of(self, line: Floats) -> Floats:
-        return beside(prolonged(line, 200.0), self.before[:, :2])[0]
+        return nearest_on(prolonged(line, 200.0), self.before[:, :2]).left_m
 
     def recent(self) -> slice:
         """The samples of the last seconds before the contact."""
@@ -145,18 +147,3 @@ def ahead_of(graph: LaneGraph, edge: Edge, lane: Lane) -> Floats:
         seen.add(edge.id)
         line += [on.via_shape, lane.shape]
     return np.vstack(line)
-
-
-def beside(line: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """(n,) metres to the left of a line and the line's (n,) heading there."""
-    along = np.diff(line, axis=0)
-    length = np.maximum(np.hypot(*along.T), 1e-9)
-    unit = along / length[:, None]
-    from_start = points[:, None] - line[None, :-1]
-    share = np.clip((from_start * unit[None]).sum(axis=2), 0.0, length[None])
-    away = from_start - share[:, :, None] * unit[None]
-    nearest = np.argmin((away**2).sum(axis=2), axis=1)
-    rows = np.arange(len(points))
-    left = unit[nearest, 0] * away[rows, nearest, 1] - unit[nearest, 1] * away[rows, nearest, 0]
-    signed = np.copysign(np.hypot(*away[rows, nearest].T), left)
-    return signed, np.arctan2(unit[nearest, 1], unit[nearest, 0])

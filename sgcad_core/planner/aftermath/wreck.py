@@ -12,9 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-import numpy as np
-
-from sgcad_core.geometry.plane import Floats, box_gaps, gaps_where_near
+from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
 from sgcad_core.planner.aftermath.ground_friction import slow
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
@@ -125,8 +123,8 @@ class Wreck:
         """The sample before the first overlap of any two scripts; the last one where there is none."""
         first = self.count
         for a, b in pairs:
-            hits = np.flatnonzero(gaps_where_near(a.script, a.body.size, b.script, b.body.size) <= 0)
-            first = min(first, int(hits[0])) if len(hits) else first
+            hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
+            first = first if hit is None else min(first, hit)
         return max(first - 1, 0)
 
     # -------------------------------------------------------------- one sample of the clock

@@ -121,14 +121,9 @@ def _fitting(
 def _meeting(first: Motion, second: Motion, judged: _Judged, number: int, cost: Floats) -> Meeting:
     """One of the touches as a record."""
     touches, sides, margins, _ = judged
-    named = (_side(sides[0][number]), _side(sides[1][number]))
+    named = (SIDES[sides[0][number]], SIDES[sides[1][number]])
     first_s, second_s = (float(_own_s(k[number])) for k in (touches.first, touches.second))
     return Meeting(float(cost[number]), first, second, first_s, second_s, named, float(margins[number]))
-
-
-def _side(code: int) -> Area:
-    names: tuple[Area, ...] = ("front", "left", "back", "right")
-    return names[int(code)]
 
 
 def _judged(first: Motion, second: Motion) -> _Judged | None:

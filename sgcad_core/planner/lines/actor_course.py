@@ -15,7 +15,7 @@ import numpy as np
 
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.distances import distance_to
-from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, resample
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.planner.lines.lane_chain import from_right, lane_chain, merged
 from sgcad_core.planner.lines.path import Path, bezier, draw, end_heading
@@ -155,7 +155,7 @@ def _measured(
     """`more`: notes, and the speed for which the line is smooth."""
     notes, speed_mps = more
     stations = np.concatenate(([0.0], np.cumsum([arc_lengths(p.points)[-1] for p in pieces])))
-    path = draw(_joined([p.points for p in pieces]), speed_mps=speed_mps)
+    path = draw(distinct(np.vstack([p.points for p in pieces])), speed_mps=speed_mps)
     passages, turn, roads = [], None, []
     for piece, a, b in zip(pieces, stations, stations[1:], strict=False):
         way = route.ways[min(piece.way, len(route.ways) - 1)]
@@ -201,13 +201,6 @@ def _beside(graph: LaneGraph, way: Way, right_m: float) -> dict[str, float]:
             found[lane.type] = right_m + lane.width_m / 2
             right_m += lane.width_m
     return found
-
-
-def _joined(parts: list[Floats]) -> Floats:
-    points = np.vstack(parts)
-    keep = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
-    kept: Floats = points[keep]
-    return kept
 
 
 def _degree(graph: LaneGraph, node: str) -> int:
