@@ -159,6 +159,11 @@ class ObservedContact(Record):
     other_area: Area
     t_s: float
 
+    def is_of(self, contact: Contact) -> bool:
+        """Whether it is between the actors of a declared contact, on the declared areas."""
+        seen = {self.actor: self.actor_area, self.other: self.other_area}
+        return seen == {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+
 
 class ClosestApproach(Record):
     """The least distance between the outlines of two boxes, metres (0 on contact), and the first time of it."""

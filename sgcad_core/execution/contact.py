@@ -46,10 +46,7 @@ def first_with(mine: Trajectory, others: Sequence[Trajectory], sizes: Mapping[st
 
 def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
     """Whether the first contact is the declared pair with the declared areas, in either order."""
-    if declared is None or observed is None:
-        return False
-    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
-    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+    return declared is not None and observed is not None and observed.is_of(declared)
 
 
 def closest_approach(

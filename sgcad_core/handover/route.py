@@ -16,7 +16,6 @@ from sgcad_core.handover.after_contact import strip_at
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 _STEP_M = 2.0
-_STILL_M = 0.5
 _AHEAD = 3
 """Edges that a route goes on behind its last known one: who nears a junction must have a way across it."""
 

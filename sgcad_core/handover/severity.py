@@ -13,7 +13,7 @@ from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
-from sgcad_core.planner.encounter.box_scalar import apart, mean, touch_points
+from sgcad_core.planner.aftermath.wreck_bodies import apart, mean, touch_points
 from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 

@@ -10,11 +10,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from sgcad_core.geometry.plane import SIDES, Size
+import numpy as np
+
+from sgcad_core.geometry.plane import SIDES, Floats, Size
 from sgcad_core.metrics.rest_error import compass_rad
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.encounter.meeting_place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.path import Path, ramp
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, Area, Surface
 from sgcad_core.units import MPS_PER_MPH
@@ -97,6 +100,23 @@ class Drift(NamedTuple):
     note: str = ""
     evades: bool = False
     """It is the evasion that the report tells."""
+
+    def profile(self, s_m: Floats) -> Floats:
+        """(n,) metres to the left of the undisturbed line at stations."""
+        rise = ramp(s_m, self.end_m - self.length_m, self.length_m)
+        if self.back:
+            rise = rise - ramp(s_m, self.end_m, self.length_m)
+        profile: Floats = self.before_m + self.left_m * rise
+        return profile
+
+    def on(self, base: Path, place_m: float) -> Path:
+        """A line with this change on it; `ahead_m` is measured along the heading at the station `place_m`."""
+        if self.ahead_m:
+            heading = float(base.poses([place_m])[0, 2])
+            c, s = math.cos(heading), math.sin(heading)
+            by = np.array([self.ahead_m * c - self.left_m * s, self.ahead_m * s + self.left_m * c])
+            return base.displaced(ramp(base.s_m, self.end_m - self.length_m, self.length_m)[:, None] * by)
+        return base.moved(self.profile(base.s_m)) if self.left_m or self.before_m else base
 
 
 class Pacing(NamedTuple):

@@ -84,10 +84,10 @@ def _struck_by(
     found = meet(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
     if found is None or found.cost > _OUTSIDE:
         return False
-    return _placed(scene, way.role, motion, found.first_s, found.second_s, partner)
+    return _placed(scene, way.role, motion, found.first_s, found.second_s)
 
 
-def _placed(scene: Scene, role: Role, motion: Motion, partner_s: float, own_s: float, partner: str) -> bool:
+def _placed(scene: Scene, role: Role, motion: Motion, partner_s: float, own_s: float) -> bool:
     """Add the actor unless it touches somebody before, and let the two collide."""
     step = math.ceil(partner_s / STEP_S - 1e-6)
     at_contact = own_s if motion.standing else own_s - partner_s

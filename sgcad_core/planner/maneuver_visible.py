@@ -51,5 +51,5 @@ def _aside(course: Course, pose: Floats) -> float:
     path = course.path
     offset = pose[:2] - path.points
     nearest = int(np.hypot(*offset.T).argmin())
-    angle = path.tangents()[nearest]
+    angle = path.tangents[nearest]
     return float(offset[nearest, 1] * math.cos(angle) - offset[nearest, 0] * math.sin(angle))

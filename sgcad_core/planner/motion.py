@@ -117,7 +117,7 @@ class Motion:
     def seen_at(self, speed_mps: float, before_s: float) -> float:
         """The last own time up to a given one at which it drives about a speed or more; -inf if never."""
         axle = self.axle or self.path
-        along = np.interp(self.station_m, axle.s_m, axle.lengths())
+        along = np.interp(self.station_m, axle.s_m, axle.lengths)
         speed = np.diff(along) / np.maximum(np.diff(self.time_s), 1e-9)
         fast = np.flatnonzero((speed > _ABOUT * speed_mps) & (self.time_s[1:] <= before_s))
         return float(self.time_s[fast[-1]]) if len(fast) else -math.inf
@@ -161,7 +161,7 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
     v^2 an acceleration is a slope, so each pass is a running minimum.
     """
     station = _refined(path.s_m, pace.starts_at_m)
-    along = np.interp(station, path.s_m, path.lengths())
+    along = np.interp(station, path.s_m, path.lengths)
     limit = np.interp(station, path.s_m, _limits(path, more or (path, path), pace)) ** 2
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
@@ -191,9 +191,9 @@ def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
 def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:
     """(n,) speeds that friction, yaw and habit allow on a line, m/s."""
     box, road = more
-    bend = np.maximum(np.maximum(np.abs(path.curvature()), np.abs(box.curvature())), 1e-5)
+    bend = np.maximum(np.maximum(np.abs(path.curvature), np.abs(box.curvature)), 1e-5)
     curve = np.minimum(np.sqrt(pace.lateral_mps2 / bend), YAW_RADPS / bend)
-    turning = np.interp(path.s_m, road.s_m, np.abs(road.curvature())) > _CURVE_PER_M
+    turning = np.interp(path.s_m, road.s_m, np.abs(road.curvature)) > _CURVE_PER_M
     curve = np.where(turning, np.minimum(curve, pace.curve_mps), curve)
     return np.clip(curve, _CRAWL_MPS, pace.cruise_mps)
 

@@ -14,13 +14,12 @@ from functools import cached_property
 
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.aftermath.later_contacts import expect, run_out, strikes_of
+from sgcad_core.planner.actor_plan import Role, usual_speed
+from sgcad_core.planner.aftermath.later_contacts import expect, other_of, pair_of, run_out, strikes_of
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.bystanders import stand_clear, strike_later
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.contact_queries import course_of, is_declared, other_of, pair_of, seen_s
 from sgcad_core.planner.encounter.meeting_place import Place, place_near, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.near_miss import parted
@@ -28,6 +27,7 @@ from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.gore_lines import into_gores
+from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.maneuver_visible import not_evading, not_shown
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
@@ -44,6 +44,8 @@ _MANEUVER_MISSED = 3.0
 """Cost of a told maneuver that is not seen: more than any two parts of the course behind the contact."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
+_SPEED_SHOWS_S = 0.3
+"""Time for which a stated speed is driven at least."""
 
 
 class Plan(Record):
@@ -82,8 +84,9 @@ def plan(
     found = conflicts.of(contacts[0]) if contacts else cast.near_crash(near, conflicts) if near else None
     cast.notes += conflicts.notes
     done = least_missed(found, lambda encounter, impacts: cast.unfolded(encounter, graph, impacts))
+    first = behavior.contacts[0] if behavior.contacts else None
     observed = done.scene.first_contact()
-    realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
+    realised = observed.is_of(first) if observed and first else observed is first
     return Plan(
         trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors), courses), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(done.notes)), oddity=round(done.oddity, 3) if realised else 0.0,
@@ -162,7 +165,7 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
+        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
@@ -250,3 +253,11 @@ class _Cast:
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
         return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)
+
+
+def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
+    """How long before the contact the clock must begin to show a told speed; 0 where it is never driven."""
+    if motion.standing or role.actor.speed_mph is None:
+        return 0.0
+    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
+    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0

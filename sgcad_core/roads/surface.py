@@ -51,11 +51,6 @@ class RoadSurface(NamedTuple):
         rows = np.arange(len(points))
         return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest])
 
-    def junction_near(self, point: Floats) -> Junction | None:
-        """The junction whose area is nearest to a point."""
-        reach = lambda j: float(np.hypot(point[0] - j.x_m, point[1] - j.y_m)) - j.radius_m  # noqa: E731
-        return min(self.junctions, key=reach, default=None)
-
 
 def road_surface(graph: LaneGraph) -> RoadSurface:
     """The surface of a network."""

@@ -23,7 +23,7 @@ import yaml
 
 from sgcad_core.handover.severity import exchanged
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body
-from sgcad_core.planner.encounter.box_scalar import apart
+from sgcad_core.planner.aftermath.wreck_bodies import apart
 
 FILE = Path(__file__).with_name("staged_collisions.yaml")
 TOUCH_M = 0.01

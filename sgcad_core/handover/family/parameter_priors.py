@@ -36,7 +36,7 @@ def spreads(
     found: list[Parameter] = []
     for actor in pair:
         if _moves(script, actor):
-            found += [_pace(script, known, actor), _aside(known, actor)]
+            found += [_pace(known, actor), _aside(known, actor)]
         found += _size(script, known, actor)
     if len(pair) == 2 and all(_moves(script, a) for a in pair):
         found.append(_late(pair[1]))
@@ -50,7 +50,7 @@ def _moves(script: Script, actor: str) -> bool:
     return math.hypot(track.x_m[1] - track.x_m[0], track.y_m[1] - track.y_m[0]) > 1e-3 or track.speed_mps.max() > 0.5
 
 
-def _pace(script: Script, known: Facts, actor: str) -> Parameter:
+def _pace(known: Facts, actor: str) -> Parameter:
     """Speed over the script's."""
     field = field_at(actor, "speed_mph")
     told = told_of(known, field)

@@ -20,10 +20,6 @@ from sgcad_core.metrics.rest_error import SPINS_RAD
 from sgcad_core.records.course import RestTold, Steering
 from sgcad_core.units import MPS_PER_MPH
 
-COURSE_FIELDS = (
-    "maneuver_any", "lane_told", "speed_told", "evasion", "no_evasion", "lost_control", "rest", "rest_facing",
-    "rest_where", "rest_side", "spin", "later_impacts",
-)  # fmt: skip
 ASIDE_M = 0.8
 """Sideways of one's lane from here on: a change of lane, a line that is crossed."""
 BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
@@ -161,10 +157,6 @@ def steers(hand: Steering, aside_m: Floats, step_m: float) -> bool:
     return way * sign > STEERS_M or heading * sign > STEERS_RAD
 
 
-def _does_not_evade(label: VehicleLabel, one: Driven) -> bool:
-    return not _brakes(one)
-
-
 def _loses_control(label: VehicleLabel, one: Driven) -> bool | None:
     """A lost control shows as a heading that leaves the way of travel, or as a way out of the lane."""
     if not label.lost_control or len(one.before) < 3:
@@ -193,7 +185,7 @@ _JUDGES: dict[str, _Judge] = {
     "lane_told": _Judge(lambda v: v.lane is not None, _lane),
     "speed_told": _Judge(lambda v: bool(v.speed_mph), _speed),
     "evasion": _Judge(lambda v: bool(v.evasion), _evades),
-    "no_evasion": _Judge(lambda v: v.evasion == (), _does_not_evade),
+    "no_evasion": _Judge(lambda v: v.evasion == (), lambda _, one: not _brakes(one)),
     "lost_control": _Judge(lambda v: bool(v.lost_control), _loses_control),
     "spin": _Judge(lambda v: v.rest.spin is not None, _spins),
 }

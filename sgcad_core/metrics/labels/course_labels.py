@@ -5,8 +5,9 @@ One JSON object a case, `<case>.json`; docs/metrics.md says what each field mean
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
 from sgcad_core.errors import BadInput
@@ -121,23 +122,10 @@ def agreements(first: Mapping[str, CourseLabel], second: Mapping[str, CourseLabe
     """How far two readings of the same cases agree, field by field (vehicles that both name)."""
     pairs = [(a, second[case].vehicles[v]) for case, label in first.items() if case in second
              for v, a in label.vehicles.items() if v in second[case].vehicles]  # fmt: skip
-    found = [_agreement(name, [(read(a), read(b)) for a, b in pairs]) for name, read in _READ.items()]
+    fields = [*_FIELDS[:-1], *(f"rest.{name}" for name in _REST)]
+    found = [_agreement(name, [(attrgetter(name)(a), attrgetter(name)(b)) for a, b in pairs]) for name in fields]
     impacts = [(label.impacts[1:], second[case].impacts[1:]) for case, label in first.items() if case in second]
     return [*found, _agreement("impacts", impacts)]
-
-
-def _of_vehicle(name: str) -> Callable[[VehicleLabel], Hashable]:
-    return lambda v: getattr(v, name)
-
-
-def _of_rest(name: str) -> Callable[[VehicleLabel], Hashable]:
-    return lambda v: getattr(v.rest, name)
-
-
-_READ: dict[str, Callable[[VehicleLabel], Hashable]] = {
-    **{name: _of_vehicle(name) for name in _FIELDS[:-1]},
-    **{f"rest.{name}": _of_rest(name) for name in _REST},
-}
 
 
 def _agreement(name: str, pairs: Sequence[tuple[Hashable, Hashable]]) -> Agreement:

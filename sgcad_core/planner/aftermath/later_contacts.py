@@ -11,10 +11,9 @@ from typing import NamedTuple
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, Rests, leaving
 from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
-from sgcad_core.planner.encounter.contact_queries import pair_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import BehaviorSpec, Contact
+from sgcad_core.records.specs import Area, BehaviorSpec, Contact
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
@@ -29,6 +28,18 @@ class Ended(NamedTuple):
 _ASIDE = 0.3
 """Of a side's length: what a vehicle knocks over and pushes along is not between it and the next thing."""
 _THINGS = ("object", "pedestrian", "bicycle")
+
+
+def pair_of(contact: Contact) -> frozenset[str]:
+    """The two actors of a contact, in no order."""
+    return frozenset((contact.striker, contact.struck))
+
+
+def other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
+    """Whom a partner touches in a contact, and the sides of the partner and of the other one."""
+    if partner == contact.striker:
+        return contact.struck, (contact.striker_area, contact.struck_area)
+    return contact.striker, (contact.struck_area, contact.striker_area)
 
 
 def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:

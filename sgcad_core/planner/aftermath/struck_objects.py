@@ -135,14 +135,10 @@ def _samples(scene: Scene, strike: Strike, track: Track) -> Floats:
     blows = [t.t_s for t in scene.touches if strike.by in (t.first, t.second)]
     if not blows:
         return np.zeros(0)
-    begins = round((_last_begun(blows) + _AFTER_S) / STEP_S)
+    begins = round((max(blows) + _AFTER_S) / STEP_S)
     speed = np.hypot(*np.diff(track.poses[:, :2], axis=0).T) / STEP_S
     moving = np.flatnonzero(speed > _LEAST_MPS)
     return moving[moving >= begins].astype(float) + 1
-
-
-def _last_begun(blows: Sequence[float]) -> float:
-    return max(blows)
 
 
 def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[int, Floats]]:

@@ -17,18 +17,21 @@ from sgcad_core.planner.aftermath.ground_friction import slow
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, pull
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
 from sgcad_core.planner.aftermath.wreck_bodies import (
+    Apart,
     Mover,
     Pair,
     Touch,
     all_apart,
+    apart,
     follow,
     key_of,
     last_move,
     may_meet,
+    mean,
     shift,
     state_of,
+    touch_points,
 )
-from sgcad_core.planner.encounter.box_scalar import Apart, apart, mean, touch_points
 from sgcad_core.planner.motion import STEP_S
 
 SEEN_M = 0.022

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.encounter.contact_queries import facing_other
+from sgcad_core.planner.actor_plan import Role, speed_there
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
 from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
@@ -90,7 +89,7 @@ class Conflicts:
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
-        return facing_other(first, second), facing_other(second, first)
+        return _facing_other(first, second), _facing_other(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
@@ -122,3 +121,15 @@ class Conflicts:
             walk = replace(role, course=course, place=place)
             found += [replace(option, extra_cost=cost) for option in ways(walk)]
         return sorted(found, key=lambda option: option.cost)
+
+
+def _facing_other(role: Role, other: Role) -> Role:
+    """A role with what it has to know of the other one."""
+    return replace(
+        role,
+        other_mps=speed_there(other),
+        other_width_m=other.size[1],
+        other_side=other.side,
+        other_road=other.actor.road,
+        other_spins=bool(other.spins),
+    )

@@ -88,7 +88,7 @@ def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
 def _paced(motion: Motion, reaction: Reaction, gain_mps2: float) -> Motion:
     """The same way at another pace from the reaction on: never faster in a bend than it would have been, or a third."""
     line = motion.axle or motion.path
-    along = line.lengths()
+    along = line.lengths
     before = motion.time_s < reaction.from_s
     station = float(motion.stations([reaction.from_s])[0])
     at = _integrated(motion, reaction, gain_mps2, float(np.interp(station, line.s_m, along)))
@@ -107,7 +107,7 @@ def _integrated(motion: Motion, reaction: Reaction, gain_mps2: float, start_m: f
     """Way along the line of the wheels at each step from the reaction on, metres."""
     own = reaction.from_s + STEP_S * np.arange(round(_LASTS_S / STEP_S) + 1)
     line = motion.axle or motion.path
-    usual_m = np.interp(motion.stations(own), line.s_m, line.lengths())
+    usual_m = np.interp(motion.stations(own), line.s_m, line.lengths)
     usual_mps = np.gradient(usual_m, own)
     most = usual_mps * (_OVER_CRUISE if gain_mps2 > 0 else 1.0)
     speed, at = float(usual_mps[0]), start_m

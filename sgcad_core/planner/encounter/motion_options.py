@@ -43,9 +43,8 @@ from sgcad_core.planner.encounter.maneuver_choices import (
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, misfit, outside, waiting_zone
 from sgcad_core.planner.lines.axle_to_box import easiest, offset, offsets, rolled, swung, tightest
-from sgcad_core.planner.lines.line_shift import line_of, profile
 from sgcad_core.planner.lines.path import Path, ramp, tamed
-from sgcad_core.planner.lines.turning import turning_lines
+from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
 from sgcad_core.records.specs import Area
@@ -140,7 +139,11 @@ def plainly(role: Role) -> list[Option]:
 def turned(role: Role) -> list[Option]:
     """Who turns on any line of the turn and at any usual speed; others plainly."""
     turns = role.course.turn is not None and role.actor.maneuver in TURNING
-    return _sorted(role, product(turning_lines(role), pacings(role), (Twist(0.0),))) if turns else plainly(role)
+    return (
+        _sorted(role, product([Drift(0.0), *corner_lines(role)], pacings(role), (Twist(0.0),)))
+        if turns
+        else plainly(role)
+    )
 
 
 def forced(role: Role) -> list[Option]:
@@ -192,8 +195,8 @@ def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
     role, base, place = option.role, option.role.course.path, option.role.place.station_m
     of = option.drift, option.dodge, place, role.size, role.actor.kind, role.actor.maneuver
     if (bends := bool(option.twist.angle_rad) and not option.twist.skids) or of not in base.derived:
-        line = _steered(line_of(base, option.drift, place), option, pace)
-        made = _boxed(role, line if option.dodge is None else line.moved(profile(line.s_m, option.dodge)))
+        line = _steered(option.drift.on(base, place), option, pace)
+        made = _boxed(role, line if option.dodge is None else line.moved(option.dodge.profile(line.s_m)))
         if bends:
             return made
         base.derived[of] = made
@@ -207,7 +210,7 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     length, backing = role.size[0], role.actor.maneuver == "backing"
     line = tamed(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
     path = rolled(line, length, backing=backing)
-    drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
+    drivable = bool(np.abs(line.curvature).max() < 1.1 * tightest(length))
     return replace(line, s_m=path.s_m), path, drivable
 
 

@@ -12,7 +12,6 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
-from sgcad_core.planner.lines.line_shift import profile
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
@@ -49,14 +48,14 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     if drift.evades:
-        penalty = penalty + _UNSTEERED * (np.abs(profile(path.s_m, drift) - drift.before_m) < _STEERED_M)
+        penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)
     return penalty
 
 
 def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
     """(n,) how much of a change of lane that is seen as one is still to come: 1 all of it, 0 none."""
     wanted = min(_MOVED_SHARE * (role.size[1] + role.other_width_m) / 2, abs(drift.left_m))
-    moved = np.abs(profile(path.s_m, drift) - drift.before_m)
+    moved = np.abs(drift.profile(path.s_m) - drift.before_m)
     left: Floats = np.clip(1.0 - moved / wanted, 0.0, 1.0)
     return left
 

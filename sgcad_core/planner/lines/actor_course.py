@@ -111,7 +111,7 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
     route = find_route(graph, actor)
     notes = list(route.notes)
     lanes, links = lane_chain(graph, route, actor, notes)
-    pieces = _pieces(route, *merged(graph, route, lanes, links, actor))
+    pieces = _pieces(*merged(graph, route, lanes, links, actor))
     if route.made_up_turn_rad:
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
@@ -122,7 +122,7 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
 
 
 # ------------------------------------------------------------------ line
-def _pieces(route: Route, lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
+def _pieces(lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
     pieces = []
     for i, lane in enumerate(lanes):
         pieces.append(_Piece(lane.shape, i, False))

@@ -44,10 +44,10 @@ def rolled(line: Path, length_m: float, *, backing: bool = False) -> Path:
 
     On a bend that is too tight for the box the point that does not slip lies between center and rear axle.
     """
-    bend = float(np.abs(line.curvature()).max())
+    bend = float(np.abs(line.curvature).max())
     behind = min(REAR_AXLE * length_m, math.tan(_SLIP_RAD) / max(bend, 1e-6))
     way = -1.0 if backing else 1.0
-    angle = line.tangents()
+    angle = line.tangents
     ahead = np.column_stack((np.cos(angle), np.sin(angle)))
     center = line.points + way * behind * ahead
     return Path(center, line.s_m + way * behind, angle + (math.pi if backing else 0.0))
@@ -55,7 +55,7 @@ def rolled(line: Path, length_m: float, *, backing: bool = False) -> Path:
 
 def swung(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path:
     """The line steered to another direction: it bends by an angle before a place and goes on so behind it."""
-    at = line.lengths()
+    at = line.lengths
     long = abs(angle_rad) * radius_m / (1 - _RISE)
     end = float(np.interp(place_m, line.s_m, at)) - 1.5
     x = np.clip((at - end + long) / max(long, 1e-6), 0.0, 1.0)

@@ -79,28 +79,19 @@ class Path:
         slopes: Floats = np.gradient(self._columns, self.s_m, axis=0)
         return slopes
 
+    @cached_property
     def lengths(self) -> Floats:
         """(n,) true distance along the line at each point, metres from its first."""
-        return self._lengths
-
-    @cached_property
-    def _lengths(self) -> Floats:
         return arc_lengths(self.points)
 
+    @cached_property
     def curvature(self) -> Floats:
         """(n,) curvature of the line (not of a box that skids on it), 1/m, left positive."""
-        return self._curvature
+        return np.gradient(self.tangents, self.lengths)
 
     @cached_property
-    def _curvature(self) -> Floats:
-        return np.gradient(self._tangent, self._lengths)
-
     def tangents(self) -> Floats:
         """(n,) unwrapped heading of the line (not of a box that skids on it), radians."""
-        return self._tangent
-
-    @cached_property
-    def _tangent(self) -> Floats:
         return _tangents(self.points)
 
     def moved(self, left_m: ArrayLike) -> Path:
@@ -111,7 +102,7 @@ class Path:
 
     def _directions(self, half_m: float) -> Floats:
         """(n,) heading of the line, averaged over a stretch: a line far inside a bend must not fold."""
-        angle = self._tangent
+        angle = self.tangents
         shifts = np.linspace(-half_m, half_m, 5)
         mean: Floats = np.mean([np.interp(self.s_m + d, self.s_m, angle) for d in shifts], axis=0)
         return mean
@@ -119,7 +110,7 @@ class Path:
     def displaced(self, by_m: Floats) -> Path:
         """The line moved by (n, 2) metres east and north, point by point; stations stay."""
         points = self.points + by_m
-        slip = self.heading_rad - self._tangent
+        slip = self.heading_rad - self.tangents
         return replace(self, points=points, heading_rad=_tangents(points) + slip)
 
     def reversed(self) -> Path:
@@ -181,7 +172,7 @@ def tamed(line: Path, most_per_m: float) -> Path:
 
     As tight as before where the widest window is not enough.
     """
-    points, curvature = line.points, line.curvature()
+    points, curvature = line.points, line.curvature
     for window_m in _WINDOWS_M:
         over = np.abs(curvature) > most_per_m
         if not over.any():

@@ -26,11 +26,6 @@ def corner_lines(role: Role) -> list[Drift]:
     return [*cut, *_from_the_right(role, turn)] if role.actor.maneuver in ("turn_left", "u_turn") else cut
 
 
-def turning_lines(role: Role) -> list[Drift]:
-    """The usual line of a turn, and those that cut its corner, swing wide or come from beside."""
-    return [Drift(0.0), *corner_lines(role)]
-
-
 def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
     """A left turn from the next lane to the right (or the shoulder), and from the right edge of the road."""
     lane, edge = role.course.lane_width_m, role.course.right_edge_m - role.size[1] / 2

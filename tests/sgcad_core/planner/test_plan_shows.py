@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.case.records import Trajectory
-from sgcad_core.planner.encounter.contact_queries import course_of
+from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.maneuver_visible import not_evading, not_shown
 from sgcad_core.records.course import CourseTold
 from tests.sgcad_core.planner.crash_scenes import network

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.encounter.contact_queries import course_of
 from sgcad_core.planner.encounter.encounter_search import meet
 from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.planner.lines.axle_to_box import rolled, swung
+from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.lines.path import TURN_BACK_M, bezier, draw, ramp, tamed, turned_back
 from sgcad_core.planner.lines.route import find_route
 from sgcad_core.planner.motion import ACCELERATION_MPS2, BRAKING_MPS2, Motion, Pace, drive
@@ -78,14 +78,14 @@ def test_a_turn_back_ends_on_the_other_line_and_is_no_tighter_than_told(gap):
     path = draw(np.vstack((-run, arc, arc[-1] - run)))
     assert arc[-1] == pytest.approx(gap * np.array([-math.sin(0.3), math.cos(0.3)]), abs=0.01)
     assert path.heading_rad[-1] - path.heading_rad[0] == pytest.approx(math.pi, abs=0.01)
-    assert np.abs(path.curvature()).max() < 1.25 / TURN_BACK_M
+    assert np.abs(path.curvature).max() < 1.25 / TURN_BACK_M
 
 
 def test_bends_that_are_too_tight_are_widened_and_no_others() -> None:
     path = draw(corner(3.0))
     easier = tamed(path, 1 / 9)
-    assert np.abs(path.curvature()).max() > 1 / 8
-    assert np.abs(easier.curvature()).max() <= 1 / 9
+    assert np.abs(path.curvature).max() > 1 / 8
+    assert np.abs(easier.curvature).max() <= 1 / 9
     assert tamed(easier, 1 / 9) is easier
 
 
@@ -105,8 +105,8 @@ def test_who_steers_aside_has_turned_by_the_angle_and_bends_no_tighter(angle, ra
     line = draw(np.array([[0.0, 0.0], [200.0, 0.0]]))
     turned = swung(line, angle, 150.0, radius)
     assert turned.poses([150.0])[0, 2] == pytest.approx(angle, abs=0.02)
-    assert np.abs(turned.curvature()).max() <= 1.1 / radius
-    assert turned.lengths()[-1] == pytest.approx(line.lengths()[-1], abs=0.01)
+    assert np.abs(turned.curvature).max() <= 1.1 / radius
+    assert turned.lengths[-1] == pytest.approx(line.lengths[-1], abs=0.01)
 
 
 # ------------------------------------------------------------------ pace
@@ -117,8 +117,8 @@ def test_speed_follows_the_curvature_of_the_driven_line(cruise, left, length, su
     line = base.moved(left * ramp(base.s_m, 10.0, length))
     pace = Pace(cruise, grip_mps2=DRIVING.friction_mps2(surface), hard=True)
     time, station = drive(line, pace, 20.0, (line, base))
-    speed = np.diff(np.interp(station, line.s_m, line.lengths())) / np.diff(time)
-    bend = np.interp((station[1:] + station[:-1]) / 2, line.s_m, np.abs(line.curvature()))
+    speed = np.diff(np.interp(station, line.s_m, line.lengths)) / np.diff(time)
+    bend = np.interp((station[1:] + station[:-1]) / 2, line.s_m, np.abs(line.curvature))
     assert (speed**2 * bend)[speed > 1.2].max() < 0.7 * DRIVING.friction_mps2(surface)
 
 

@@ -8,7 +8,7 @@ import yaml
 
 from research.benchmarks.scenes.impacts import FILE, TOUCH_M, WALL_MODE, impact_point, main, offs, placed, table
 from sgcad_core.handover.severity import exchanged
-from sgcad_core.planner.encounter.box_scalar import apart
+from sgcad_core.planner.aftermath.wreck_bodies import apart
 
 PAIRS = yaml.safe_load(FILE.read_text(encoding="utf-8"))["pairs"]
 

@@ -15,8 +15,7 @@ from sgcad_core.planner.aftermath.ground_friction import Drag, slow
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
 from sgcad_core.planner.aftermath.wreck import Wreck
-from sgcad_core.planner.aftermath.wreck_bodies import Mover
-from sgcad_core.planner.encounter.box_scalar import apart, mean, touch_points
+from sgcad_core.planner.aftermath.wreck_bodies import Mover, apart, mean, touch_points
 
 CAR = (4.7, 1.8)
 DRAG = Drag(4.5, 7.0)

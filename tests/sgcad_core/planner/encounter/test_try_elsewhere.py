@@ -7,9 +7,9 @@ import pytest
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.contact_queries import course_of
 from sgcad_core.planner.encounter.encounter_search import _root, along_sides
 from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
+from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.planner.crash_scenes import network
