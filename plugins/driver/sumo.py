@@ -20,7 +20,7 @@ from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, Vie
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.handover.foresight import Ahead, ahead
-from sgcad_core.handover.route import poses_of, route_of
+from sgcad_core.handover.lane_following import poses_of, route_of
 from sgcad_core.interfaces import Driver
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.system.worker_process import Worker

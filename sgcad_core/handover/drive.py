@@ -17,6 +17,7 @@ from sgcad_core.execution.contact import first_contact, first_with
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.bicycle import Ego
 from sgcad_core.handover.relative_clock import RELEASE_S, Clock
+from sgcad_core.handover.right_of_way import gives_way, limit_mps
 from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
 
@@ -66,8 +67,6 @@ def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, fac
 
 def task_of(staging: Staging) -> Task:
     """What the driver is told."""
-    from sgcad_core.handover.priority import gives_way, limit_mps  # reads the network
-
     script, way = staging.script, staging.way
     ego = Ego.at_start(way)
     return Task(
@@ -140,13 +139,18 @@ class _Run:
             if name != ego and name not in self.staging.coupled
         )
 
+    def _tracks(self, count: int | None) -> dict[str, Trajectory]:
+        """All motions, up to a number of samples."""
+        return {name: _trajectory(name, rows[:count]) for name, rows in self.rows.items()}
+
     def drive(self) -> Drive:
-        tracks = {name: _trajectory(name, rows) for name, rows in self.rows.items()}
+        """The drive, cut behind the ego's first contact."""
+        tracks = self._tracks(None)
         sizes, ego = self.staging.script.sizes, self.staging.ego
         others = [t for name, t in tracks.items() if name != ego]
         contact = first_with(tracks[ego], [t for t in others if t.actor not in self.staging.coupled], sizes)
         last = round(contact.t_s / STEP_S) + 1 if contact else len(self.taken)
-        cut = {name: _until(t, last) for name, t in tracks.items()}
+        cut = self._tracks(last)
         elsewhere = first_contact([t for name, t in cut.items() if name != ego], sizes)
         order = [a.id for a in self.staging.script.actors if a.id in cut]
         taken, seen = np.array(self.taken[:last]), np.array(self.seen_s[:last])
@@ -178,8 +182,3 @@ def _trajectory(name: str, rows: Sequence[tuple[float, float, float, float]]) ->
     t_s = np.round(np.arange(len(rows)) * STEP_S, 3)
     x, y, heading, speed = (table[:, i].copy() for i in range(4))
     return Trajectory(actor=name, t_s=t_s, x_m=x, y_m=y, heading_rad=np.unwrap(heading), speed_mps=speed)
-
-
-def _until(t: Trajectory, count: int) -> Trajectory:
-    names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
-    return Trajectory(actor=t.actor, **{name: getattr(t, name)[:count] for name in names})

@@ -13,7 +13,7 @@ their proportion of the script's speeds, it would have touched. Knows drives; no
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -71,18 +71,20 @@ def came(drive: Drive, margins: Margins | None = None) -> Came:
     scripted = severity(staging.contact, script.trajectories, infos) if staging.contact else None
     now = severity(drive.contact, drive.trajectories, infos) if drive.contact else None
     outcome, reason = _outcome(drive, now, scripted, margins or Margins())
-    closest, ttc, pet = _nearness(drive)
+    near = _nearness(drive)
+    nearest = int(near.clearance_m.argmin())
     onset = _braking(drive)
-    until = drive.contact.t_s if drive.contact else float(closest[1])
-    seen = ttc[onset] if onset is not None else math.inf
+    until = drive.contact.t_s if drive.contact else float(drive.ego.t_s[nearest])
+    seen = near.ttc_s[onset] if onset is not None else math.inf
     return Came(
         outcome=outcome, reason=reason,
         as_declared=realised(script.declared, drive.contact) if script.declared else None,
         contact=drive.contact, severity=now, scripted=scripted,
         braked_s=None if onset is None else round(until - onset * STEP_S, 3),
         braked_at_ttc_s=_finite(seen), hardest_mps2=round(float(max(-drive.accelerations.min(initial=0.0), 0.0)), 3),
-        closest_m=round(closest[0], 3), least_ttc_s=_finite(float(ttc.min())),
-        pet_s=pet.seconds, pet_reason=pet.reason, lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
+        closest_m=round(float(near.clearance_m[nearest]), 3), least_ttc_s=_finite(float(near.ttc_s.min())),
+        pet_s=near.pet.seconds, pet_reason=near.pet.reason,
+        lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
     )  # fmt: skip
 
 
@@ -135,22 +137,29 @@ def _track(t: Trajectory, size: tuple[float, float]) -> Track:
     return Track(t.t_s, t.pose, displacement.velocities(t), size)
 
 
-def _nearness(drive: Drive) -> tuple[tuple[float, float], Floats, conflict.Encroachment]:
-    """Least clearance and when; TTC over time to the nearest in time; PET with the partner that comes nearest."""
+class _Nearness(NamedTuple):
+    """(n,) clearance (m) and time to collision (s), the least over all others; PET with the one that comes nearest."""
+
+    clearance_m: Floats
+    ttc_s: Floats
+    pet: conflict.Encroachment
+
+
+def _nearness(drive: Drive) -> _Nearness:
     sizes, staging = drive.staging.script.sizes, drive.staging
     ego = _track(drive.ego, sizes[staging.ego])
-    best, ttc = (math.inf, 0.0), np.full(len(ego.t_s), math.inf)
+    clearance, ttc = np.full((2, len(ego.t_s)), math.inf)
     pet = conflict.Encroachment(None, "no common area")
     for t in drive.trajectories:
         if t.actor == staging.ego or t.actor in staging.coupled:
             continue
         other = _track(t, sizes[t.actor])
-        gap = conflict.box_distance(ego, other)
         ttc = np.minimum(ttc, conflict.time_to_collision(ego, other))
-        k = int(gap.argmin())
-        if gap[k] < best[0]:
-            best, pet = (float(gap[k]), float(ego.t_s[k])), conflict.post_encroachment_time(ego, other)
-    return best, ttc, pet
+        gap = conflict.box_distance(ego, other)
+        if gap.min() < clearance.min():
+            pet = conflict.post_encroachment_time(ego, other)
+        clearance = np.minimum(clearance, gap)
+    return _Nearness(clearance, ttc, pet)
 
 
 def _braking(drive: Drive) -> int | None:
@@ -171,19 +180,11 @@ def _own_times(drive: Drive) -> Floats:
 
 def series(drive: Drive) -> dict[str, Any]:
     """Over time: TTC, clearance, the ego's acceleration, and the script time of the others; rounded, None: infinite."""
-    _, ttc, _ = _nearness(drive)
-    sizes, staging = drive.staging.script.sizes, drive.staging
-    ego = _track(drive.ego, sizes[staging.ego])
-    apart = [
-        conflict.box_distance(ego, _track(t, sizes[t.actor]))
-        for t in drive.trajectories
-        if t.actor != staging.ego and t.actor not in staging.coupled
-    ]
-    clear = np.min(apart, axis=0) if apart else np.full(len(ego.t_s), math.inf)
+    near = _nearness(drive)
     return {
-        "t_s": [round(float(t), 2) for t in ego.t_s],
-        "time_to_collision_s": [_finite(float(v)) for v in ttc],
-        "clearance_m": [_finite(float(v)) for v in clear],
+        "t_s": [round(float(t), 2) for t in drive.ego.t_s],
+        "time_to_collision_s": [_finite(float(v)) for v in near.ttc_s],
+        "clearance_m": [_finite(float(v)) for v in near.clearance_m],
         "acceleration_mps2": [round(float(v), 3) for v in drive.accelerations],
         "others_script_s": [round(float(v), 3) for v in drive.others_s],
     }

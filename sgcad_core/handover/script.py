@@ -18,7 +18,7 @@ from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
-from sgcad_core.handover.after_contact import Start, gone_on
+from sgcad_core.handover.lane_following import Start, gone_on
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import Contact, Surface
 from sgcad_core.roads.lane_graph import LaneGraph

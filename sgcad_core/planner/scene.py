@@ -162,10 +162,8 @@ class Scene:
 
     def drag(self, track: Track) -> Drag:
         """What slows an actor of whom nothing is chosen."""
-        grip = DRIVING.sliding_mps2(self.surface)
-        if track.kind in _TUMBLE:
-            return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
-        return Drag(min(ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2, grip), grip)
+        along = ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2
+        return usual_drag(track.kind, DRIVING.sliding_mps2(self.surface), along)
 
     def first_contact(self) -> ObservedContact | None:
         """The first overlap of any two actors, as any observer of the trajectories sees it."""
@@ -197,13 +195,25 @@ class Scene:
         return tuple(_trajectory(self.tracks[name], told.get(name)) for name in order)
 
 
+def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS2) -> Drag:
+    """Deceleration after a blow on a surface of some grip: vehicles slow along their wheels, people slide."""
+    if kind in _TUMBLE:
+        return Drag(min(THROWN_MPS2, grip_mps2), min(THROWN_MPS2, grip_mps2))
+    return Drag(min(along_mps2, grip_mps2), grip_mps2)
+
+
+def sample_speeds(poses: Floats) -> Floats:
+    """(n,) m/s at (n, 3) poses STEP_S apart: the mean of the steps before and behind each."""
+    step = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
+    return np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
+
+
 def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
     """Speeds are those of the positions, taken apart before and behind an impact."""
     poses = track.poses
-    step = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
-    speed = np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
-    if track.hit is not None and 0 < track.hit < len(step):
-        speed[track.hit] = step[track.hit - 1]
+    speed = sample_speeds(poses)
+    if track.hit is not None and 0 < track.hit < len(poses) - 1:
+        speed[track.hit] = np.hypot(*(poses[track.hit, :2] - poses[track.hit - 1, :2])) / STEP_S
     t = np.round(np.arange(len(poses)) * STEP_S, 3)
     return Trajectory(
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),

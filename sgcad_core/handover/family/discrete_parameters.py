@@ -15,7 +15,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.handover.family.parameter import Facts, Parameter, Told, field_at, told_of
 from sgcad_core.handover.family.shifted_evasion import Delay
-from sgcad_core.handover.lanes import beside
+from sgcad_core.handover.parallel_lanes import beside
 from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import Light
 

@@ -22,18 +22,15 @@ from sgcad_core.handover.family.discrete_parameters import PAIR
 from sgcad_core.handover.family.shifted_evasion import Delay, delay_of
 from sgcad_core.handover.script import DRIVEN, Script, staged
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.aftermath.ground_friction import Drag
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import body, mass_kg
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover
-from sgcad_core.planner.scene import AFTER_S, BRAKED_MPS2, THROWN_MPS2
+from sgcad_core.planner.scene import AFTER_S, sample_speeds, usual_drag
 from sgcad_core.planner.towing import coupling_m
-from sgcad_core.records.specs import ActorKind
 
 Values = Mapping[str, float]
 _CREEPS_MPS = 1.0
-_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,10 +160,8 @@ def _poses(line: Way, own: Floats) -> Floats:
 
 
 def _trajectory(actor: str, t: Floats, pose: Floats) -> Trajectory:
-    step = np.hypot(*np.diff(pose[:, :2], axis=0).T) / STEP_S
-    speed = np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
     return Trajectory(actor=actor, t_s=t, x_m=pose[:, 0].copy(), y_m=pose[:, 1].copy(),
-                      heading_rad=np.unwrap(pose[:, 2]), speed_mps=speed)  # fmt: skip
+                      heading_rad=np.unwrap(pose[:, 2]), speed_mps=sample_speeds(pose))  # fmt: skip
 
 
 # ------------------------------------------------------------------ behind the contact
@@ -187,13 +182,5 @@ def _mover(made: Script, track: Trajectory) -> Mover:
     info = made.info(track.actor)
     size: Size = (info.length_m, info.width_m)
     mass = None if info.type == "object" else mass_kg(info.type, size)
-    script = track.pose
-    return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), script, _drag(made, info.type))
-
-
-def _drag(made: Script, kind: ActorKind) -> Drag:
-    """As the planner has it: struck vehicles brake along their wheels, people slide."""
     grip = min(DRIVING.sliding_mps2(made.surface), made.friction_mps2)
-    if kind in _TUMBLE:
-        return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
-    return Drag(min(BRAKED_MPS2, grip), grip)
+    return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), track.pose, usual_drag(info.type, grip))

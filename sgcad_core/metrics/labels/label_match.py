@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from sgcad_core.kinds import FOUR_LEG
 from sgcad_core.metrics.labels.motion_label_match import Path, motion_marks
-from sgcad_core.metrics.road_network import any_error, relative_error
 from sgcad_core.roads.lane_graph import RoadCounts, road_counts
 
 NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
@@ -67,6 +66,16 @@ def truth_lanes(label: Label) -> dict[tuple[str, str], int]:
             if lanes:
                 found[ends] = found.get(ends, 0) + lanes
     return found
+
+
+def relative_error(truth: float, made: float) -> float:
+    """1 - max(0, 1 - |truth - made| / truth), in [0, 1]; a truth of 0 is divided by 1 (the paper leaves 0/0 open)."""
+    return min(1.0, abs(truth - made) / (truth or 1.0))
+
+
+def any_error(error: float) -> float:
+    """1 if a report has any error, else 0: its mean over reports is the share with an error."""
+    return float(error > 1e-6)
 
 
 def _network_errors(truth: TruthFigures, roads: RoadCounts | None) -> dict[str, float]:

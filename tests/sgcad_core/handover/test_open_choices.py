@@ -12,7 +12,7 @@ from sgcad_core.handover.family.discrete_parameters import LIGHTS, light_of, unv
 from sgcad_core.handover.family.parameter_priors import spreads
 from sgcad_core.handover.family.shifted_evasion import delay_of
 from sgcad_core.handover.family.variant import basis_of, member, undisturbed
-from sgcad_core.handover.lanes import beside
+from sgcad_core.handover.parallel_lanes import beside
 from sgcad_core.handover.script import staged
 from tests.sgcad_core.handover.scenes import LENGTH, STEP, WIDTH, crossing, rear_end
 

@@ -27,11 +27,11 @@ def gives_way(graph: LaneGraph, way: Way, length_m: float) -> float | None:
     A way that begins inside or behind the junction has none before it.
     """
     points = way.poses_at(np.arange(0.0, float(way.s_m[-1]) + _STEP_M, _STEP_M))[:, :2]
-    found = [at for c in graph.connections if c.state in _GIVES_WAY and (at := _entered(c, graph, points)) is not None]
+    found = [at for c in graph.connections if c.state in _GIVES_WAY and (at := _entered(c, points)) is not None]
     return max(min(found) * _STEP_M - length_m / 2 - _LINE_M, 0.0) if found else None
 
 
-def _entered(connection: Connection, graph: LaneGraph, points: Floats) -> int | None:
+def _entered(connection: Connection, points: Floats) -> int | None:
     """The sample of the way at which it enters a connection; None where it does not follow it."""
     line = connection.via_shape
     if len(line) < 2 or float(np.hypot(*(line[-1] - line[0]))) < 2.0:

@@ -1,14 +1,16 @@
-"""How a road user would have gone on from where the contact ends its script: along the lanes of the network.
+"""The lanes of the network along which a road user goes on, and the edges that its way takes.
 
-A trajectory tells no way beyond the contact; who avoids it needs one. The lane (or way across a junction) that runs
-where the vehicle is and as it points is followed, the maneuver chooses at a junction, the vehicle's own offset fades.
-Knows the lane graph; no time.
+`gone_on` continues a trajectory beyond the contact that ends its script: along the lane (or connection across a
+junction) that runs at the vehicle's place and in its direction; the maneuver chooses at a junction, the vehicle's own
+offset from the lane fades. `route_of` names the edges of a way as SUMO names a route; where a way leaves the lanes (a
+verge, a lot) nothing is matched. Knows the lane graph; no time.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +28,11 @@ _FADES_M = 30.0
 _TAKES_OVER_M = 16.0
 """Over which the lane takes over from the vehicle's own bend."""
 _STEP_M = 0.5
+_EVERY_M = 2.0
+"""Between the places of a way at which its edge is looked up."""
+_AHEAD = 3
+"""Edges added to a route behind its last known one: near a junction a way across it is needed."""
+_MOST_STRIPS = 12
 _TURNS: dict[str, Direction] = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
 
 
@@ -109,31 +116,24 @@ def _from(line: Floats, here: Floats) -> float:
 
 
 def _followed(graph: LaneGraph, strip: Strip, length_m: float, maneuver: str) -> Floats:
-    """The strip and what it leads to, joined."""
-    pieces, turns = [strip.line], maneuver
-    place: Lane | Connection = strip.of
-    edge = strip.edge
-    total = float(arc_lengths(strip.line)[-1])
-    start = _from(strip.line, strip.line[0])
-    for _ in range(12):
-        if total - start > length_m + float(arc_lengths(strip.line)[-1]):
-            break
+    """The line of a strip and of those that it leads to, as far as needed."""
+    pieces, turns, edge = [strip.line], maneuver, strip.edge
+    place: Lane | Connection | None = strip.of
+    ahead_m = 0.0
+    for _ in range(_MOST_STRIPS):
         if isinstance(place, Connection):
-            lane = next((la for la in graph.edges[place.to_edge].lanes if la.index == place.to_lane), None)
-            nothing = lane is None
-            edge, place, turns = place.to_edge, lane or place, "straight"
-        else:
-            onward = _onward(graph, edge, place, turns)
-            nothing, place = onward is None, onward or place
-        if nothing:
+            edge, index = place.to_edge, place.to_lane
+            place, turns = next((lane for lane in graph.edges[edge].lanes if lane.index == index), None), "straight"
+        elif place is not None:
+            place = _connection_for(graph, edge, place, turns)
+        if place is None or ahead_m > length_m:
             break
-        line = place.via_shape if isinstance(place, Connection) else place.shape
-        pieces.append(line)
-        total += float(arc_lengths(line)[-1])
+        pieces.append(place.via_shape if isinstance(place, Connection) else place.shape)
+        ahead_m += float(arc_lengths(pieces[-1])[-1])
     return distinct(np.vstack(pieces), 1e-2)
 
 
-def _onward(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connection | None:
+def _connection_for(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connection | None:
     """The connection that the maneuver takes, else straight on, else any."""
     leaving = graph.leaving(edge, lane.index)
     wanted = _TURNS.get(maneuver, "through")
@@ -150,3 +150,48 @@ def _extended(points: Floats, length_m: float) -> Floats:
     way = way / max(float(np.hypot(*way)), 1e-9)
     more: Floats = points[-1] + np.arange(_STEP_M, lack + _STEP_M, _STEP_M)[:, None] * way
     return np.vstack((points, more))
+
+
+# ------------------------------------------------------------------ routes
+def route_of(graph: LaneGraph, poses: Iterable[tuple[float, float, float]]) -> tuple[str, ...]:
+    """Edges along poses (x, y, course of the movement), connected, then straight on; () where no lane runs there."""
+    found: list[str] = []
+    for x, y, course in poses:
+        strip = strip_at(graph, np.array([x, y]), course)
+        edges = [strip.edge] if strip else []
+        edges += [strip.of.to_edge] if strip and isinstance(strip.of, Connection) else []
+        found += [e for e in edges if e not in found]
+    return _straight_on(graph, _connected(graph, found))
+
+
+def poses_of(pose: Floats, step_m: float = _EVERY_M) -> list[tuple[float, float, float]]:
+    """Places of a way (n, 3) some metres apart, with the course of the movement there."""
+    points = pose[:, :2]
+    kept = [0]
+    for k in range(1, len(points)):
+        if np.hypot(*(points[k] - points[kept[-1]])) >= step_m:
+            kept.append(k)
+    if len(kept) < 2:
+        return [(float(points[0, 0]), float(points[0, 1]), float(pose[0, 2]))]
+    course = [float(np.arctan2(*(points[b] - points[a])[::-1])) for a, b in pairwise(kept)]
+    return [(float(points[k, 0]), float(points[k, 1]), c) for k, c in zip(kept, course, strict=False)]
+
+
+def _connected(graph: LaneGraph, edges: list[str]) -> list[str]:
+    """The edges up to the first that cannot be reached from the one before it."""
+    kept = edges[:1]
+    for edge in edges[1:]:
+        if any(c.to_edge == edge for c in graph.leaving(kept[-1])):
+            kept.append(edge)
+    return kept
+
+
+def _straight_on(graph: LaneGraph, edges: list[str]) -> tuple[str, ...]:
+    """A route and the few edges that lead straight on from its end."""
+    route = list(edges)
+    for _ in range(_AHEAD if route else 0):
+        through = [c.to_edge for c in graph.leaving(route[-1]) if c.direction == "through" and c.to_edge not in route]
+        if not through:
+            break
+        route.append(through[0])
+    return tuple(route)
