@@ -16,7 +16,7 @@ import numpy as np
 from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.metrics.drivability import WHEELED, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, driving_peaks, first_touches
 from sgcad_core.planner import plan
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.maneuver_visible import TURNED_RAD
@@ -37,19 +37,19 @@ MOST = 4
 """Other readings that are planned."""
 
 
-class Tried(NamedTuple):
+class TriedReading(NamedTuple):
     """One reading that was planned: in what it differs, and what is left of the doubt."""
 
     words: str
     doubt: float
 
 
-class Least(NamedTuple):
+class LeastDoubted(NamedTuple):
     """The facts that are doubted least, which reading they are ("" the first), and what was tried."""
 
     facts: CrashFacts
     words: str
-    tried: tuple[Tried, ...]
+    tried: tuple[TriedReading, ...]
 
     def notes(self) -> list[str]:
         """What was tried, for result.json."""
@@ -76,7 +76,9 @@ def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
     count = 0
     for actor, track in zip(behavior.actors, motions, strict=True):
         if actor.kind in WHEELED:
-            motion = driven(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+            motion = driving_peaks(
+                track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"
+            )
             count += bool(motion.excesses(behavior.surface))
     return count
 
@@ -87,7 +89,7 @@ def least_doubted(
     graph: LaneGraph,
     first: Scenario,
     may_be: Callable[[CrashFacts], bool] = lambda facts: True,
-) -> Least:
+) -> LeastDoubted:
     """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned,
     `may_be`: whether another reading is possible at all (none that contradicts a person is).
 
@@ -98,15 +100,15 @@ def least_doubted(
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     if most <= 0.0:
-        return Least(facts, "", ())
+        return LeastDoubted(facts, "", ())
     hidden = first.behavior is not None and _hides(first.behavior, first.planned)
-    tried = [Tried("the first reading", most)]
+    tried = [TriedReading("the first reading", most)]
     best: tuple[float, CrashFacts, str] = (most, facts, "")
     for other in [one for one in hypotheses(facts) if may_be(one.facts)][:MOST]:
         left = _left(other, behave, graph)
         if left is None:
             continue
-        tried.append(Tried(other.words, left))
+        tried.append(TriedReading(other.words, left))
         gives_way = other.open or most >= _UNMET or (other.corner and hidden)
         if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
@@ -114,8 +116,8 @@ def least_doubted(
             break
     if best[0] >= _UNMET and (met := _by_force(facts, behave, graph)):
         best = (met[1], met[0].facts, met[0].words)
-        tried.append(Tried(f"{met[0].words}, by force", met[1]))
-    return Least(best[1], best[2], tuple(tried))
+        tried.append(TriedReading(f"{met[0].words}, by force", met[1]))
+    return LeastDoubted(best[1], best[2], tuple(tried))
 
 
 def _by_force(

@@ -17,7 +17,7 @@ from sgcad_core.execution.contact import first_contact, first_with
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.bicycle import Ego
 from sgcad_core.handover.relative_clock import RELEASE_S, Clock
-from sgcad_core.handover.right_of_way import gives_way, limit_mps
+from sgcad_core.handover.right_of_way import give_way_station, limit_mps
 from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
 
@@ -74,7 +74,7 @@ def task_of(staging: Staging) -> Task:
         way=way,
         friction_mps2=script.friction_mps2,
         speed_limit_mps=limit_mps(script.graph, way),
-        gives_way_m=gives_way(script.graph, way, script.info(staging.ego).length_m),
+        gives_way_m=give_way_station(script.graph, way, script.info(staging.ego).length_m),
         net_xml=script.net_xml,
         case=script.case,
     )

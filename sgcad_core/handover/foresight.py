@@ -41,7 +41,7 @@ class Meeting(NamedTuple):
     user: RoadUser
 
 
-def ahead(task: Task, view: View) -> list[Ahead]:
+def users_ahead(task: Task, view: View) -> list[Ahead]:
     """Everybody whose center lies before the ego's rear on its next 150 m."""
     stations = np.arange(view.station_m, min(view.station_m + _LOOK_M, float(task.way.s_m[-1]) + 1.0), _STEP_M)
     if len(stations) < 2:

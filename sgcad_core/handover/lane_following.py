@@ -53,7 +53,7 @@ class Start(NamedTuple):
     bend_per_m: float = 0.0
 
 
-def gone_on(graph: LaneGraph, start: Start, length_m: float, maneuver: str) -> Floats:
+def continued_line(graph: LaneGraph, start: Start, length_m: float, maneuver: str) -> Floats:
     """(n, 2) points from a place on, half a metre apart, at least `length_m` long.
 
     The first metres go on as the vehicle was turning, then over to the lane; straight on where no lane runs so.

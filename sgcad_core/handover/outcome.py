@@ -40,7 +40,7 @@ class Margins(Record):
     least_mps: float = 0.5
 
 
-class Came(Record):
+class DriveResult(Record):
     """A drive's result: the figures that tables and drive.json have."""
 
     outcome: Outcome
@@ -64,7 +64,7 @@ class Came(Record):
     elsewhere: ObservedContact | None
 
 
-def came(drive: Drive, margins: Margins | None = None) -> Came:
+def judge_drive(drive: Drive, margins: Margins | None = None) -> DriveResult:
     """Judge a drive."""
     staging, script = drive.staging, drive.staging.script
     infos = {a.id: a for a in script.actors}
@@ -76,7 +76,7 @@ def came(drive: Drive, margins: Margins | None = None) -> Came:
     onset = _braking(drive)
     until = drive.contact.t_s if drive.contact else float(drive.ego.t_s[nearest])
     seen = near.ttc_s[onset] if onset is not None else math.inf
-    return Came(
+    return DriveResult(
         outcome=outcome, reason=reason,
         as_declared=realised(script.declared, drive.contact) if script.declared else None,
         contact=drive.contact, severity=now, scripted=scripted,
@@ -178,7 +178,7 @@ def _own_times(drive: Drive) -> Floats:
     return np.interp(ran, drive.staging.way.s_m, drive.staging.way.t_s)
 
 
-def series(drive: Drive) -> dict[str, Any]:
+def time_series(drive: Drive) -> dict[str, Any]:
     """Over time: TTC, clearance, the ego's acceleration, and the script time of the others; rounded, None: infinite."""
     near = _nearness(drive)
     return {

@@ -23,7 +23,7 @@ _EVEN_M = 0.6
 """Lanes that run so evenly beside each other are parallel."""
 
 
-def beside(graph: LaneGraph, pose: Floats) -> dict[int, float]:
+def lane_offsets(graph: LaneGraph, pose: Floats) -> dict[int, float]:
     """Other car lanes of the road along (n, 3) poses: lanes to the left (negative: right) -> metres to the left.
 
     Empty where the actor turns, or is in no lane for most of the way; of one who stands the place counts.

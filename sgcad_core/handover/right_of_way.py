@@ -21,7 +21,7 @@ _LINE_M = 1.0
 _STEP_M = 1.0
 
 
-def gives_way(graph: LaneGraph, way: Way, length_m: float) -> float | None:
+def give_way_station(graph: LaneGraph, way: Way, length_m: float) -> float | None:
     """Station of the box center before the first connection of the way that lacks the right of way; None: all have it.
 
     A way that begins inside or behind the junction has none before it.

@@ -18,7 +18,7 @@ from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
-from sgcad_core.handover.lane_following import Start, gone_on
+from sgcad_core.handover.lane_following import Start, continued_line
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import Contact, Surface
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -111,7 +111,7 @@ class Staging:
         return self.contact.t_s if self.contact else float(self.script.trajectories[0].t_s[-1])
 
 
-def staged(script: Script, ego: str) -> Staging:
+def staging_for(script: Script, ego: str) -> Staging:
     """Put an actor's seat at a driver's disposal. Raises ConfigError for one that nobody can drive."""
     info = script.info(ego)
     if info.type not in DRIVEN:
@@ -166,7 +166,7 @@ def _beyond(script: Script, actor: str, pose: Floats, start: Start, speed_mps: f
     """(m, 3) poses from the next sample on, along the lanes; the box keeps its angle to its way."""
     info = script.info(actor)
     graph = script.graph if info.type in DRIVEN or info.type in ("trailer", "bicycle") else LaneGraph({}, (), {})
-    points = gone_on(graph, start, speed_mps * BEYOND_S, info.maneuver)
+    points = continued_line(graph, start, speed_mps * BEYOND_S, info.maneuver)
     along = arc_lengths(points)
     way = np.diff(points, axis=0)
     course = np.unwrap(np.concatenate(([start.course_rad], np.arctan2(way[:, 1], way[:, 0]))))

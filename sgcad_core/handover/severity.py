@@ -13,7 +13,7 @@ from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
-from sgcad_core.planner.aftermath.wreck_bodies import apart, mean, touch_points
+from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 
@@ -74,8 +74,8 @@ def exchanged(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Let two that touch exchange momentum at once; the changes of velocity of their centers, m/s."""
     before = [(b.vx, b.vy) for b in (first, second)]
-    at = mean(touch_points(first, second))
-    collide(first, second, at, apart(first, second).normal, restitution, friction)
+    at = center_of(touch_points(first, second))
+    collide(first, second, at, separation(first, second).normal, restitution, friction)
     changes = [(b.vx - v[0], b.vy - v[1]) for b, v in zip((first, second), before, strict=True)]
     return changes[0], changes[1]
 

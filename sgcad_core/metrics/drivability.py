@@ -28,7 +28,7 @@ _MOVING_MPS = 1.0
 """A slower box tells no direction of travel."""
 
 
-class Driven(Record):
+class DrivingPeaks(Record):
     """The peaks of one motion: lateral acceleration (m/s2), yaw rate (rad/s) and slip at the rear axle (rad)."""
 
     lateral_mps2: float
@@ -46,20 +46,22 @@ class Driven(Record):
         return tuple(f"{what} {value:.1f} of {most:g} {unit}" for what, value, most, unit in rows if value > most)
 
 
-def driven(motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False) -> Driven:
+def driving_peaks(
+    motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False
+) -> DrivingPeaks:
     """The peaks before the sample `until` (the first touch, which falls between that sample and the one before).
 
     `backing`: the box is meant to travel against its heading, slip is told from that.
     """
     x, y, heading = (np.asarray(c, dtype=float)[:until] for c in (motion.x_m, motion.y_m, motion.heading_rad))
     if len(x) < 3:
-        return Driven(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
+        return DrivingPeaks(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
     heading = np.unwrap(heading)
     center = np.column_stack((x, y))
     ahead = np.column_stack((np.cos(heading), np.sin(heading)))
     yaw = float(np.abs(np.diff(heading)).max()) / STEP_S
     slip = _slip(center - REAR_AXLE * length_m * ahead, heading, backing=backing)
-    return Driven(lateral_mps2=_lateral(center), yaw_radps=yaw, slip_rad=slip)
+    return DrivingPeaks(lateral_mps2=_lateral(center), yaw_radps=yaw, slip_rad=slip)
 
 
 def _lateral(center: Floats) -> float:
@@ -88,7 +90,9 @@ def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> d
     return found
 
 
-def deepest(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False) -> tuple[float, str]:
+def deepest_overlap(
+    motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False
+) -> tuple[float, str]:
     """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and of whom.
 
     The depth is the least way that parts the boxes. Pairs that overlap in the first sample are skipped: parts of one.

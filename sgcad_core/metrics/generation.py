@@ -43,7 +43,7 @@ class FileCounts(NamedTuple):
 
 
 @dataclass(frozen=True)
-class AttemptSeen:
+class AttemptRecord:
     """One attempt of a stage and what was found wrong with it."""
 
     stage: Stage
@@ -72,17 +72,17 @@ class AttemptSeen:
 
 
 @dataclass(frozen=True)
-class CaseSeen:
+class CaseRecord:
     """One case of a batch: how it ended and its attempts, in order."""
 
     status: str
-    attempts: tuple[AttemptSeen, ...]
+    attempts: tuple[AttemptRecord, ...]
 
-    def of(self, stage: Stage) -> tuple[AttemptSeen, ...]:
+    def of(self, stage: Stage) -> tuple[AttemptRecord, ...]:
         """A stage's attempts."""
         return tuple(a for a in self.attempts if a.stage == stage)
 
-    def standing(self, stage: Stage) -> AttemptSeen | None:
+    def standing(self, stage: Stage) -> AttemptRecord | None:
         """The attempt of a stage that stands: the least doubtful usable one (`refine.outcome_of`), else the last."""
         seen = self.of(stage)
         return min((a for a in seen if a.usable), key=lambda a: a.doubts, default=seen[-1] if seen else None)
@@ -141,7 +141,7 @@ def layer_of(finding: Finding) -> Layer:
 
 
 # ------------------------------------------------------------------ a batch
-def quality(cases: Sequence[CaseSeen]) -> Quality:
+def quality(cases: Sequence[CaseRecord]) -> Quality:
     """Figures of one config's cases."""
     first, last = [_files(c, first=True) for c in cases], [_files(c) for c in cases]
     count = max(len(cases), 1)
@@ -160,17 +160,17 @@ def quality(cases: Sequence[CaseSeen]) -> Quality:
     )
 
 
-def written_files(case: CaseSeen) -> FileCounts:
+def written_files(case: CaseRecord) -> FileCounts:
     """Files of a case after refinement: written, and those with an error."""
     return _files(case)[0]
 
 
-def _at_once(case: CaseSeen) -> bool:
+def _at_once(case: CaseRecord) -> bool:
     """Whether it was generated, and would have been without any refinement."""
     return case.status == "generated" and all(a.usable for stage in FILES for a in case.of(stage)[:1])
 
 
-def _files(case: CaseSeen, first: bool = False) -> tuple[FileCounts, Counter[Layer]]:
+def _files(case: CaseRecord, first: bool = False) -> tuple[FileCounts, Counter[Layer]]:
     """Files of each stage's attempt that stands, or of its first, and the layers in which the faulty ones failed.
 
     A refused attempt writes no file. A stage that was never reached has none either. Of a road attempt both
@@ -189,11 +189,11 @@ def _files(case: CaseSeen, first: bool = False) -> tuple[FileCounts, Counter[Lay
     return FileCounts(written, layers.total()), layers
 
 
-def _only_opendrive(attempt: AttemptSeen) -> bool:
+def _only_opendrive(attempt: AttemptRecord) -> bool:
     return {f.source for f in attempt.findings if f.severity == "repair"} == {"opendrive"}
 
 
-def _died_running(case: CaseSeen) -> bool:
+def _died_running(case: CaseRecord) -> bool:
     """Whether both stages were written and the execution failed."""
     return case.status == "failed" and bool(case.of("scenario"))
 

@@ -91,7 +91,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
         "average_displacement_error_m": errors[0] if errors else None,
         "final_displacement_error_m": errors[1] if errors else None,
         "emergency_score": score, "emergency_level": criticality.emergency_level(score, limits),
-        **precontact_metrics.told(tracks),
+        **precontact_metrics.precontact_figures(tracks),
     }  # fmt: skip
 
 

@@ -59,7 +59,7 @@ def _until(track: Track, k: int) -> Track:
     return Track(track.t_s[:k], track.pose[:k], velocity, track.size)
 
 
-def told(tracks: dict[str, Track]) -> dict[str, Any]:
+def precontact_figures(tracks: dict[str, Track]) -> dict[str, Any]:
     """The figures by name; an empty mapping where nobody touches."""
     pair = first_pair(tracks)
     if pair is None:

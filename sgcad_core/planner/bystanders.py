@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.encounter.encounter_search import meet
+from sgcad_core.planner.encounter.encounter_search import find_meeting
 from sgcad_core.planner.encounter.motion_options import Option, forced, in_path_of, options
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import CLEAR_M, Scene
@@ -27,7 +27,7 @@ _LATER_S = ((0.7, 3.5), (0.1, 0.7))
 _OUTSIDE = 20.0
 
 
-def stand_clear(scene: Scene, role: Role) -> str | None:
+def place_clear(scene: Scene, role: Role) -> str | None:
     """Place an actor that takes no part; a note where it could not be kept clear to the end."""
     best: tuple[int, Motion, float] | None = None
     for motion, own in _tries(role):
@@ -60,7 +60,7 @@ def _plain(ways: Sequence[Option]) -> list[Option]:
     return [way for way in ways if not way.twist.angle_rad or way.role.actor.kind == "object"]
 
 
-def strike_later(scene: Scene, role: Role, partner: str, sides: tuple[Area, Area]) -> bool:
+def place_for_later_contact(scene: Scene, role: Role, partner: str, sides: tuple[Area, Area]) -> bool:
     """Place an actor so that a partner already in the scene touches it after the first contact.
 
     `sides`: of the partner and of the actor; any sides are taken where the wanted ones cannot be had.
@@ -81,7 +81,7 @@ def _struck_by(
     motion = in_path_of(way, replay, sides[0]) if way.role.actor.kind == "object" else way.motion
     if not motion.drivable:
         return False
-    found = meet(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
+    found = find_meeting(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
     if found is None or found.cost > _OUTSIDE:
         return False
     return _placed(scene, way.role, motion, found.first_s, found.second_s)

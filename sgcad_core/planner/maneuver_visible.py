@@ -23,7 +23,7 @@ TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
 """A smaller change of heading is no turn to be seen, a smaller shift no change of lane."""
 
 
-def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
+def unseen_maneuver(actor: Actor, course: Course, poses: Floats) -> str | None:
     """What of its maneuver is not seen on (n, 3) poses from the start to the contact, in words; None: all is."""
     turned = float(np.unwrap(poses[:, 2])[-1] - poses[0, 2])
     if actor.maneuver in TURNING:
@@ -35,7 +35,7 @@ def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
     return None if moved >= MOVED_M else f"{actor.id} has hardly begun to change lanes when they touch"
 
 
-def not_evading(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
+def unseen_evasion(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
     """What of its told evasion is not seen on such poses, in words; as `sgcad score` sees it."""
     recent = poses[-round(BEFORE_S / STEP_S) - 1 :]
     steps_m = np.hypot(*np.diff(recent[:, :2], axis=0).T)

@@ -15,20 +15,26 @@ from functools import cached_property
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role, usual_speed
-from sgcad_core.planner.aftermath.later_contacts import expect, other_of, pair_of, run_out, strikes_of
+from sgcad_core.planner.aftermath.later_contacts import (
+    bring_to_rest,
+    expect_later_contacts,
+    other_of,
+    pair_of,
+    strikes_of,
+)
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
-from sgcad_core.planner.bystanders import stand_clear, strike_later
+from sgcad_core.planner.bystanders import place_clear, place_for_later_contact
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, place_near, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
-from sgcad_core.planner.encounter.near_miss import parted
+from sgcad_core.planner.encounter.near_miss import as_near_miss
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
+from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.maneuver_visible import not_evading, not_shown
+from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
@@ -131,19 +137,19 @@ class _Cast:
         return found
 
     # -------------------------------------------------------------- the whole course
-    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> Unfolded:
+    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> WholeCourse:
         """All that follows from an encounter, and how far it is from what is told; this cast stays as it is."""
         cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
         lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
         scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
-        expect(scene, cast.contacts)
+        expect_later_contacts(scene, cast.contacts)
         for contact in cast.contacts[1:]:
             cast.later(scene, contact)
         cast.rest(scene)
         scene.settle()
-        ended = run_out(scene, self.behavior, cast.contacts, self.told, graph, impacts)
+        ended = bring_to_rest(scene, self.behavior, cast.contacts, self.told, graph, impacts)
         missed = ended.missed + cast.missed + MISSED * sum(1 for _ in cast.unmet(scene))
-        return Unfolded(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
+        return WholeCourse(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
 
     def unmet(self, scene: Scene) -> Iterator[Contact]:
         """Further contacts of vehicles that do not come about; those of things and second ones are told elsewhere."""
@@ -156,7 +162,7 @@ class _Cast:
     def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
         """A conflict with its evasion; None where the two cannot be brought near, or not be parted."""
         course = conflicts.as_they_drive(near.conflict) if self.usable((near.conflict,)) else None
-        found, notes = parted(course, near)
+        found, notes = as_near_miss(course, near)
         self.notes += notes
         return found
 
@@ -188,10 +194,10 @@ class _Cast:
             until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
             if motion.standing:
                 continue
-            if words := not_shown(role.actor, role.course, until):
+            if words := unseen_maneuver(role.actor, role.course, until):
                 self.notes.append(words)
                 self.missed += _MANEUVER_MISSED
-            unseen = list(not_evading(role.actor.id, role.course, role.told, until))
+            unseen = list(unseen_evasion(role.actor.id, role.course, role.told, until))
             self.notes += unseen
             self.missed += len(unseen)
 
@@ -235,7 +241,7 @@ class _Cast:
         role = self._own_role(new)
         target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
         role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
-        if not strike_later(scene, role, partner, sides):
+        if not place_for_later_contact(scene, role, partner, sides):
             self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
 
     def rest(self, scene: Scene) -> None:
@@ -243,7 +249,7 @@ class _Cast:
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things:
                 continue
-            note = stand_clear(scene, self._own_role(actor.id))
+            note = place_clear(scene, self._own_role(actor.id))
             self.notes += [note] if note else []
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S

@@ -18,7 +18,7 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import Hitch, hitched
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
-from sgcad_core.planner.aftermath.rollover import rolled, rolls_over
+from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
@@ -218,7 +218,7 @@ def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
     return Trajectory(
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
-        roll_rad=rolled(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
+        roll_rad=roll_angles(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
     )  # fmt: skip
 
 

@@ -59,7 +59,7 @@ def node_of(leg: str) -> str:
     return f"hub_{leg}"
 
 
-def circle(rim: Rim, mouths: Sequence[Mouth]) -> tuple[list[Node], list[Road]]:
+def circle_roads(rim: Rim, mouths: Sequence[Mouth]) -> tuple[list[Node], list[Road]]:
     """Nodes where legs do not meet the rim (long pieces are cut), and all pieces of the rim."""
     nodes: list[Node] = []
     roads: list[Road] = []

@@ -26,10 +26,10 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
     both = "each" in lanes.turns or len(lanes.turns) > 1  # turn lanes either way: no place of the road has all of them
     beyond = max(map(len, lanes.turns.values())) if both else 0
-    fewer = max(beyond, lanes.center_turn_lane or (vague(road, pictured) and named % 2))
+    fewer = max(beyond, lanes.center_turn_lane or (may_show_other_lanes(road, pictured) and named % 2))
     return set(range(max(1, named - fewer), named + extra + 1))
 
 
-def vague(road: RoadFact, pictured: bool) -> bool:
+def may_show_other_lanes(road: RoadFact, pictured: bool) -> bool:
     """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
     return pictured and len(road.lanes.toward) < 2

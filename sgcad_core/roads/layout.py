@@ -26,7 +26,7 @@ from sgcad_core.records.specs import (
     RoadSpec,
     is_aisle,
 )
-from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
+from sgcad_core.roads.circle import Mouth, Rim, circle_roads, node_of, rim_of
 from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -63,7 +63,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
     mouths = [Mouth(leg.bearing, _angle(leg), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
-    nodes, roads = circle(rim, mouths) if rim else ([_hub(layout, legs)], [])
+    nodes, roads = circle_roads(rim, mouths) if rim else ([_hub(layout, legs)], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
         length_m = min(leg_m, _LONGEST_M.get("aisle" if is_aisle(leg) else leg.kind, leg_m))

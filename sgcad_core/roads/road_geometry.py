@@ -16,7 +16,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resa
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.records.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.roads.ramps import joined
+from sgcad_core.roads.ramps import joined_road
 
 Direction = Literal["forward", "backward"]
 
@@ -165,7 +165,7 @@ def _cut(line: Floats, at_start: bool, at_end: bool) -> Floats:
 
 def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
     """How far a ramp lies to the right of a line through its nodes, so that it meets its road's outer lane: (2,)."""
-    way = joined(road, nodes, meeting)
+    way = joined_road(road, nodes, meeting)
     if way is None:
         return np.zeros(2)
     both, width = two_way(way.road), lane_width_m(way.road)

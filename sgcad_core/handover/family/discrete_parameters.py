@@ -15,7 +15,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.handover.family.parameter import Facts, Parameter, Told, field_at, told_of
 from sgcad_core.handover.family.shifted_evasion import Delay
-from sgcad_core.handover.parallel_lanes import beside
+from sgcad_core.handover.parallel_lanes import lane_offsets
 from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import Light
 
@@ -43,7 +43,7 @@ def _stated(known: Facts, actors: Sequence[str]) -> bool:
 def _of_pair(script: Script, pair: Sequence[str]) -> list[tuple[str, Sequence[str], list[float]]]:
     """(whose, of which actors, metres to the left) of every lane that may be another."""
     poses = [_until_contact(script, a) for a in pair]
-    aside = [beside(script.graph, p) for p in poses]
+    aside = [lane_offsets(script.graph, p) for p in poses]
     turned = abs(math.remainder(float(poses[0][-1, 2] - poses[1][-1, 2]), 2 * math.pi))
     if turned < _SAME_WAY_RAD:
         both = sorted(set(aside[0]) & set(aside[1]))

@@ -24,7 +24,7 @@ _GRIP: Mapping[str | None, tuple[float, float]] = {
 """Peak friction (J. Y. Wong, Theory of Ground Vehicles, table 1.3); of an untold surface dry to wet."""
 
 
-def spreads(
+def open_parameters(
     script: Script, facts: Sequence[Mapping[str, Any]], delays: Mapping[str, Delay] | None = None
 ) -> tuple[Parameter, ...]:
     """The parameters of a script whose first contact is declared, in a fixed order.

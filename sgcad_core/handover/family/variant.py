@@ -20,7 +20,7 @@ from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.handover.family.discrete_parameters import PAIR
 from sgcad_core.handover.family.shifted_evasion import Delay, delay_of
-from sgcad_core.handover.script import DRIVEN, Script, staged
+from sgcad_core.handover.script import DRIVEN, Script, staging_for
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import body, mass_kg
@@ -34,7 +34,7 @@ _CREEPS_MPS = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Basis:
+class FamilyBasis:
     """A script ready to be varied: everybody's undisturbed line, and when the declared pair meets."""
 
     script: Script
@@ -61,14 +61,14 @@ class Basis:
         return per_m * values.get(f"{other}_lane_m", 0.0)
 
 
-def basis_of(script: Script) -> Basis | None:
+def basis_of(script: Script) -> FamilyBasis | None:
     """The basis of a family; None where the script does not begin with its declared contact, or of nobody driven."""
     contact = first_contact(script.trajectories, script.sizes)
     if script.declared is None or contact is None or not realised(script.declared, contact):
         return None
     lines: dict[str, Way] = {}
     for name in (contact.actor, contact.other):
-        with_it = staged(script, name) if _drivable(script, name) else None
+        with_it = staging_for(script, name) if _drivable(script, name) else None
         if with_it is not None:
             lines |= dict(with_it.lines) | {name: with_it.way}
     if len(lines) < len(script.trajectories):
@@ -77,7 +77,7 @@ def basis_of(script: Script) -> Basis | None:
     coupled = {n: script.coupled_to(n) for n in pair}
     delays = {n: d for n in pair if (d := delay_of(lines[n], contact.t_s)) is not None}
     crossed = {a: (b, _crossing(lines[a], lines[b], contact.t_s)) for a, b in (pair, pair[::-1])}
-    return Basis(script, lines, contact.t_s, coupled, delays, crossed)
+    return FamilyBasis(script, lines, contact.t_s, coupled, delays, crossed)
 
 
 def _crossing(line: Way, other: Way, contact_s: float) -> float:
@@ -96,7 +96,7 @@ def _drivable(script: Script, name: str) -> bool:
     return script.info(name).type in DRIVEN
 
 
-def undisturbed(basis: Basis, values: Values) -> Script:
+def undisturbed(basis: FamilyBasis, values: Values) -> Script:
     """The member's script before anything touches: motion on through whatever is there."""
     script = basis.script
     actors = tuple(_sized(a, values) for a in script.actors)
@@ -104,7 +104,7 @@ def undisturbed(basis: Basis, values: Values) -> Script:
     return replace(script, actors=actors, trajectories=tracks, grip=values.get("friction"))
 
 
-def member(basis: Basis, values: Values) -> Script | None:
+def member(basis: FamilyBasis, values: Values) -> Script | None:
     """The member with everything settled behind the contact; None where it is another crash."""
     made = undisturbed(basis, values)
     if not realised(made.declared, first_contact(made.trajectories, made.sizes)):
@@ -113,7 +113,7 @@ def member(basis: Basis, values: Values) -> Script | None:
     return settled if realised(made.declared, first_contact(settled.trajectories, made.sizes)) else None
 
 
-def prolonged(made: Script, back_s: float) -> tuple[Trajectory, ...]:
+def with_earlier_start(made: Script, back_s: float) -> tuple[Trajectory, ...]:
     """A member's motion with so much straight run before it: its contact comes that much later on its clock."""
     n = round(back_s / STEP_S)
     found = []
@@ -133,7 +133,7 @@ def _sized(info: ActorInfo, values: Values) -> ActorInfo:
     return info.model_copy(update=size)
 
 
-def _moved(basis: Basis, actor: str, values: Values) -> Trajectory:
+def _moved(basis: FamilyBasis, actor: str, values: Values) -> Trajectory:
     """An actor's motion at its pace, through its line, past the place of the contact."""
     line = basis.lines[actor]
     who = basis.owner(actor)
@@ -165,7 +165,7 @@ def _trajectory(actor: str, t: Floats, pose: Floats) -> Trajectory:
 
 
 # ------------------------------------------------------------------ behind the contact
-def _settled(made: Script, basis: Basis) -> tuple[Trajectory, ...]:
+def _settled(made: Script, basis: FamilyBasis) -> tuple[Trajectory, ...]:
     movers = [_mover(made, t) for t in made.trajectories]
     count = len(made.trajectories[0].t_s)
     table = {t.actor: t.pose for t in made.trajectories}

@@ -14,8 +14,8 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
-from sgcad_core.metrics.labels.motion_label_match import STILL_M, shown
-from sgcad_core.metrics.labels.observed_crash import STEP_S, Crash, Driven
+from sgcad_core.metrics.labels.motion_label_match import STILL_M, maneuver_shown
+from sgcad_core.metrics.labels.observed_crash import STEP_S, Crash, VehicleMotion
 from sgcad_core.metrics.rest_error import SPINS_RAD
 from sgcad_core.records.course import RestTold, Steering
 from sgcad_core.units import MPS_PER_MPH
@@ -52,12 +52,12 @@ def _vehicle(actor: str, label: VehicleLabel, crash: Crash | None) -> Iterator[t
     there = crash is not None and actor in crash.paths
     for name, judge in _JUDGES.items():
         if judge.stated(label):
-            mark = judge.right(label, Driven(crash, actor)) if there and crash is not None else 0.0
+            mark = judge.right(label, VehicleMotion(crash, actor)) if there and crash is not None else 0.0
             if mark is not None:
                 yield name, float(mark)
     told = _rest_told(label.rest)
     if told is not None:
-        marks = Driven(crash, actor).rest(told) if there and crash is not None else _all_wrong(told)
+        marks = VehicleMotion(crash, actor).rest(told) if there and crash is not None else _all_wrong(told)
         yield "rest", float(all(marks.values()))
         yield from ((f"rest_{name}", float(right)) for name, right in marks.items())
 
@@ -75,11 +75,11 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 
 
 # ------------------------------------------------------------------ fields
-def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
+def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """Every kind, told from the path up to the first contact; None for `other`."""
     kind, moved = label.maneuver, one.moved_m()
     aside = float(one.aside[-1] - one.aside[0])
-    if (told := shown(kind, moved, one.turned_deg())) is not None:
+    if (told := maneuver_shown(kind, moved, one.turned_deg())) is not None:
         return told
     if kind == "negotiating_curve":
         return moved >= STILL_M
@@ -97,13 +97,13 @@ def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
     return None
 
 
-def _slows(one: Driven) -> bool:
+def _slows(one: VehicleMotion) -> bool:
     """Whether it is slower at the contact than it was: by a fifth, and visibly."""
     fastest = float(one.speed.max(initial=0.0))
     return fastest - float(one.speed[-1]) > max(BRAKES_MPS, 0.2 * fastest) if len(one.speed) else False
 
 
-def _lane(label: VehicleLabel, one: Driven) -> bool | None:
+def _lane(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """The lane on which it starts."""
     if one.home is None:
         return False
@@ -116,19 +116,19 @@ def _lane(label: VehicleLabel, one: Driven) -> bool | None:
     return place == (wanted[label.lane] if isinstance(label.lane, str) else label.lane)
 
 
-def _speed(label: VehicleLabel, one: Driven) -> bool:
-    """Driven at some time up to the contact, to 5 % or 0.5 m/s; a standing vehicle has none."""
+def _speed(label: VehicleLabel, one: VehicleMotion) -> bool:
+    """VehicleMotion at some time up to the contact, to 5 % or 0.5 m/s; a standing vehicle has none."""
     told = (label.speed_mph or 0.0) * MPS_PER_MPH
     return bool((np.abs(one.speed - told) <= max(0.05 * told, 0.5)).any())
 
 
-def _evades(label: VehicleLabel, one: Driven) -> float:
+def _evades(label: VehicleLabel, one: VehicleMotion) -> float:
     """The share of the told deeds that show."""
     deeds = label.evasion or ()
     return sum(_brakes(one) if deed == "brake" else _steers(deed, one) for deed in deeds) / len(deeds)
 
 
-def _brakes(one: Driven) -> bool:
+def _brakes(one: VehicleMotion) -> bool:
     return brakes(one.speed[one.recent().start : one.hit])
 
 
@@ -140,7 +140,7 @@ def brakes(speed_mps: Floats) -> bool:
     return float(rate.max()) >= BRAKES_MPS2 and float(speed_mps.max() - speed_mps[-1]) >= BRAKES_MPS
 
 
-def _steers(deed: str, one: Driven) -> bool:
+def _steers(deed: str, one: VehicleMotion) -> bool:
     """To the told hand, or to either where none is told."""
     hand: Steering = "left" if deed == "steer_left" else "right" if deed == "steer_right" else "either"
     return steers(hand, one.aside[one.recent()], float(one.speed[-1]) * STEP_S if len(one.speed) else 0.0)
@@ -157,7 +157,7 @@ def steers(hand: Steering, aside_m: Floats, step_m: float) -> bool:
     return way * sign > STEERS_M or heading * sign > STEERS_RAD
 
 
-def _loses_control(label: VehicleLabel, one: Driven) -> bool | None:
+def _loses_control(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """A lost control shows as a heading that leaves the way of travel, or as a way out of the lane."""
     if not label.lost_control or len(one.before) < 3:
         return None
@@ -167,7 +167,7 @@ def _loses_control(label: VehicleLabel, one: Driven) -> bool | None:
     return bool(slip.max(initial=0.0) > math.radians(8.0) or np.abs(one.aside - one.aside[0]).max() > ASIDE_M)
 
 
-def _spins(label: VehicleLabel, one: Driven) -> bool:
+def _spins(label: VehicleLabel, one: VehicleMotion) -> bool:
     behind = one.path.pose[one.hit : one.hit + round(_SPIN_S / STEP_S) + 1, 2]
     turned = float(wrap_angle(np.diff(behind)).sum())
     return turned > SPINS_RAD if label.rest.spin == "counterclockwise" else turned < -SPINS_RAD
@@ -177,7 +177,7 @@ class _Judge(NamedTuple):
     """Whether a label states a field, and whether a motion has it right (None: cannot be judged)."""
 
     stated: Callable[[VehicleLabel], bool]
-    right: Callable[[VehicleLabel, Driven], float | bool | None]
+    right: Callable[[VehicleLabel, VehicleMotion], float | bool | None]
 
 
 _JUDGES: dict[str, _Judge] = {

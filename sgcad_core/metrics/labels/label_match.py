@@ -21,7 +21,7 @@ _LEGS = {"t": 3, FOUR_LEG: 4}
 Label = Mapping[str, Any]
 
 
-class Made(NamedTuple):
+class GeneratedCase(NamedTuple):
     """What a generated case left behind: its roads in numbers, the paths of its actors (empty if none ran)."""
 
     roads: RoadCounts
@@ -36,7 +36,7 @@ class TruthFigures(NamedTuple):
     mean_lanes: float | None
 
 
-def compare(label: Label, made: Made | None) -> dict[str, float]:
+def compare(label: Label, made: GeneratedCase | None) -> dict[str, float]:
     """field -> 1.0 right, 0.0 wrong, a share right, or an error in [0, 1]; fields left open are absent.
 
     `made` is None for a case that was refused, exhausted, failed or cannot be read.

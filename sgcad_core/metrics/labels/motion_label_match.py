@@ -98,7 +98,7 @@ def _heading_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path]) -> flo
 def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch: Touch | None) -> float | None:
     """Turning, standing and going straight, told from the path before first contact; other kinds are not judged."""
     kind = vehicle.get("manoeuvre_resolved") or vehicle.get("manoeuvre")
-    if shown(kind, 0.0, 0.0) is None:
+    if maneuver_shown(kind, 0.0, 0.0) is None:
         return None
     path = paths.get(vehicle["id"])
     if path is None:
@@ -106,10 +106,10 @@ def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch
     pose = path.pose[path.t_s <= touch.t_s] if touch else path.pose
     moved = float(np.hypot(*(pose[-1, :2] - pose[0, :2])))
     turned = math.degrees(float(wrap_angle(np.diff(pose[:, 2])).sum()))
-    return float(bool(shown(kind, moved, turned)))
+    return float(bool(maneuver_shown(kind, moved, turned)))
 
 
-def shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
+def maneuver_shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
     """Whether a way from first to last place and a turn (counterclockwise) show a maneuver; None: they cannot tell."""
     if kind in STILL:
         return moved_m < STILL_M

@@ -68,7 +68,7 @@ def _touches(paths: Mapping[str, Path], a: str, b: str) -> Iterator[tuple[float,
 
 
 @dataclass(frozen=True)
-class Driven:
+class VehicleMotion:
     """One vehicle's motion, seen from its own first contact."""
 
     crash: Crash

@@ -57,7 +57,9 @@ class Released(NamedTuple):
     at_s: float
 
 
-def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0) -> None:
+def apply_friction(
+    one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0
+) -> None:
     """Ground friction over a step; more of it where the body would not stand in the time that is left.
 
     `now_s`: world time, which only a `run` asks for.
@@ -103,7 +105,7 @@ def _turning_mps2(one: Body, drag: Drag) -> float:
     return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 
-def run_out(
+def run_out_paths(
     released: Sequence[Released],
     drags: Sequence[Drag],
     runs: Sequence[Sequence[RunOut]],

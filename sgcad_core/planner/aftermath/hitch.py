@@ -32,7 +32,7 @@ def hitched(names: tuple[str, str], first: Floats, second: Floats, behind_m: flo
     return Hitch(*names, (-behind_m, 0.0), _local(second, at))
 
 
-def pull(hitch: Hitch, a: Body, b: Body) -> bool:
+def equalize_velocities(hitch: Hitch, a: Body, b: Body) -> bool:
     """An impulse after which both ends of a hitch move alike; whether it took one."""
     at = _place(a, hitch.on_first)
     (ax, ay), (bx, by) = a.velocity_at(*at), b.velocity_at(*at)

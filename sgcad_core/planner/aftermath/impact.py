@@ -133,7 +133,7 @@ def collide(
     return True
 
 
-def hold(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> None:
+def slow_parting(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> None:
     """Slow the parting of two at a point along a normal (from first to second) by so much: they are hooked together."""
     size = by_mps / _through(compliance(first, second, at), normal, normal)
     first.push(normal[0] * size, normal[1] * size, *at)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, Rests, leaving
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
 from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
@@ -61,14 +61,14 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     return found
 
 
-def expect(scene: Scene, contacts: Sequence[Contact]) -> None:
+def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     """Tell a scene which pairs touch behind the first contact, and which of them once more."""
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
     scene.again, scene.told = further & first, further - first
 
 
-def run_out(
+def bring_to_rest(
     scene: Scene,
     behavior: BehaviorSpec,
     contacts: Sequence[Contact],
@@ -85,8 +85,8 @@ def run_out(
     if not told and not strikes and not scene.again:
         return Ended((), 0.0)
     for strike in strikes:
-        told[strike.by] = leaving(told.get(strike.by, CourseTold()))
-    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
+        told[strike.by] = leaving_the_road(told.get(strike.by, CourseTold()))
+    rests = RestFit(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
     rests.fit()
     unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
     return Ended((*unreached, *rests.missed()), rests.cost() + MISSED * len(unreached))

@@ -18,7 +18,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
-from sgcad_core.planner.aftermath.ground_friction import Released, run_out
+from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
 from sgcad_core.planner.aftermath.rollover import rolls_over
 from sgcad_core.planner.motion import STEP_S
@@ -43,14 +43,14 @@ _USUAL_SHARE = 0.6
 _SPIN_RAD = math.radians(15.0)
 
 
-def leaving(course: CourseTold) -> CourseTold:
+def leaving_the_road(course: CourseTold) -> CourseTold:
     """The course of one who strikes something beside the road: where no place is told, it leaves the road."""
     where = course.rest.where or "off_road"
     return replace(course, rest=replace(course.rest, where=where))
 
 
 @dataclass(frozen=True)
-class Rests:
+class RestFit:
     """What the vehicles of a scene are to come to."""
 
     scene: Scene
@@ -135,7 +135,7 @@ class Rests:
         upright = [not rolls_over(self.wanted[name]) for name in free]
         runs = [all_runs(at_s, drag.across, on_wheels=on) for drag, on in zip(drags, upright, strict=True)]
         released = [Released(wreck.named[name].body, at_s) for name in free]
-        each = run_out(released, drags, runs, end_s, _COARSE_S)
+        each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
             odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
             judge = partial(self._costs, name, self.wanted[name])

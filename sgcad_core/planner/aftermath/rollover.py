@@ -29,7 +29,7 @@ def rolls_over(told: CourseTold) -> bool:
     return told.rolls or told.rest.attitude not in (None, "wheels")
 
 
-def rolled(poses: Floats, hit: int, told: CourseTold) -> Floats:
+def roll_angles(poses: Floats, hit: int, told: CourseTold) -> Floats:
     """(n,) roll of (n, 3) poses whose first contact is sample `hit`, radians, positive to the right (about x, z up)."""
     first = min(hit + round(TRIPPED_S / STEP_S), len(poses) - 1)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))

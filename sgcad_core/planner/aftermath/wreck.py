@@ -13,21 +13,21 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
-from sgcad_core.planner.aftermath.ground_friction import slow
-from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, pull
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
+from sgcad_core.planner.aftermath.ground_friction import apply_friction
+from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
 from sgcad_core.planner.aftermath.wreck_bodies import (
-    Apart,
     Mover,
     Pair,
+    Separation,
     Touch,
-    all_apart,
-    apart,
-    follow,
+    center_of,
     key_of,
     last_move,
     may_meet,
-    mean,
+    separation,
+    separations,
+    set_on_script,
     shift,
     state_of,
     touch_points,
@@ -134,12 +134,12 @@ class Wreck:
     def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
         for m in self.movers:
             if not m.free:
-                follow(m, k)
+                set_on_script(m, k)
         near, fastest = self._near(pairs)
         self.now, end = k * STEP_S, (k + 1) * STEP_S
         seen = None
         while self.now < end - 1e-9:
-            step = min(self._step(near, seen or all_apart(near)), end - self.now)
+            step = min(self._step(near, seen or separations(near)), end - self.now)
             self._advance(step)
             self.now += step
             seen = self._resolve(near, k)
@@ -159,10 +159,10 @@ class Wreck:
         """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
         for a, b in near:
             if self.touches.get(key_of(a, b), -1.0) > sample * STEP_S:
-                seen = apart(a.body, b.body)
+                seen = separation(a.body, b.body)
                 shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
-    def _step(self, near: Sequence[Pair], gaps: Sequence[Apart]) -> float:
+    def _step(self, near: Sequence[Pair], gaps: Sequence[Separation]) -> float:
         """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if self.hitches else STEP_S
         for (a, b), (gap, normal) in zip(near, gaps, strict=True):
@@ -184,18 +184,18 @@ class Wreck:
             one.y += one.vy * step
             one.heading += one.spin * step
             if m.free:
-                slow(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
+                apply_friction(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
 
     # -------------------------------------------------------------- touches
-    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Apart] | None:
+    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
         """What all touches do at a moment. How far each pair is apart; None where that was changed."""
-        gaps = all_apart(near)
+        gaps = separations(near)
         touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
         if not touching and not self.hitches:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         for (a, b, seen), points in zip(touching, corners, strict=True):
-            at = mean(points)
+            at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
         for _ in range(_ROUNDS if len(touching) < 2 else _ROUNDS_OF_MANY):
             moved = False
@@ -203,7 +203,7 @@ class Wreck:
                 for at in points:
                     moved |= collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
             for hitch in self.hitches:
-                moved |= self._joined(hitch, pull)
+                moved |= self._joined(hitch, equalize_velocities)
             if not moved:
                 break
         parted = False
@@ -219,7 +219,7 @@ class Wreck:
         a, b = self.named[hitch.first], self.named[hitch.second]
         return a.free and b.free and act(hitch, a.body, b.body)
 
-    def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
+    def _touches(self, a: Mover, b: Mover, seen: Separation, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
         key = key_of(a, b)
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
@@ -228,7 +228,7 @@ class Wreck:
             return seen.gap_m < APART_M
         if seen.gap_m > 0:
             return False
-        coming = approach(a.body, b.body, mean(touch_points(a.body, b.body)), seen.normal) > 0
+        coming = approach(a.body, b.body, center_of(touch_points(a.body, b.body)), seen.normal) > 0
         if coming and seen.gap_m > -SEEN_M:
             return False
         self.touches[key] = self.now
@@ -246,7 +246,7 @@ class Wreck:
                 if one == m.name:
                     self._release(self.named[other], sample)
 
-    def _bounce(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> float:
+    def _bounce(self, a: Mover, b: Mover, seen: Separation, at: Point, sample: int) -> float:
         """Restitution of a new touch: no more than leaves the overlap to be seen at the next sample."""
         if self.now - self.touches[key_of(a, b)] > 1e-9:
             return 0.0
@@ -254,16 +254,16 @@ class Wreck:
         left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
         return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
-    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
+    def _keep_seen(self, a: Mover, b: Mover, seen: Separation, points: list[Point], sample: int) -> None:
         """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
         left = self._held_s(a, b, sample)
         if left <= 0.0:
             return
-        at = mean(points)
+        at = center_of(points)
         allowed = 0.5 * max(-seen.gap_m, 0.0) / max(left, _SHORTEST_LEFT_S)
         parting = -approach(a.body, b.body, at, seen.normal)
         if parting > allowed:
-            hold(a.body, b.body, at, seen.normal, parting - allowed)
+            slow_parting(a.body, b.body, at, seen.normal, parting - allowed)
 
     def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
         """How much longer two hold that touched; 0 or less where they may part."""
@@ -272,7 +272,7 @@ class Wreck:
             return since + _TOLD_S - self.now
         return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
 
-    def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
+    def _part(self, a: Mover, b: Mover, seen: Separation) -> bool:
         """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
         for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self.told else _HELD_S
         held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M

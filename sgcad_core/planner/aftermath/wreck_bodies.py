@@ -42,7 +42,7 @@ class Mover:
         return self.body.inverse_mass == 0.0
 
 
-class Apart(NamedTuple):
+class Separation(NamedTuple):
     """Separation along the best axis (negative: overlap) and that axis, a unit vector from the first to the second."""
 
     gap_m: float
@@ -57,7 +57,7 @@ class Touch(NamedTuple):
     second: str
 
 
-def shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
+def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
     """Move two apart along their axis (together where negative): places only, no motion comes of it."""
     total = a.body.inverse_mass + b.body.inverse_mass
     for one, sign in ((a.body, -1), (b.body, 1)):
@@ -66,9 +66,9 @@ def shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
         one.y += share * seen.normal[1]
 
 
-def all_apart(near: Sequence[Pair]) -> list[Apart]:
+def separations(near: Sequence[Pair]) -> list[Separation]:
     """How far each pair is apart."""
-    return [apart(a.body, b.body) for a, b in near]
+    return [separation(a.body, b.body) for a, b in near]
 
 
 def state_of(one: Body) -> tuple[float, float, float, float, float, float]:
@@ -87,7 +87,7 @@ def key_of(a: Mover, b: Mover) -> tuple[str, str]:
     return a.name, b.name
 
 
-def follow(m: Mover, k: int) -> None:
+def set_on_script(m: Mover, k: int) -> None:
     """Put a mover where its script has it at sample k, on the way to the next."""
     here, there = m.script[k], m.script[k + 1]
     m.body.x, m.body.y, m.body.heading = (float(v) for v in here)
@@ -107,7 +107,7 @@ def _moves(m: Mover) -> bool:
 
 
 # ------------------------------------------------------------------ two boxes, in plain floats
-def apart(a: Body, b: Body) -> Apart:
+def separation(a: Body, b: Body) -> Separation:
     """The separating-axis test: exact in sign, a lower bound of the distance where positive."""
     dx, dy = b.x - a.x, b.y - a.y
     ca, sa, cb, sb = math.cos(a.heading), math.sin(a.heading), math.cos(b.heading), math.sin(b.heading)
@@ -124,7 +124,7 @@ def apart(a: Body, b: Body) -> Apart:
         if (wide := abs(row[0]) - row[1]) > gap:
             gap, best = wide, row
     way, _, x, y = best
-    return Apart(gap, (x, y) if way >= 0 else (-x, -y))
+    return Separation(gap, (x, y) if way >= 0 else (-x, -y))
 
 
 def touch_points(a: Body, b: Body) -> list[Point]:
@@ -134,7 +134,7 @@ def touch_points(a: Body, b: Body) -> list[Point]:
     return points or [((a.x + b.x) / 2, (a.y + b.y) / 2)]
 
 
-def mean(points: list[Point]) -> Point:
+def center_of(points: list[Point]) -> Point:
     """The center of some points."""
     if len(points) == 1:
         return points[0]

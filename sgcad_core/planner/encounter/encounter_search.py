@@ -68,7 +68,7 @@ _known: dict[tuple[bytes, bytes], tuple[_Judged | None]] = {}
 """Touches of pairs of motions, some 4 KB each: other readings of a report, and other sides, try many pairs again."""
 
 
-def meet(
+def find_meeting(
     first: Motion,
     second: Motion,
     wanted: tuple[Area, Area] | None,

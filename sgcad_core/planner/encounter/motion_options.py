@@ -41,9 +41,9 @@ from sgcad_core.planner.encounter.maneuver_choices import (
     spins,
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
-from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, misfit, outside, waiting_zone
-from sgcad_core.planner.lines.axle_to_box import easiest, offset, offsets, rolled, swung, tightest
-from sgcad_core.planner.lines.path import Path, ramp, tamed
+from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, misfit, waiting_zone
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, offsets, tightest
+from sgcad_core.planner.lines.path import Path, ramp, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
@@ -208,8 +208,8 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     if role.actor.kind == "pedestrian":
         return line, line, True
     length, backing = role.size[0], role.actor.maneuver == "backing"
-    line = tamed(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
-    path = rolled(line, length, backing=backing)
+    line = widened_bends(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
+    path = box_path(line, length, backing=backing)
     drivable = bool(np.abs(line.curvature).max() < 1.1 * tightest(length))
     return replace(line, s_m=path.s_m), path, drivable
 
@@ -228,7 +228,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
     least = _LEAST_SWING / tightest(role.size[0])
     near = _SWING_ASIDE_M / max(1 - math.cos(twist.angle_rad), 1e-6)
     radius = twist.radius_m or max(min(pace.cruise_mps**2 / pace.lateral_mps2, near), least)
-    turned = swung(line, twist.angle_rad, place.station_m, radius)
+    turned = bent_before(line, twist.angle_rad, place.station_m, radius)
     if not twist.through:
         return turned
     ahead, left = offset(line, turned, place.station_m)
@@ -236,7 +236,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
     length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
     end = place.station_m - ahead + place.ahead_m
     begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
-    return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
+    return bent_before(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
 
 
 def standing(option: Option) -> Motion:
@@ -244,7 +244,7 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
+    penalty = cost_outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
 
 

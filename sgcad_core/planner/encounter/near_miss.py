@@ -47,7 +47,7 @@ _WORDS: dict[EvasiveManeuver, str] = {
 }  # fmt: skip
 
 
-class Parted(NamedTuple):
+class NearMiss(NamedTuple):
     """The encounter with the motions that part the two (None where nothing does), and what was done, in words."""
 
     encounter: Encounter | None
@@ -78,10 +78,10 @@ class _Side(NamedTuple):
         return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
 
 
-def parted(found: Encounter | None, near: NearCrash) -> Parted:
+def as_near_miss(found: Encounter | None, near: NearCrash) -> NearMiss:
     """An encounter as a near crash with the declared clearance, if there are an encounter and a way to evade it."""
     if found is None:
-        return Parted(None, ())
+        return NearMiss(None, ())
     meeting = found.meeting
     found = found._replace(meeting=meeting._replace(
         first=_stopping(found.first, meeting.first, meeting.first_s),
@@ -91,7 +91,7 @@ def parted(found: Encounter | None, near: NearCrash) -> Parted:
         _Side(found.first, meeting.first, meeting.first_s),
         _Side(found.second, meeting.second, meeting.second_s),
     )
-    none = Parted(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
+    none = NearMiss(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
     return _Parting(found, sides, near.closest_m).best(near) or none
 
 
@@ -110,7 +110,7 @@ class _Parting:
     sides: tuple[_Side, _Side]
     closest_m: float
 
-    def best(self, near: NearCrash) -> Parted | None:
+    def best(self, near: NearCrash) -> NearMiss | None:
         """As told; else with the other means that there are, and a note that says so."""
         told = [e for e in near.evasions if e.maneuver != "none"]
         follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
@@ -134,7 +134,7 @@ class _Parting:
             yield Evasion(actor=name, maneuver=maneuver)
 
     # -------------------------------------------------------------- evasions
-    def _evaded(self, evasions: list[Evasion]) -> Parted | None:
+    def _evaded(self, evasions: list[Evasion]) -> NearMiss | None:
         """The latest start and the least share that leave the clearance; usual braking before emergency braking."""
         acting = [(side, e.maneuver) for e in evasions for side in self.sides if side.id == e.actor and side.may_evade]
         if not acting:
@@ -201,10 +201,10 @@ class _Parting:
 
     def _told(
         self, acting: list[tuple[_Side, EvasiveManeuver]], most: dict[str, Reaction], share: float, onset_s: float
-    ) -> Parted:
+    ) -> NearMiss:
         motions = self._motions(most, share)
         notes = tuple(_note(side, maneuver, most[side.id], share, onset_s) for side, maneuver in acting)
-        return Parted(self._replaced(motions), notes)
+        return NearMiss(self._replaced(motions), notes)
 
     def _replaced(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> Encounter:
         meeting = self.found.meeting
@@ -212,7 +212,7 @@ class _Parting:
             first=motions[0], second=motions[1], first_s=meeting.first_s - shift_s))  # fmt: skip
 
     # -------------------------------------------------------------- nobody evades
-    def _shifted(self) -> Parted | None:
+    def _shifted(self) -> NearMiss | None:
         """One of both a little earlier or later, where that alone leaves the clearance."""
         motions = self.sides[0].motion, self.sides[1].motion
         if motions[0].standing or motions[1].standing:
@@ -223,7 +223,7 @@ class _Parting:
         by = min(found, key=abs)
         late = self.sides[0].id if by > 0 else self.sides[1].id
         words = f"nobody evades: {late} comes {abs(by):.1f} s too late to touch"
-        return Parted(self._replaced(motions, by), (words,))
+        return NearMiss(self._replaced(motions, by), (words,))
 
     def _shift(self, motions: tuple[Motion, Motion], sign: float) -> float | None:
         steps = np.arange(1, round(_MOST_SHIFT_S / _SHIFT_S) + 1) * _SHIFT_S

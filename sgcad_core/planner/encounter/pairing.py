@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from heapq import nsmallest
 from typing import NamedTuple
 
-from sgcad_core.planner.encounter.encounter_search import Meeting, meet
+from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.records.specs import Area, Contact
 
@@ -73,7 +73,7 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
     one, two = a.motion_with(b), b.motion_with(a)
     if not one.drivable or not two.drivable:
         return None
-    return meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
+    return find_meeting(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
 
 
 def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:

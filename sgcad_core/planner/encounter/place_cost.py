@@ -32,10 +32,10 @@ _UNSTEERED, _STEERED_M = 0.3, 0.4
 def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
     place = role.place.station_m
-    penalty = outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
+    penalty = cost_outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
     if role.actor.gore and role.course.passages:
         crossed = role.course.passages[0]
-        penalty = penalty + outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
+        penalty = penalty + cost_outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
     turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
     maneuver = role.actor.maneuver
     if maneuver in TURNING:
@@ -60,7 +60,7 @@ def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
     return left
 
 
-def outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
+def cost_outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
     """(n,) a cost per metre outside a span of stations."""
     return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
 

@@ -18,7 +18,7 @@ from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
 
 
-class Unfolded(NamedTuple):
+class WholeCourse(NamedTuple):
     """All that follows from an encounter, with notes, the oddity of the approach, and how much told is missed."""
 
     scene: Scene
@@ -27,7 +27,7 @@ class Unfolded(NamedTuple):
     missed: float
 
 
-Unfold = Callable[[Encounter | None, Sequence[Impact]], Unfolded]
+Unfold = Callable[[Encounter | None, Sequence[Impact]], WholeCourse]
 """Of an encounter, with the frictions and restitutions of the blow that are tried."""
 
 _TOLD_PART = 1.0
@@ -43,7 +43,7 @@ _BETTER = 0.25
 """What another encounter must gain."""
 
 
-def least_missed(found: Encounter | None, unfold: Unfold) -> Unfolded:
+def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
     """What follows from an encounter, or from one like it that leads nearer to what is told."""
     best = unfold(found, IMPACTS)
     if found is None:

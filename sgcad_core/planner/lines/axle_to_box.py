@@ -39,7 +39,7 @@ def easiest(length_m: float) -> float:
     return min(max(math.tan(_SLIP_RAD) / (REAR_AXLE * length_m), 1 / _EASY_M), tightest(length_m))
 
 
-def rolled(line: Path, length_m: float, *, backing: bool = False) -> Path:
+def box_path(line: Path, length_m: float, *, backing: bool = False) -> Path:
     """The path of the box's center where its rear axle follows a line; stations are those of the center.
 
     On a bend that is too tight for the box the point that does not slip lies between center and rear axle.
@@ -53,7 +53,7 @@ def rolled(line: Path, length_m: float, *, backing: bool = False) -> Path:
     return Path(center, line.s_m + way * behind, angle + (math.pi if backing else 0.0))
 
 
-def swung(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path:
+def bent_before(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path:
     """The line steered to another direction: it bends by an angle before a place and goes on so behind it."""
     at = line.lengths
     long = abs(angle_rad) * radius_m / (1 - _RISE)

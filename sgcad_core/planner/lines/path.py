@@ -167,7 +167,7 @@ def swing(angle: Floats, at: Floats) -> Floats:
     return turned
 
 
-def tamed(line: Path, most_per_m: float) -> Path:
+def widened_bends(line: Path, most_per_m: float) -> Path:
     """The line with tighter bends than `most_per_m` (1/m) widened: a little of the corner is cut.
 
     As tight as before where the widest window is not enough.
