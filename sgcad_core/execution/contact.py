@@ -1,6 +1,6 @@
-"""The first contact in an execution (exact box overlap over all pairs of actors), and how near two come without one.
+"""The first contact in an execution (box overlap over all pairs of actors), and the closest approach of two.
 
-Knows trajectories and sizes; not who was meant to strike whom.
+Knows trajectories and sizes; not the declared contact.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ CLEARANCE_TOLERANCE_M = 0.05
 def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
     """The earliest step at which any two boxes share a point; None if nothing touches.
 
-    Pairs are ordered by actor id, since who strikes whom cannot be seen in an overlap; of pairs that touch in
-    the same step the first in that order counts. Pairs that overlap from the start on and never move are parts
-    of one thing or scenery: skipped. Sizes are length and width, metres.
+    Pairs are ordered by actor id, since an overlap does not show the striker; of pairs that touch in the same step the
+    first in that order counts. Pairs that overlap from the start and never move are parts of one object or scenery:
+    skipped. Sizes are length and width, metres.
     """
     ordered = sorted(trajectories, key=lambda t: t.actor)
     hits = ((_first_hit(a, b, sizes), i, a, b) for i, (a, b) in enumerate(combinations(ordered, 2)))
@@ -52,7 +52,7 @@ def realised(declared: Contact | None, observed: ObservedContact | None) -> bool
 def closest_approach(
     trajectories: Sequence[Trajectory], sizes: Mapping[str, Size], pair: tuple[str, str]
 ) -> ClosestApproach | None:
-    """How near two actors come over the whole execution; None unless both are in it."""
+    """The closest approach of two actors over the whole execution; None unless both take part."""
     found = {t.actor: t for t in trajectories}
     if not set(pair) <= set(found):
         return None
@@ -66,7 +66,7 @@ def closest_approach(
 
 
 def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestApproach | None) -> bool:
-    """Whether a near crash is as declared: nobody touches anybody, and the pair comes as near as it says."""
+    """Whether a near crash is as declared: no contact, and the declared clearance of the pair."""
     if contact is not None or closest is None:
         return False
     return abs(closest.clearance_m - near.closest_m) <= CLEARANCE_TOLERANCE_M

@@ -69,9 +69,9 @@ def box_gaps(first: Floats, first_size: Size, second: Floats, second_size: Size)
 
 
 def gaps_where_near(first: Floats, first_size: Size, second: Floats, second_size: Size, near_m: float = 0.0) -> Floats:
-    """As `box_gaps` where that is at most `near_m` (0 or more); inf where circles around the boxes tell that it is not.
+    """As `box_gaps` where that is at most `near_m` (0 or more); inf where circles around the boxes show a larger gap.
 
-    Of two ways over the ground most poses lie far apart, and two centers are told apart in a fifth of the time.
+    Most poses of two motions lie far apart, and comparing centers takes a fifth of the time.
     """
     # a gap g along the best axis leaves corners no more than g * sqrt(2) apart
     reach = (math.hypot(*first_size) + math.hypot(*second_size)) / 2 + 1.5 * near_m + 1e-6
@@ -182,7 +182,8 @@ def parallel_polyline(points: Floats, left_m: float) -> Floats:
 
 
 def prolonged(points: Floats, by_m: float) -> Floats:
-    """(m + 2, 2) polyline that goes on straight at both ends, `by_m` metres; points within 1 mm of the last one go."""
+    """(m + 2, 2) polyline extended straight at both ends by `by_m` metres; points within 1 mm of the last one are
+    dropped."""
     kept = distinct(points)
     points = kept if len(kept) > 1 else points[[0, -1]]
     first, last = points[0] - points[1], points[-1] - points[-2]
@@ -214,9 +215,8 @@ def corners_of(poses: Floats, size: Size) -> Floats:
 def overlap_centers(first: Floats, first_size: Size, second: Floats, second_size: Size) -> Floats:
     """(n, 2) mean of the corners of the shared polygon of two boxes, row by row; nan where they are apart.
 
-    The same point that `overlap_polygon(...).mean(axis=0)` gives, without its walk around the polygon: the
-    corners of either box inside the other, and the crossings of their sides. (Where sides coincide exactly,
-    either way may count a corner twice.)
+    The same point as `overlap_polygon(...).mean(axis=0)` without building the polygon: the corners of either box inside
+    the other, and the crossings of their sides. (Where sides coincide exactly, either method may count a corner twice.)
     """
     theirs = corners_of(second, second_size)
     ours = corners_of(first, first_size)

@@ -1,6 +1,6 @@
-"""The drive: a driver in the ego's seat, everybody else on the relative clock, 20 steps a second.
+"""A drive: a driver controls the ego, the others follow the relative clock, 20 steps a second.
 
-Ends when the ego has touched somebody, or a while after the conflict would have been over. Knows the seat; no plugin.
+It ends when the ego has touched another actor, or some time after the conflict. Knows the driver's seat; no plugin.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
 
 AFTER_S = 5.0
-"""Of the others' clock, behind the scripted contact: who has not met by then does not meet."""
+"""Time of the others' clock after the scripted contact at which a drive ends."""
 LONGEST_S = 40.0
 _CHECKED = 20
-"""Steps between two looks whether the ego has touched anybody: one look over many steps is cheap."""
+"""Steps between two tests for overlap: one test over many steps is cheap."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What came of a drive. All trajectories have the same clock, 0 at the hand-over."""
+    """Result of a drive. All trajectories have the same clock, 0 at the hand-over."""
 
     staging: Staging
     trajectories: tuple[Trajectory, ...]
     contact: ObservedContact | None
     """The ego's first contact."""
     elsewhere: ObservedContact | None
-    """The first contact among the others before that; they do not heed each other."""
+    """The first contact among the others before that; they do not react to each other."""
     accelerations: Floats
     """(n,) that the ego took, m/s2."""
     others_s: Floats
@@ -52,7 +52,7 @@ class Drive:
 
 
 def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, factor: float = 1.0) -> Drive:
-    """Hand the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
+    """Hands the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
 
     Raises SimulationFailed where the driver is gone.
     """
@@ -66,7 +66,7 @@ def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, fac
 
 
 def task_of(staging: Staging) -> Task:
-    """What the driver is told."""
+    """The task record of a driver."""
     script, way = staging.script, staging.way
     ego = Ego.at_start(way)
     return Task(
@@ -81,7 +81,7 @@ def task_of(staging: Staging) -> Task:
 
 
 class _Run:
-    """A drive on its way."""
+    """A running drive."""
 
     def __init__(self, staging: Staging, seat: Seat, release_s: float, factor: float) -> None:
         self.staging, self.seat = staging, seat
@@ -130,7 +130,7 @@ class _Run:
         return _user(self.staging, name, line, self.clock.now_s, self.clock.rate or 1.0)
 
     def _touched(self) -> bool:
-        """Whether the ego has touched anybody in the steps since the last look."""
+        """Whether the ego has touched another actor since the last test."""
         sizes, ego = self.staging.script.sizes, self.staging.ego
         mine = np.array(self.rows[ego][-_CHECKED - 1 :])
         return any(
@@ -159,7 +159,7 @@ class _Run:
 
 
 def _user(staging: Staging, name: str, line: Way, script_s: float, rate: float, ego: Ego | None = None) -> RoadUser:
-    """A road user on its line at a script time, its clock running at a rate; the ego where it is."""
+    """A road user at a script time on its line with the rate of its clock; the ego in its own state."""
     info = staging.script.info(name)
     if ego is not None:
         course = ego.heading_rad + (math.pi if ego.backing else 0.0)

@@ -1,7 +1,7 @@
-"""What a driver can foresee: who is, or comes, before the ego on its way, and when boxes would touch.
+"""Prediction for drivers: actors ahead of the ego on its way, and times at which boxes would touch.
 
-The ego is taken to keep to its way at its present speed, the others to keep speed and direction. Knows the seat's
-records; no simulation and no driver.
+The ego is assumed to keep its way and its speed, the others speed and direction. Knows the records of the seat; no
+simulation and no driver.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Meeting(NamedTuple):
 
 
 def users_ahead(task: Task, view: View) -> list[Ahead]:
-    """Everybody whose center lies before the ego's rear on its next 150 m."""
+    """The actors with their center ahead of the ego's rear on its next 150 m."""
     stations = np.arange(view.station_m, min(view.station_m + _LOOK_M, float(task.way.s_m[-1]) + 1.0), _STEP_M)
     if len(stations) < 2:
         return []
@@ -85,7 +85,7 @@ def _ahead(view: View, user: RoadUser, stations: Floats, course: Floats, place: 
 
 
 def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) -> list[Meeting]:
-    """Who would touch the ego (or come nearer than a margin) within a horizon, soonest first."""
+    """Predicted contacts with the ego (or approaches within a margin) up to a horizon, soonest first."""
     if view.ego.speed_mps < 0.1 and all(u.speed_mps < 0.1 for u in view.others):
         return []
     t = np.arange(0.0, horizon_s + _GRAIN_S, _GRAIN_S)

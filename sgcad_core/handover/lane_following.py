@@ -22,11 +22,11 @@ from sgcad_core.roads.lane_graph import Connection, Direction, Lane, LaneGraph
 _NEAR_M = 3.5
 _TURNED_RAD = math.radians(40)
 _PER_RAD_M = 4.0
-"""A lane that points elsewhere by a radian counts as so much farther away."""
+"""Distance that counts as much as a difference in direction of one radian."""
 _FADES_M = 30.0
-"""Over which the offset from the lane's center fades."""
+"""Distance over which the offset from the center of the lane fades."""
 _TAKES_OVER_M = 16.0
-"""Over which the lane takes over from the vehicle's own bend."""
+"""Distance over which the lane replaces the vehicle's own bend."""
 _STEP_M = 0.5
 _EVERY_M = 2.0
 """Between the places of a way at which its edge is looked up."""
@@ -37,7 +37,7 @@ _TURNS: dict[str, Direction] = {"turn_left": "left", "turn_right": "right", "u_t
 
 
 class Strip(NamedTuple):
-    """A lane, or a connection across a node, as a directed line; `of`: what it is."""
+    """A lane, or a connection across a node, as a directed line."""
 
     line: Floats
     of: Lane | Connection
@@ -45,7 +45,7 @@ class Strip(NamedTuple):
 
 
 class Start(NamedTuple):
-    """Where the script ends: place, direction of travel, and how that was turning (1/m, left positive)."""
+    """End of the script: place, direction of travel, and its change (1/m, left positive)."""
 
     x_m: float
     y_m: float
@@ -56,7 +56,7 @@ class Start(NamedTuple):
 def continued_line(graph: LaneGraph, start: Start, length_m: float, maneuver: str) -> Floats:
     """(n, 2) points from a place on, half a metre apart, at least `length_m` long.
 
-    The first metres go on as the vehicle was turning, then over to the lane; straight on where no lane runs so.
+    The first metres continue the present bend and pass over to the lane; straight on where no lane fits.
     """
     here = np.array([start.x_m, start.y_m])
     at = np.arange(0.0, length_m + 2 * _STEP_M, _STEP_M)
@@ -76,7 +76,7 @@ def continued_line(graph: LaneGraph, start: Start, length_m: float, maneuver: st
 
 
 def _held(start: Start, at: Floats) -> Floats:
-    """The way on at the present bend, which straightens out."""
+    """The continuation of the present bend, which straightens out."""
     step = np.diff(at, prepend=0.0)
     bend = start.bend_per_m * np.clip(1 - at / _TAKES_OVER_M, 0.0, 1.0)
     course = start.course_rad + np.cumsum(bend * step)
@@ -97,7 +97,7 @@ def strips(graph: LaneGraph) -> Iterator[Strip]:
 
 
 def strip_at(graph: LaneGraph, here: Floats, course_rad: float) -> Strip | None:
-    """The strip that runs here and points as the vehicle moves."""
+    """The strip at a place in the direction of motion; None without one."""
     found = [(cost, i, s) for i, s in enumerate(strips(graph)) if (cost := _cost(s.line, here, course_rad)) is not None]
     return min(found)[2] if found else None
 
@@ -134,7 +134,7 @@ def _followed(graph: LaneGraph, strip: Strip, length_m: float, maneuver: str) ->
 
 
 def _connection_for(graph: LaneGraph, edge: str, lane: Lane, maneuver: str) -> Connection | None:
-    """The connection that the maneuver takes, else straight on, else any."""
+    """The connection of the maneuver, else straight on, else any."""
     leaving = graph.leaving(edge, lane.index)
     wanted = _TURNS.get(maneuver, "through")
     order = {wanted: 0, "through": 1, "right": 2, "left": 3, "u_turn": 4}
@@ -154,7 +154,7 @@ def _extended(points: Floats, length_m: float) -> Floats:
 
 # ------------------------------------------------------------------ routes
 def route_of(graph: LaneGraph, poses: Iterable[tuple[float, float, float]]) -> tuple[str, ...]:
-    """Edges along poses (x, y, course of the movement), connected, then straight on; () where no lane runs there."""
+    """Edges along poses (x, y, course of the motion), connected, then straight on; () where no lane fits."""
     found: list[str] = []
     for x, y, course in poses:
         strip = strip_at(graph, np.array([x, y]), course)

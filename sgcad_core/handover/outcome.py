@@ -1,13 +1,13 @@
-"""What a drive came to, against the script: avoided, mitigated, unchanged, worse, or lost.
+"""The outcome of a drive against the script: avoided, mitigated, unchanged, worse, or lost.
 
-    avoided     the conflict came about and the ego touched nobody
-    mitigated   it touched somebody, and clearly softer than in the script
+    avoided     the conflict came about and the ego touched no actor
+    mitigated   the ego touched an actor, clearly softer than in the script
     unchanged   as hard as in the script, within the margins of `Margins`
     worse       clearly harder
     lost        the ego never came into the conflict, so that nothing can be credited to its driver
 
-Whether the conflict came about is asked of the clock: had the ego gone on from the release in step with the others, at
-their proportion of the script's speeds, it would have touched. Knows drives; no plugin.
+Whether the conflict came about is decided on the clock: had the ego gone on from the release in step with the others,
+in proportion to the scripted speeds, it would have touched. Knows drives; no plugin.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ _GRAIN_S = 0.05
 
 
 class Margins(Record):
-    """What counts as clearly softer or harder: both by the larger delta-v of the pair."""
+    """Margins of "clearly softer" or "harder", by the larger delta-v of the pair."""
 
     share: float = 0.1
     least_mps: float = 0.5
 
 
 class DriveResult(Record):
-    """A drive's result: the figures that tables and drive.json have."""
+    """The result of a drive: the figures of tables and drive.json."""
 
     outcome: Outcome
     reason: str
@@ -52,11 +52,11 @@ class DriveResult(Record):
     scripted: Severity | None
     """Of the ego's contact in the script."""
     braked_s: float | None
-    """When it began to brake: before its contact or, if it had none, before its closest approach."""
+    """Beginning of braking before the contact or, without one, before the closest approach."""
     braked_at_ttc_s: float | None
     hardest_mps2: float
     closest_m: float
-    """Least clearance of the boxes to anybody it is not coupled to."""
+    """Least clearance to any actor that is not coupled to the ego."""
     least_ttc_s: float | None
     pet_s: float | None
     pet_reason: str
@@ -65,7 +65,7 @@ class DriveResult(Record):
 
 
 def judge_drive(drive: Drive, margins: Margins | None = None) -> DriveResult:
-    """Judge a drive."""
+    """Judges a drive."""
     staging, script = drive.staging, drive.staging.script
     infos = {a.id: a for a in script.actors}
     scripted = severity(staging.contact, script.trajectories, infos) if staging.contact else None
@@ -108,7 +108,7 @@ def _outcome(drive: Drive, now: Severity | None, scripted: Severity | None, marg
 
 
 def _lost(drive: Drive) -> str:
-    """Why the conflict never came about; empty: it did."""
+    """The reason why the conflict never came about; empty where it did."""
     clock = drive.clock
     if drive.staging.contact is None:
         return "the ego has no contact in the script"
@@ -120,7 +120,7 @@ def _lost(drive: Drive) -> str:
 
 
 def _would_touch(drive: Drive) -> bool:
-    """Whether the ego, going on in step with the others, would have touched its partner of the script."""
+    """Whether the ego, in step with the others, would have touched its partner of the script."""
     staging, clock = drive.staging, drive.clock
     contact = staging.contact
     other = contact.other if contact and contact.actor == staging.ego else contact.actor if contact else ""
@@ -163,7 +163,7 @@ def _nearness(drive: Drive) -> _Nearness:
 
 
 def _braking(drive: Drive) -> int | None:
-    """The step at which the ego began to brake harder than the report's driver did there, for good."""
+    """The step at which the ego began to brake harder than the report's driver at the same place."""
     way = drive.staging.way
     own = _own_times(drive)
     scripted = np.interp(own, way.t_s, np.gradient(way.speed_mps, STEP_S) if len(way.speed_mps) > 1 else way.speed_mps)
@@ -179,7 +179,7 @@ def _own_times(drive: Drive) -> Floats:
 
 
 def time_series(drive: Drive) -> dict[str, Any]:
-    """Over time: TTC, clearance, the ego's acceleration, and the script time of the others; rounded, None: infinite."""
+    """Time series: TTC, clearance, acceleration of the ego, script time of the others; rounded, None: infinite."""
     near = _nearness(drive)
     return {
         "t_s": [round(float(t), 2) for t in drive.ego.t_s],

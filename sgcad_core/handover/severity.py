@@ -1,4 +1,4 @@
-"""How hard a contact is: closing speed, change of velocity of both, energy, and the risk of injury that goes with it.
+"""Severity of a contact: closing speed, change of velocity of both, energy, and risk of death.
 
 One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.aftermath.impact`); masses are
 typical of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
@@ -22,7 +22,7 @@ _PEOPLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle"})
 
 
 class Struck(Record):
-    """What one of both takes from a contact."""
+    """Effect of a contact on one actor."""
 
     actor: str
     speed_mps: float
@@ -51,7 +51,7 @@ class Severity(Record):
         return max(self.first.delta_v_mps, self.second.delta_v_mps)
 
     def of(self, actor: str) -> Struck:
-        """What one of both takes."""
+        """The effect on one of the two actors."""
         return self.first if self.first.actor == actor else self.second
 
 
@@ -72,7 +72,7 @@ def severity(contact: ObservedContact, trajectories: Sequence[Trajectory], infos
 def exchanged(
     first: Body, second: Body, restitution: float = RESTITUTION, friction: float = FRICTION
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Let two that touch exchange momentum at once; the changes of velocity of their centers, m/s."""
+    """Exchanges the momentum of two touching bodies at once; the changes of velocity of their centers, m/s."""
     before = [(b.vx, b.vy) for b in (first, second)]
     at = center_of(touch_points(first, second))
     collide(first, second, at, separation(first, second).normal, restitution, friction)

@@ -1,7 +1,7 @@
 """Displacement errors: between two trajectories, and of a constant-velocity prediction.
 
-A crash worth testing is hard to predict, so the prediction error of the simplest predictor measures
-how much happens. Knows no interaction.
+The error of the simplest predictor measures how much happens, since crashes worth testing are hard to predict. Knows no
+interaction.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Whether a motion can be driven: sideways acceleration, yaw rate and slip angle of a box, and how far boxes overlap.
+"""Whether a vehicle can drive a motion: lateral acceleration, yaw rate, slip angle, and overlaps of boxes.
 
-Pure functions on trajectories. Knows sizes and the surface; not who was meant to meet whom, nor what a report tells.
+Pure functions on trajectories. Knows sizes and the surface; no declared contact and no report.
 
-The box of a vehicle rolls without slip at its rear axle (the kinematic bicycle model: R. Rajamani, Vehicle Dynamics
-and Control, ch. 2.2), which lies `REAR_AXLE` of its length behind its center, as the writer of the .xosc has it.
+The box of a vehicle rolls without slip at its rear axle (the kinematic bicycle model: R. Rajamani, Vehicle Dynamics and
+Control, ch. 2.2), which lies `REAR_AXLE` of its length behind its center, as in the .xosc.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WHEELED: frozenset[ActorKind] = frozenset(
     {"car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "trailer"}
 )
 _MOVING_MPS = 1.0
-"""A slower box tells no direction of travel."""
+"""A slower box has no direction of travel."""
 
 
 class DrivingPeaks(Record):
@@ -36,7 +36,7 @@ class DrivingPeaks(Record):
     slip_rad: float
 
     def excesses(self, surface: Surface | None) -> tuple[str, ...]:
-        """What is over its limit, in words with value and limit; empty where everything can be driven."""
+        """The exceeded limits, in words with value and limit; empty where a vehicle can drive it."""
         friction = DRIVING.friction_mps2(surface)
         rows = (
             ("lateral acceleration", self.lateral_mps2, friction, "m/s2"),
@@ -51,7 +51,7 @@ def driving_peaks(
 ) -> DrivingPeaks:
     """The peaks before the sample `until` (the first touch, which falls between that sample and the one before).
 
-    `backing`: the box is meant to travel against its heading, slip is told from that.
+    `backing`: the box travels against its heading, which the slip allows for.
     """
     x, y, heading = (np.asarray(c, dtype=float)[:until] for c in (motion.x_m, motion.y_m, motion.heading_rad))
     if len(x) < 3:
@@ -82,7 +82,7 @@ def _slip(axle: Floats, heading: Floats, *, backing: bool) -> float:
 
 # ------------------------------------------------------------------ overlaps
 def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> dict[str, int]:
-    """Actor -> the sample at which it first overlaps anybody; actors that never do are left out."""
+    """Actor -> the sample of its first overlap with any other; without one it is left out."""
     found: dict[str, int] = {}
     for a, b in combinations(motions, 2):
         if (hit := first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])) is not None:
@@ -93,9 +93,10 @@ def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> d
 def deepest_overlap(
     motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False
 ) -> tuple[float, str]:
-    """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and of whom.
+    """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and their names.
 
-    The depth is the least way that parts the boxes. Pairs that overlap in the first sample are skipped: parts of one.
+    The depth is the least distance that separates the boxes. Pairs that overlap in the first sample are skipped: parts
+    of one object.
     """
     worst, who = 0.0, ""
     for a, b in combinations(motions, 2):

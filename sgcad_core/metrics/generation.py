@@ -16,7 +16,7 @@ from sgcad_core.case.records import Finding, Stage
 
 Layer = Literal["parse", "schema", "netconvert", "references", "execution", "content"]
 LAYERS: tuple[Layer, ...] = ("parse", "schema", "netconvert", "references", "execution", "content")
-"""In the order in which an answer passes them; a file fails in the first that finds fault.
+"""In the order in which an answer passes them; a file fails in the first with a fault.
 
 parse: no document, JSON or Python to be read. schema: SUMO's, OpenSCENARIO's. netconvert: it compiles nothing.
 references: elements, lanes and places that are not there, or a file that SUMO or the player cannot take.
@@ -44,7 +44,7 @@ class FileCounts(NamedTuple):
 
 @dataclass(frozen=True)
 class AttemptRecord:
-    """One attempt of a stage and what was found wrong with it."""
+    """One attempt of a stage with its findings."""
 
     stage: Stage
     findings: tuple[Finding, ...]
@@ -56,17 +56,17 @@ class AttemptRecord:
 
     @property
     def usable(self) -> bool:
-        """Whether nothing had to be repaired or refused; it may be doubted."""
+        """Whether no finding asks for a repair or a refusal; doubts are allowed."""
         return not any(f.severity in ("repair", "refuse") for f in self.findings)
 
     @property
     def doubts(self) -> int:
-        """Number of findings that an attempt may do without."""
+        """Number of findings of severity `doubt`."""
         return sum(f.severity == "doubt" for f in self.findings)
 
     @property
     def layer(self) -> Layer | None:
-        """The layer in which it failed; None if nothing has to be repaired."""
+        """The layer in which it failed; None without a finding to repair."""
         found = {layer_of(f) for f in self.findings if f.severity == "repair"}
         return next((layer for layer in LAYERS if layer in found), None)
 
@@ -125,10 +125,10 @@ def api_error_rate(files: Iterable[FileCounts]) -> float:
 
 
 def layer_of(finding: Finding) -> Layer:
-    """The layer that a finding belongs to, by its source; what a narrative or a stranger's validator says is content.
+    """The layer of a finding, by its source; findings of narratives and of foreign validators are content.
 
-    Three sources speak of more than one: SUMO's schema names the document in its source where that is no XML,
-    OpenSCENARIO's schema places its faults by line and not by element, and the contact is content.
+    Three sources belong to more than one layer: SUMO's schema names the document where it is no XML, OpenSCENARIO's
+    schema locates faults by line and not by element, and contacts are content.
     """
     source, where = finding.source, finding.where
     if source.startswith("sumo_xsd ") or (source in FILES and not where):  # an answer without findings is unreadable
@@ -166,7 +166,7 @@ def written_files(case: CaseRecord) -> FileCounts:
 
 
 def _at_once(case: CaseRecord) -> bool:
-    """Whether it was generated, and would have been without any refinement."""
+    """Whether it was generated without any refinement."""
     return case.status == "generated" and all(a.usable for stage in FILES for a in case.of(stage)[:1])
 
 

@@ -1,4 +1,4 @@
-"""One execution in, one JSON mapping out: metrics.json. Both readings, never mixed.
+"""Measures one execution: the contents of metrics.json, in two readings that are never mixed.
 
 `paper` looks from the ego (the first vehicle, V1) at every other road user; `exact` looks at every pair,
 so that a crash between others is not lost. Infinite and undefined values are null with a reason.
@@ -96,14 +96,14 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
 
 
 def _counts(a: Track, b: Track) -> bool:
-    """Two things that never move have no conflict."""
+    """Whether one of the two moves; pairs that never move have no conflict."""
     return bool(np.ptp(a.pose[:, :2], axis=0).max() > 0.1 or np.ptp(b.pose[:, :2], axis=0).max() > 0.1)
 
 
 def _impact_speed(pairs: list[tuple[Track, Track]]) -> float | None:
     """Relative speed over the step that ends in the first overlap of any pair, m/s.
 
-    From positions, backwards: velocities are central differences, and what the contact does must not be in it.
+    From positions before the contact: velocities are central differences, which would include its effect.
     """
     first: tuple[float, float] | None = None
     for a, b in pairs:

@@ -29,20 +29,20 @@ from sgcad_core.records.specs import ActorKind, Surface
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
 BRAKED_MPS2 = 4.5
-"""Of a struck vehicle along its wheels: some of them locked or bent, its driver on the brake."""
+"""Of a struck vehicle along its wheels: some locked or bent, with the brake applied."""
 ROLLING_MPS2 = 2.2
-"""Of a vehicle that is to reach something else."""
+"""Of a vehicle that has a further contact."""
 THROWN_MPS2 = 5.5
-"""Of people, and of two-wheelers on their side, over the ground."""
+"""Of pedestrians, and of two-wheelers on their side, over the ground."""
 _TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 _REACTION_S = 0.5
 _BRAKING_MPS2 = 5.0
 _STANDS_MPS, _SHOWN_MPS = 0.02, 2.6
-"""Between the two a vehicle moves less than 0.11 m in a sample: vertices that lie nearer are dropped by players, and
-with them the moment at which it is struck."""
+"""Between these speeds a vehicle moves less than 0.11 m in a sample. Players drop vertices that lie nearer, and with
+them the moment of the impact."""
 _UNSEEN_COST = 2.0
 CLEAR_M = 0.25
-"""Actors that do not touch pass each other at least this far apart where that can be had."""
+"""Actors that do not touch pass each other at this distance or more where possible."""
 
 
 @dataclass
@@ -59,22 +59,22 @@ class Track:
     hit: int | None = None
     """Index of its first impact."""
     mass: float | None = None
-    """Its mass, where it is not that of its kind, kg."""
+    """Its mass where it differs from that of its kind, kg."""
     driven: Floats = field(init=False)
-    """Its poses where nobody touches it."""
+    """Its poses without any contact."""
 
     def __post_init__(self) -> None:
         self.driven = self.poses
 
 
 class _Settled(NamedTuple):
-    """What came of a settled scene: poses, touches, and the index of the first impact by actor."""
+    """Result of a settled scene: poses, touches, and the index of the first impact by actor."""
 
     poses: dict[str, Floats]
     touches: list[Touch]
     hits: dict[str, int | None]
     driven: list[Floats]
-    """The undisturbed poses behind it, so that they stay what their ids stand for."""
+    """The undisturbed poses; kept so that their ids stay valid as keys."""
 
 
 @dataclass
@@ -84,32 +84,32 @@ class Scene:
     count: int
     contact: int
     rolling: frozenset[str] = frozenset()
-    """Actors that have a further contact before them."""
+    """Actors with a further contact ahead."""
     surface: Surface | None = None
     tracks: dict[str, Track] = field(default_factory=dict)
     hitches: list[tuple[str, str, float]] = field(default_factory=list)
     """Tractor, trailer, and how far behind the tractor's center they are coupled."""
     touches: list[Touch] = field(default_factory=list)
-    """What touched, in order, when the scene was last settled."""
+    """Touches in order, as of the last settling."""
     runs: dict[str, RunOut] = field(default_factory=dict)
-    """How actors run out from their blow, where that was chosen."""
+    """Chosen run-out after the impact, by actor."""
     friction: float = FRICTION
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch a second time as told."""
+    """Pairs with a stated second contact."""
     told: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch behind the first contact as told."""
+    """Pairs with a stated contact after the first."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
-        """Place an actor so that its own clock shows the given time at the first contact."""
+        """Places an actor so that its own clock shows the given time at the first contact."""
         own = own_at_contact_s if motion.standing else own_at_contact_s - self.contact * STEP_S
         track = Track(actor, kind, motion.size, self.poses(motion, own_at_contact_s, brakes=brakes), motion, own)
         self.tracks[actor] = track
         return track
 
     def poses(self, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Floats:
-        """(count, 3) poses of a motion; `brakes`: it comes to a stop behind the first contact."""
+        """(count, 3) poses of a motion; `brakes`: it stops after the first contact."""
         if motion.standing:
             return np.repeat(motion.poses([own_at_contact_s]), self.count, axis=0)
         own = own_at_contact_s + clock(-self.contact, self.count - self.contact)
@@ -127,7 +127,7 @@ class Scene:
         return first
 
     def settle(self) -> None:
-        """Let everybody drive, and whatever touches push, until all stand; what was settled before is looked up."""
+        """Simulates all actors until they stand; results are cached by their causes."""
         cause = self._cause()
         if cause not in self._settled:
             wreck = self.wreck()
@@ -140,13 +140,13 @@ class Scene:
             track.poses, track.hit = found.poses[name], found.hits[name]
 
     def _cause(self) -> Hashable:
-        """All that the way to rest depends on."""
+        """All that determines the motion to rest."""
         movers = tuple((t.actor, id(t.driven), t.size, t.mass, t.motion.fixed) for t in self.tracks.values())
         chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
     def wreck(self) -> Wreck:
-        """The simulation of what follows from the first touch."""
+        """The simulation from the first touch on."""
         movers = tuple(self._mover(track) for track in self.tracks.values())
         hitches = [self._hitch(*coupled) for coupled in self.hitches]
         return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
@@ -161,12 +161,12 @@ class Scene:
         return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
     def drag(self, track: Track) -> Drag:
-        """What slows an actor of whom nothing is chosen."""
+        """Deceleration of an actor without a chosen run-out."""
         along = ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2
         return usual_drag(track.kind, DRIVING.sliding_mps2(self.surface), along)
 
     def first_contact(self) -> ObservedContact | None:
-        """The first overlap of any two actors, as any observer of the trajectories sees it."""
+        """The first overlap of any two actors, as seen in the trajectories."""
         found: tuple[int, str, str] | None = None
         for a, b in combinations(sorted(self.tracks), 2):
             one, two = self.tracks[a], self.tracks[b]
@@ -181,7 +181,8 @@ class Scene:
         return ObservedContact(actor=a, other=b, actor_area=contact_area(p, q), other_area=contact_area(q, p), t_s=t_s)
 
     def replay(self, name: str, from_s: float, to_s: float) -> Motion:
-        """An actor's track as a motion whose own time 0 is the first contact; to be met in a span of time."""
+        """The track of an actor as a motion whose own time 0 is the first contact, for an encounter within a time
+        span."""
         track = self.tracks[name]
         times = clock(-self.contact, self.count - self.contact)
         path = Path(track.poses[:, :2], times, track.poses[:, 2])
@@ -191,7 +192,7 @@ class Scene:
         return Motion(path, times, times, track.size, outside, 0.0)
 
     def trajectories(self, order: tuple[str, ...], told: Courses = NOTHING_TOLD) -> tuple[Trajectory, ...]:
-        """All tracks as records, in the given order; `told`: who rolls over."""
+        """All tracks as records, in the given order; `told`: stated courses, for rollovers."""
         return tuple(_trajectory(self.tracks[name], told.get(name)) for name in order)
 
 
@@ -209,7 +210,7 @@ def sample_speeds(poses: Floats) -> Floats:
 
 
 def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
-    """Speeds are those of the positions, taken apart before and behind an impact."""
+    """Speeds follow from the positions, separately before and after an impact."""
     poses = track.poses
     speed = sample_speeds(poses)
     if track.hit is not None and 0 < track.hit < len(poses) - 1:

@@ -19,7 +19,7 @@ HITCH_M = 1.3
 
 
 def tractors(behavior: BehaviorSpec) -> dict[str, str]:
-    """Trailer id -> id of the vehicle that tows it: of its number, else one on its road and lane."""
+    """Trailer id -> id of the vehicle that tows it: the one with its number, else one on its road."""
     vehicles = [a for a in behavior.actors if a.id.startswith("V")]
     found: dict[str, str] = {}
     for trailer in (a for a in behavior.actors if a.kind == "trailer" and not a.id.startswith("V")):
@@ -65,5 +65,5 @@ def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
 
 
 def coupling_m(size: Size) -> float:
-    """How far behind a tractor's center its trailer hangs."""
+    """Distance from the center of a tractor to its coupling, metres."""
     return size[0] / 2 + HITCH_M / 2

@@ -1,4 +1,4 @@
-"""A compiled network as a reader of narratives sees it: roads with lanes each way, headings, limits, legs of junctions.
+"""Facts of a compiled network: roads with lanes each way, headings, limits, legs of junctions.
 
 Reads the lane graph; compass is north up. Knows no narrative.
 """
@@ -19,7 +19,7 @@ BEHIND_SPLITTER_M = 60.0
 
 @dataclass(frozen=True)
 class CompiledRoad:
-    """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
+    """A compiled road: passenger lanes each way and its headings (radians, of the forward edge)."""
 
     id: str
     forward: int
@@ -33,11 +33,11 @@ class CompiledRoad:
         return self.forward + self.backward
 
     def along(self, way: Compass, tolerance_deg: float, either: bool = False) -> bool:
-        """Whether the forward edge somewhere heads that way (or, with `either`, the other way)."""
+        """Whether the forward edge has that heading somewhere (or, with `either`, the opposite one)."""
         return any(headings_agree(h, angle_of(way), tolerance_deg, either) for h in self.headings)
 
     def lanes_towards(self, way: Compass, tolerance_deg: float) -> int:
-        """Lanes of traffic that heads that way; 0 where the road runs otherwise."""
+        """Lanes of traffic with that heading; 0 where the road runs otherwise."""
         if self.along(way, tolerance_deg):
             return self.forward
         against = any(headings_agree(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
@@ -52,7 +52,7 @@ def headings_agree(heading_rad: float, way_rad: float, tolerance_deg: float, eit
 
 
 def compiled_roads(graph: LaneGraph) -> list[CompiledRoad]:
-    """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
+    """Roads with their headings at both ends and in between; the geometry of one edge represents both."""
     found = []
     for road in dict.fromkeys(road_of(edge.id)[0] for edge in graph.edges.values() if not graph.is_around(edge)):
         forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
@@ -89,7 +89,7 @@ def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
 
 
 def _leads(line: Floats, opens: bool) -> Floats:
-    """Where a leg leads from its junction; one that opens into a roundabout does so at an angle first."""
+    """Direction of a leg from its junction; at a roundabout it is taken behind the splitter island."""
     ahead: Floats = line[1] - line[0]
     if opens:
         ahead = resample(line, [min(BEHIND_SPLITTER_M, arc_lengths(line)[-1])])[0] - line[0]

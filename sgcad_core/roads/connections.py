@@ -1,4 +1,4 @@
-"""Which lane leads where at every node: the connections of a road spec.
+"""The connections of a road spec: the lanes that lead into each other at every node.
 
 Every exit of a node is reachable from every approach (a crash may need any of them): stated turns come
 first, the usual U.S. lane use fills the rest. Lanes are numbered from 0 at the right curb. Knows the spec
@@ -85,7 +85,7 @@ def _turning_round(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
 
 
 def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link]:
-    """Links with SUMO's indices: what lies beside the lanes comes first, and lanes that are closed count."""
+    """Links with SUMO's indices: lanes beside the roadway come first, and closed lanes count."""
     roads = {road.id: road for road in spec.roads}
 
     def counted(edge: str, lane: int) -> int:
@@ -100,7 +100,7 @@ def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link
 
 
 def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
-    """What lies beside the lanes goes on into its like: bicycle lanes straight across, all of it where two roads meet.
+    """Links of the lanes beside the roadway into equal ones: bicycle lanes straight across, all where two roads meet.
 
     Counted from -1, next to the lanes, outwards.
     """
@@ -162,13 +162,13 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
 
 
 def _past_closure(approach: _Way, ahead: _Way) -> list[Link]:
-    """Where a work zone begins or ends every lane that is open on both sides goes on; out of the others one merges."""
+    """At the ends of a work zone every lane that is open on both sides goes on; the others merge."""
     both = [lane for lane in approach.open if lane in ahead.open]
     return [Link(approach.edge, approach.open.index(i), ahead.edge, ahead.open.index(i)) for i in both]
 
 
 def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:
-    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit opens behind it."""
+    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit widens behind it."""
     found = []
     for way, _ in exits:
         shared = min(approach.lanes, way.lanes)
@@ -208,7 +208,7 @@ def _fork(order: list[_Exit]) -> bool:
 
 
 def _lane_uses(approach: _Way, exits: Mapping[Movement, list[_Exit]]) -> list[set[Movement]]:
-    """What each lane is for: as stated, else as usual; no lane and no exit is left without."""
+    """Movements of each lane: as stated, else the usual ones; no lane and no exit is left without."""
     stated = approach.turns if len(approach.turns) == approach.lanes else ()
     usual = _usual_uses(approach.lanes, exits)
     uses = [set(_USES[turn]) & set(exits) for turn in stated] if stated else usual
@@ -275,7 +275,7 @@ def _widening(
 
 
 def _merges_from_right(approach: _Way, target: _Exit, arriving: Sequence[_Way]) -> bool:
-    """A straighter road leads into the same exit, and this one comes from its right."""
+    """Whether a straighter road leads into the same exit and this one comes from its right."""
     straighter = [
         w for w in arriving
         if w.road not in (approach.road, target.way.road)

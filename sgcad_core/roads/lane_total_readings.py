@@ -1,6 +1,6 @@
-"""How many lanes a road may have that a narrative counts: the readings that its words allow.
+"""Possible lane totals of a road by the words of a narrative.
 
-Knows what was read of roads; no network.
+Knows the read road facts; no network.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from sgcad_core.reading.roads.road_facts import RoadFact
 
 
 def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
-    """Totals of both directions that agree with the text; empty where it does not state one for sure.
+    """Totals of both directions that agree with the text; empty where it does not state one clearly.
 
-    A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
-    not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
-    but those that the text names, and lanes told way by way leave no center lane open.
+    A divided or one-way road is skipped (one carriageway may be drawn); a center lane may be counted or not, and turn
+    lanes at the junction may come in addition. Without a diagram only the turn lanes of the text are known, and lanes
+    stated for each direction leave no center lane open.
     """
     lanes = road.lanes
     if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
@@ -31,5 +31,5 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 
 
 def may_show_other_lanes(road: RoadFact, pictured: bool) -> bool:
-    """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
+    """Whether a diagram may show other lanes than the text counts; not where lanes are stated for each direction."""
     return pictured and len(road.lanes.toward) < 2

@@ -1,4 +1,4 @@
-"""Where a ramp meets its road: at the outer lane, not at the middle. Metres; plain geometry of a spec's nodes."""
+"""The place where a ramp meets its road: at the outer lane, not at the middle. Metres; geometry of a spec's nodes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class JoinedRoad(NamedTuple):
 
 
 def joined_road(ramp: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> JoinedRoad | None:
-    """The way of a road that a one-way ramp leads into, or comes from; None where it meets none on its right side."""
+    """The direction of a road that a one-way ramp enters or leaves; None without one on its right side."""
     if ramp.kind != RAMP or (ramp.lanes_forward and ramp.lanes_backward):
         return None
     start, end = (ramp.from_node, ramp.to_node) if ramp.lanes_forward else (ramp.to_node, ramp.from_node)

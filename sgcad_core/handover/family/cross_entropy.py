@@ -1,10 +1,9 @@
 """The hardest members of a family for a driver, by cross-entropy, and a rate with importance weights.
 
 R. Y. Rubinstein, D. P. Kroese, The Cross-Entropy Method, 2004: in the space of latent standard normals a diagonal
-normal proposal is moved, round by round, to the elite of the samples, smoothed. Every sample of every round has the
-weight density of the family / density of its own proposal, so that the rate of an event under the family can be told
-from all of them (a mixture of the proposals would be tighter; this stays unbiased). Knows numpy; what is hard is asked
-of a function.
+normal proposal is moved, round by round, to the elite of the samples, smoothed. Every sample has the weight density of
+the family / density of its own proposal, so that all samples give an unbiased rate of an event under the family (a
+mixture of the proposals would be tighter). Knows numpy; the hardness is a function argument.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from sgcad_core.case.records import Floats
 ELITE = 0.2
 SMOOTHING = 0.7
 LEAST_SPREAD = 0.3
-"""Of the proposal: narrower ones give weights that nothing can be told from."""
+"""Least standard deviation of the proposal: narrower ones give useless weights."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ class Searched:
 
 
 def search(hardness: Callable[[Floats], float | None], dimensions: int, count: int, rounds: int, seed: int) -> Searched:
-    """Move a proposal towards hard samples. `hardness` of a latent vector; None: no member, counts as the least hard.
+    """Moves a proposal towards hard samples. `hardness` of a latent vector; None: no member, counts as the least hard.
 
     Each round draws count / rounds samples; the first one is the family itself (weights 1).
     """

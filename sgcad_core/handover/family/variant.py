@@ -1,10 +1,10 @@
 """One member of a family: the script with other speeds, times, offsets and sizes, and the same crash.
 
-Both of the declared pair keep their lines, run at another pace so that they come to the contact's place at its time
-(the struck one later or earlier, if so drawn), beside their lines, in other lanes and in other sizes; whose lane is
-crossed elsewhere comes as much sooner or later. A told evasion may begin later. A clock that begins earlier than the
-script goes back straight. What touches otherwise than declared is no member. Behind the contact everything is settled
-anew by the planner's wreck. Knows scripts and parameters; no file.
+The declared pair keeps its lines, at another pace so that both reach the place of the contact at its time (the struck
+one later or earlier, if so drawn), beside their lines, in other lanes and sizes; an actor that crosses a shifted lane
+comes sooner or later accordingly. A stated evasion may begin later. A clock that begins before the script continues it
+straight back. A sample with another first contact is no member. After the contact the planner simulates anew. Knows
+scripts and parameters; no file.
 """
 
 from __future__ import annotations
@@ -35,34 +35,35 @@ _CREEPS_MPS = 1.0
 
 @dataclass(frozen=True, eq=False)
 class FamilyBasis:
-    """A script ready to be varied: everybody's undisturbed line, and when the declared pair meets."""
+    """A script with the undisturbed line of every actor and the time of the declared contact."""
 
     script: Script
     lines: Mapping[str, Way]
     contact_s: float
     coupled: Mapping[str, frozenset[str]]
-    """By actor of the pair: what is coupled to it and moves with it."""
+    """By actor of the pair: actors that are coupled to it and move with it."""
     delays: Mapping[str, Delay] = field(default_factory=dict)
-    """By actor of the pair: how its braking before the contact can come later."""
+    """By actor of the pair: the possible delay of its braking before the contact."""
     crossed: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """By actor: whose line it crosses, and how much later on its own line it meets it, s a metre of that one's lane."""
+    """By actor: the one whose line it crosses, and the delay on its own line a metre of that one's lane, s/m."""
 
     def owner(self, actor: str) -> str:
-        """Whose parameters move an actor: its own, or those of what it is coupled to."""
+        """The actor whose parameters move an actor: itself, or the one that it is coupled to."""
         return next((n for n, with_it in self.coupled.items() if actor in with_it), actor)
 
     def lane_m(self, who: str, values: Values) -> float:
-        """How far to the left of the script's lane one of the pair comes."""
+        """Offset of an actor of the pair to the left of the script's lane, metres."""
         return values.get(f"{who}_lane_m", 0.0) + (values.get(f"{PAIR}_lane_m", 0.0) if who in self.coupled else 0.0)
 
     def further_s(self, who: str, values: Values) -> float:
-        """How much further on its own line's clock one is at the contact, since the other comes in another lane."""
+        """Advance of an actor on the clock of its own line at the contact, for another lane of the other one,
+        seconds."""
         other, per_m = self.crossed.get(who, ("", 0.0))
         return per_m * values.get(f"{other}_lane_m", 0.0)
 
 
 def basis_of(script: Script) -> FamilyBasis | None:
-    """The basis of a family; None where the script does not begin with its declared contact, or of nobody driven."""
+    """The basis of a family; None where the first contact is not the declared one, or no driver can control either."""
     contact = first_contact(script.trajectories, script.sizes)
     if script.declared is None or contact is None or not realised(script.declared, contact):
         return None
@@ -97,7 +98,7 @@ def _drivable(script: Script, name: str) -> bool:
 
 
 def undisturbed(basis: FamilyBasis, values: Values) -> Script:
-    """The member's script before anything touches: motion on through whatever is there."""
+    """The script of a member without contacts: motion through all obstacles."""
     script = basis.script
     actors = tuple(_sized(a, values) for a in script.actors)
     tracks = tuple(_moved(basis, t.actor, values) for t in script.trajectories)
@@ -105,7 +106,7 @@ def undisturbed(basis: FamilyBasis, values: Values) -> Script:
 
 
 def member(basis: FamilyBasis, values: Values) -> Script | None:
-    """The member with everything settled behind the contact; None where it is another crash."""
+    """The member simulated from the contact on; None where it is another crash."""
     made = undisturbed(basis, values)
     if not realised(made.declared, first_contact(made.trajectories, made.sizes)):
         return None
@@ -114,7 +115,7 @@ def member(basis: FamilyBasis, values: Values) -> Script | None:
 
 
 def with_earlier_start(made: Script, back_s: float) -> tuple[Trajectory, ...]:
-    """A member's motion with so much straight run before it: its contact comes that much later on its clock."""
+    """The motion of a member with a straight run before it, so that the contact is later by `back_s`."""
     n = round(back_s / STEP_S)
     found = []
     for t in made.trajectories:

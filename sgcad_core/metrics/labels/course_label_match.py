@@ -1,7 +1,7 @@
 """The course of an executed crash against labels: maneuvers of every kind, lanes, speeds, evasion, rest, later impacts.
 
-Everything is told from the motion and the roads; what a run says about itself is not used. docs/metrics.md lists the
-fields with what counts as right. Only fields that a label states are there.
+All marks follow from the motion and the roads; statements of the run are not used. docs/metrics.md lists the fields and
+their rules. Only fields that a label states are marked.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from sgcad_core.records.course import RestTold, Steering
 from sgcad_core.units import MPS_PER_MPH
 
 ASIDE_M = 0.8
-"""Sideways of one's lane from here on: a change of lane, a line that is crossed."""
+"""Lateral offset from the lane of a lane change or a crossed line."""
 BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
-"""Braking shows as so much deceleration over half a second, and as so much lost speed."""
+"""Least deceleration over half a second, and least loss of speed, of visible braking."""
 STEERS_M, STEERS_RAD = 0.25, math.radians(3.0)
-"""Steering aside shows as so much way sideways, or as such a heading against the lane."""
+"""Least lateral offset, or heading against the lane, of visible steering."""
 _SPIN_S = 2.5
 
 
@@ -44,7 +44,7 @@ def course_marks(label: CourseLabel, crash: Crash | None) -> dict[str, list[floa
 
 
 def vehicle_marks(label: CourseLabel, crash: Crash | None) -> dict[str, dict[str, float]]:
-    """The same vehicle by vehicle, for looking into a case."""
+    """The same marks by vehicle, to inspect a case."""
     return {actor: dict(_vehicle(actor, vehicle, crash)) for actor, vehicle in label.vehicles.items()}
 
 
@@ -76,7 +76,7 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 
 # ------------------------------------------------------------------ fields
 def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
-    """Every kind, told from the path up to the first contact; None for `other`."""
+    """Whether the path up to the first contact shows the maneuver; None for `other`."""
     kind, moved = label.maneuver, one.moved_m()
     aside = float(one.aside[-1] - one.aside[0])
     if (told := maneuver_shown(kind, moved, one.turned_deg())) is not None:
@@ -98,7 +98,7 @@ def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
 
 
 def _slows(one: VehicleMotion) -> bool:
-    """Whether it is slower at the contact than it was: by a fifth, and visibly."""
+    """Whether it is visibly slower at the contact than before: by a fifth and 1.2 m/s."""
     fastest = float(one.speed.max(initial=0.0))
     return fastest - float(one.speed[-1]) > max(BRAKES_MPS, 0.2 * fastest) if len(one.speed) else False
 
@@ -117,13 +117,13 @@ def _lane(label: VehicleLabel, one: VehicleMotion) -> bool | None:
 
 
 def _speed(label: VehicleLabel, one: VehicleMotion) -> bool:
-    """VehicleMotion at some time up to the contact, to 5 % or 0.5 m/s; a standing vehicle has none."""
+    """Whether the stated speed is driven at some time up to the contact, to 5 % or 0.5 m/s."""
     told = (label.speed_mph or 0.0) * MPS_PER_MPH
     return bool((np.abs(one.speed - told) <= max(0.05 * told, 0.5)).any())
 
 
 def _evades(label: VehicleLabel, one: VehicleMotion) -> float:
-    """The share of the told deeds that show."""
+    """The share of the stated evasive actions that are visible."""
     deeds = label.evasion or ()
     return sum(_brakes(one) if deed == "brake" else _steers(deed, one) for deed in deeds) / len(deeds)
 
@@ -141,7 +141,7 @@ def brakes(speed_mps: Floats) -> bool:
 
 
 def _steers(deed: str, one: VehicleMotion) -> bool:
-    """To the told hand, or to either where none is told."""
+    """Steering to the stated side, or to either without one."""
     hand: Steering = "left" if deed == "steer_left" else "right" if deed == "steer_right" else "either"
     return steers(hand, one.aside[one.recent()], float(one.speed[-1]) * STEP_S if len(one.speed) else 0.0)
 
@@ -158,7 +158,7 @@ def steers(hand: Steering, aside_m: Floats, step_m: float) -> bool:
 
 
 def _loses_control(label: VehicleLabel, one: VehicleMotion) -> bool | None:
-    """A lost control shows as a heading that leaves the way of travel, or as a way out of the lane."""
+    """A loss of control shows as slip, or as a path out of the lane."""
     if not label.lost_control or len(one.before) < 3:
         return None
     step = np.diff(one.before[:, :2], axis=0)
@@ -192,7 +192,7 @@ _JUDGES: dict[str, _Judge] = {
 
 
 def _in_order(impacts: Sequence[tuple[str, str]], crash: Crash) -> bool:
-    """Whether all told contacts come about in their order; others may lie between. Things are any object."""
+    """Whether all stated contacts happen in their order; others may lie between. Objects are not distinguished."""
     seen: Iterator[frozenset[str]] = iter([_pair(a, b) for _, a, b in crash.touches])
     return all(any(_pair(*told) == one for one in seen) for told in impacts)
 
@@ -202,5 +202,5 @@ def _pair(a: str, b: str) -> frozenset[str]:
 
 
 def _named(who: str) -> str:
-    """A vehicle, person or animal by its id; anything else is a thing."""
+    """The id of a vehicle, person or animal; "thing" for objects."""
     return who if who[:1] in "VPBAT" and who[1:].isdigit() else "thing"

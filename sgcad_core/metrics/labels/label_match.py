@@ -1,8 +1,9 @@
 """A result against the ground truth of its case: every field that the label states, as 1 right, 0 wrong or an error.
 
-Labels are the dictionaries of truth/<case>.json. What a run says about itself is not used: lanes and junctions are
-counted in its network, contacts found in its motion (`truth_motion`). A case without output counts as wrong. Knows
-no file.
+Labels are the dictionaries of truth/<case>.json. Statements of the run are not used: lanes and junctions are counted in
+its network, contacts found in its motion (`motion_label_match`). A case without output is wrong. Road errors follow the
+paper's formula (mean over reports) and count any error (share of reports; the published tables appear to be this one).
+Knows no file.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ Label = Mapping[str, Any]
 
 
 class GeneratedCase(NamedTuple):
-    """What a generated case left behind: its roads in numbers, the paths of its actors (empty if none ran)."""
+    """Output of a generated case: road counts, and the paths of its actors (empty without an execution)."""
 
     roads: RoadCounts
     paths: Mapping[str, Path]
 
 
 class TruthFigures(NamedTuple):
-    """What a label states of the network; None where it cannot be read."""
+    """Network figures of a label; None where it states none."""
 
     intersections: int | None
     components: int | None

@@ -1,6 +1,6 @@
-"""Motion against a label: how many vehicles, whence they came, what they did, and who first touched whom where.
+"""Motion against a label: number of vehicles, headings, maneuvers, and the first contact with its areas.
 
-Only the report's own vehicles (V1, V2, ...) are looked at. Knows paths and labels, no network and no file.
+Only vehicles of the report (V1, V2, ...) count. Knows paths and labels, no network and no file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 TURNS = {"turn_left": 1.0, "turn_right": -1.0, "u_turn": 1.0}
 STILL = ("stopped", "parked")
 STILL_M, STRAIGHT_DEG, TURNED_DEG = 2.0, 30.0, 12.0
-"""Who moves less stands; who turns less goes straight; a turn that contact cuts short has begun at 12 degrees."""
+"""A smaller displacement is standing, a smaller turn is straight; a turn that a contact cuts short has begun at 12
+degrees."""
 _VEHICLE = re.compile(r"V\d+$")
 
 
@@ -33,7 +34,7 @@ class Path(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """The first contact of an execution: who, on which sides, when."""
+    """The first contact of an execution: time, and touched area by actor."""
 
     t_s: float
     areas: Mapping[str, str]
@@ -96,7 +97,7 @@ def _heading_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path]) -> flo
 
 
 def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch: Touch | None) -> float | None:
-    """Turning, standing and going straight, told from the path before first contact; other kinds are not judged."""
+    """Turning, standing and going straight, by the path before the first contact; other kinds are not judged."""
     kind = vehicle.get("manoeuvre_resolved") or vehicle.get("manoeuvre")
     if maneuver_shown(kind, 0.0, 0.0) is None:
         return None
@@ -110,7 +111,7 @@ def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch
 
 
 def maneuver_shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
-    """Whether a way from first to last place and a turn (counterclockwise) show a maneuver; None: they cannot tell."""
+    """Whether a displacement and a turn (counterclockwise) show a maneuver; None: they cannot decide."""
     if kind in STILL:
         return moved_m < STILL_M
     if kind in TURNS:
@@ -138,7 +139,7 @@ def _contact_marks(label: Mapping[str, Any], touch: Touch | None) -> dict[str, f
 
 
 def _sides(hit: Mapping[str, Any], who: str) -> tuple[str, ...]:
-    """The side that a label names and, of a corner, the other one that is right too; empty where it names none."""
+    """The side of a label and, for a corner, the other one that is right too; empty without one."""
     told = _side(hit.get(f"{who}_area"))
     return tuple(filter(None, (told, _side(hit.get(f"{who}_area_also"))))) if told else ()
 

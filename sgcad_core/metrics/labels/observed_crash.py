@@ -1,6 +1,6 @@
-"""An executed crash as labels are held against it: who touched when, and one vehicle's way up to its own first contact.
+"""An executed crash for comparison with labels: its contacts, and one vehicle's motion up to its first contact.
 
-Told from the motion and the roads alone. Knows no label.
+Derived from the motion and the roads alone. Knows no label.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.roads.surface import RoadSurface, road_surface
 
 BEFORE_S = 3.5
-"""Time before the own first contact in which an evasion is looked for."""
+"""Time before the first contact in which an evasion is searched."""
 STEP_S = 0.05
 _APART_S = 0.15
-"""Two that touched touch again after so long apart."""
+"""Time apart after which two actors touch again."""
 _FAR_M = 8.0
-"""Beyond a lane so far off nobody starts on it."""
+"""Distance from a lane beyond which no vehicle starts in it."""
 
 
 @dataclass(frozen=True)
 class Crash:
-    """An execution as these marks see it: all actors' motion, and the roads."""
+    """An execution: motion of all actors, and the roads."""
 
     paths: Mapping[str, Path]
     graph: LaneGraph
@@ -44,7 +44,7 @@ class Crash:
 
     @cached_property
     def touches(self) -> list[tuple[float, str, str]]:
-        """Every contact's begin in order: (time, actor, actor); again only after both were apart."""
+        """The beginnings of all contacts in order: (time, actor, actor); a second one only after both were apart."""
         return sorted(hit for a, b in combinations(sorted(self.paths), 2) for hit in _touches(self.paths, a, b))
 
     def first_of(self, actor: str) -> int:
@@ -95,7 +95,7 @@ class VehicleMotion:
 
     @cached_property
     def home(self) -> tuple[Edge, Lane] | None:
-        """The lane on which it starts: the nearest that leads its way."""
+        """The lane in which it starts: the nearest in its direction."""
         heading = self.before[0, 2]
         best: tuple[float, Edge, Lane] | None = None
         for edge in self.crash.graph.edges.values():
@@ -109,12 +109,12 @@ class VehicleMotion:
 
     @cached_property
     def aside(self) -> Floats:
-        """(n,) metres to the left of the lane on which it starts, and of what goes on from it, up to the contact."""
+        """(n,) metres to the left of its first lane and its continuation, up to the contact."""
         return self._aside_of(ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2])
 
     @cached_property
     def off_line(self) -> Floats:
-        """(n,) metres to the left of the straight line on which its first lane would go on."""
+        """(n,) metres to the left of the straight continuation of its first lane."""
         return self._aside_of(self.home[1].shape if self.home else self.before[:2, :2])
 
     def _aside_of(self, line: Floats) -> Floats:
@@ -132,7 +132,7 @@ class VehicleMotion:
         return float(np.hypot(*(self.before[-1, :2] - self.before[0, :2])))
 
     def rest(self, told: RestTold) -> dict[str, bool]:
-        """Which parts of the told rest the last pose gets right."""
+        """By stated part of the rest whether the last pose is right."""
         return rest_errors(told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface).right()
 
 

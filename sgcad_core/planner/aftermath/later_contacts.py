@@ -1,6 +1,6 @@
-"""Behind the first contact: the things that wrecks strike, second contacts of the same two, rest as told.
+"""After the first contact: struck objects, second contacts of the same pair, rest as stated.
 
-Works on a scene in which everybody else is placed. Knows behaviors, scenes and roads.
+Works on a scene in which all other actors are placed. Knows behaviors, scenes and roads.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from sgcad_core.roads.surface import road_surface
 
 
 class Ended(NamedTuple):
-    """What of the course behind the first contact could not be had, in words and as a cost: 1 and more a told part."""
+    """Missed parts of the course after the first contact, in words and as a cost: 1 and more a stated part."""
 
     notes: tuple[str, ...]
     missed: float
 
 
 _ASIDE = 0.3
-"""Of a side's length: what a vehicle knocks over and pushes along is not between it and the next thing."""
+"""Share of the length of a side: what a vehicle knocks over and pushes along is not between it and the next object."""
 _THINGS = ("object", "pedestrian", "bicycle")
 
 
@@ -36,16 +36,16 @@ def pair_of(contact: Contact) -> frozenset[str]:
 
 
 def other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
-    """Whom a partner touches in a contact, and the sides of the partner and of the other one."""
+    """The other actor of a contact, and the sides of the partner and of the other one."""
     if partner == contact.striker:
         return contact.struck, (contact.striker_area, contact.struck_area)
     return contact.striker, (contact.struck_area, contact.striker_area)
 
 
 def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
-    """The contacts behind the first that are with a thing, or with somebody who stands beside the road, in order.
+    """The contacts after the first with objects or with people beside the road, in order.
 
-    A thing is struck once, by somebody who is on the road by then; who meets in the first contact is no thing.
+    An object is struck once, by an actor on the road; the two of the first contact are no objects.
     """
     actors = {a.id: a for a in behavior.actors}
     found: list[Strike] = []
@@ -62,7 +62,7 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
 
 
 def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
-    """Tell a scene which pairs touch behind the first contact, and which of them once more."""
+    """Sets the pairs of a scene that touch after the first contact, and those that touch a second time."""
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
     scene.again, scene.told = further & first, further - first
@@ -76,9 +76,9 @@ def bring_to_rest(
     graph: LaneGraph,
     impacts: Sequence[Impact] = IMPACTS,
 ) -> Ended:
-    """Bring the wrecks to rest as told, by way of the things that they strike.
+    """Brings the vehicles to rest as stated, by way of the objects that they strike.
 
-    `contacts`: those that can come about, the first one first. `impacts`: friction and restitution that are tried.
+    `contacts`: the possible ones, the first one first. `impacts`: friction and restitution to try.
     """
     strikes = strikes_of(behavior, contacts)
     told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}

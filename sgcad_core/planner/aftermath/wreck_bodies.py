@@ -1,6 +1,7 @@
-"""Who takes part in a wreck: bodies with the ways that they would go undisturbed, and what two are to each other.
+"""The bodies of the simulation after a contact: their scripts, and the separation of two.
 
-Knows one sample of the clock at most; no touches and no time. SI units.
+Knows one sample of the clock at most; no touches and no time. Two boxes in plain floats are the scalar twin of
+`geometry.plane.box_gaps`, since arrays of one row cost more than they save in small time steps. SI units.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Mover:
     script: Floats
     drag: Drag
     run: RunOut | None = None
-    """How it runs out; None: it slides with its drag."""
+    """The run-out; None: it slides with its drag."""
     free: bool = False
     hit: int | None = None
     """The last sample before its first touch takes effect."""
@@ -58,7 +59,7 @@ class Touch(NamedTuple):
 
 
 def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
-    """Move two apart along their axis (together where negative): places only, no motion comes of it."""
+    """Moves two bodies apart along their axis (together where negative), places only, without velocity."""
     total = a.body.inverse_mass + b.body.inverse_mass
     for one, sign in ((a.body, -1), (b.body, 1)):
         share = sign * by_m * one.inverse_mass / total
@@ -67,7 +68,7 @@ def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
 
 
 def separations(near: Sequence[Pair]) -> list[Separation]:
-    """How far each pair is apart."""
+    """The separation of each pair."""
     return [separation(a.body, b.body) for a, b in near]
 
 
@@ -88,7 +89,7 @@ def key_of(a: Mover, b: Mover) -> tuple[str, str]:
 
 
 def set_on_script(m: Mover, k: int) -> None:
-    """Put a mover where its script has it at sample k, on the way to the next."""
+    """Puts a body on its script at sample k, moving to the next."""
     here, there = m.script[k], m.script[k + 1]
     m.body.x, m.body.y, m.body.heading = (float(v) for v in here)
     m.body.vx, m.body.vy, m.body.spin = (float(v) for v in (there - here) / STEP_S)

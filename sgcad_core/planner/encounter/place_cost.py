@@ -1,4 +1,4 @@
-"""How ill a place on a path fits an actor's maneuver: what the search for an encounter pays for it.
+"""The cost of a place on a path for an encounter, by the maneuver of an actor.
 
 Knows one actor, its path and its drift; no time and no other actor.
 """
@@ -17,20 +17,20 @@ from sgcad_core.planner.lines.path import Path
 _ZONE_M = 12.0
 _DRIFTING = ACROSS_LANES | {"crossing_centerline", "departing_road_left", "departing_road_right"}
 _NOT_SHOWN = 2.0
-"""What a turn costs that has hardly begun, and a straight way that has turned."""
+"""Cost of a turn that has hardly begun, and of a straight maneuver that has turned."""
 _UNMOVED, _MOVED_SHARE = 1.2, 0.7
-"""Cost of a change of lane that has not begun; none from so much of a body's width to the side on, where the bodies
-still overlap by a third."""
+"""Cost of a lane change that has not begun; none from this share of a body width to the side on, where the bodies still
+overlap by a third."""
 OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
-"""Cost of each metre between the encounter and the gore that one of both is in, and how far it is then across it."""
+"""Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
-"""So long before a turn begins the box still points along the road: it starts to turn before the junction."""
+"""Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
-"""Cost of a told evasion of which less is seen before they touch."""
+"""Cost of a stated evasion of which less is visible before the contact."""
 
 
 def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
-    """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
+    """(n,) the cost of an encounter at each point of a path, by the visible maneuver and the meeting place."""
     place = role.place.station_m
     penalty = cost_outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
     if role.actor.gore and role.course.passages:
@@ -53,7 +53,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
 
 
 def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
-    """(n,) how much of a change of lane that is seen as one is still to come: 1 all of it, 0 none."""
+    """(n,) the share of a visible lane change that is still to come: 1 all of it, 0 none."""
     wanted = min(_MOVED_SHARE * (role.size[1] + role.other_width_m) / 2, abs(drift.left_m))
     moved = np.abs(drift.profile(path.s_m) - drift.before_m)
     left: Floats = np.clip(1.0 - moved / wanted, 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""The line that an actor follows over its route, and what a driver would see from it.
+"""The line of an actor along its route, with the landmarks on it.
 
 Chooses lanes, joins them through the junctions and measures the room to either side. Knows no time and no
 other actor.
@@ -30,7 +30,7 @@ _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
 _SMOOTH_MPS = 26.0
 _OVER_M = 1.0
-"""A way that comes nearer to a crosswalk's center line leads over it."""
+"""A line that comes nearer to the center line of a crosswalk crosses it."""
 
 
 class Passage(NamedTuple):
@@ -53,12 +53,12 @@ class Course:
 
     path: Path
     start_m: float
-    """Where the actor's own road begins."""
+    """Station at which the road of the actor begins."""
     end_m: float
-    """Where the last road of the route ends."""
+    """Station at which the last road of the route ends."""
     passages: tuple[Passage, ...]
     turn: Passage | None
-    """Where it turns off, if it does."""
+    """The junction of its turn; None without one."""
     lane_width_m: float
     opposite_m: float
     """To the center of the nearest lane of the other direction (left of the own lane)."""
@@ -69,25 +69,25 @@ class Course:
     """Road ids with the stations between which they are driven."""
     notes: tuple[str, ...] = ()
     crosswalks: tuple[float, ...] = ()
-    """Stations at which crosswalks lead over the way."""
+    """Stations of crosswalks."""
     beside_m: Mapping[str, float] = field(default_factory=dict)
-    """To the middle of what lies beside the road (biking, parking, shoulder, sidewalk), right of the own lane."""
+    """To the middle of what lies beside the lanes (biking, parking, shoulder, sidewalk), right of the own lane."""
     stalls: bool = False
-    """Whether one parks square to the way: an aisle of a parking lot."""
+    """Whether vehicles park square to the line: an aisle of a parking lot."""
     astray: bool = False
-    """Whether the way that was asked for does not exist: another was taken, or one off the road."""
+    """Whether the requested route does not exist: another one was taken, or one off the road."""
 
     @property
     def first_m(self) -> float:
-        """Where the first road of the route begins; before it no road supports it (a walker's has none)."""
+        """Station at which the first road of the route begins; a pedestrian has none."""
         return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
 
     def on_road(self, road: str) -> tuple[float, float] | None:
-        """Stations between which a road is driven."""
+        """Stations between which a road is driven; None for other roads."""
         return next(((a, b) for name, a, b in self.roads if name == road), None)
 
     def reversed(self) -> Course:
-        """The course of one who backs along his own lane: against its direction, from its end."""
+        """The course of backing along the same lane: against its direction, from its end."""
         passages = tuple(Passage(p.node, -p.exit_m, -p.entry_m, p.is_junction) for p in reversed(self.passages))
         roads = tuple((road, -b, -a) for road, a, b in reversed(self.roads))
         return replace(
