@@ -5,7 +5,6 @@ Knows trajectories and contacts; no simulator.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -89,7 +88,8 @@ def judge(simulator: Simulator, ours: Execution, scenario: Scenario, network: Ro
 
 def compared(name: str, ours: Execution, theirs: Execution, declared: Contact | None) -> Judgement:
     """The judgement on two executions, step by step."""
-    pairs = list(_pairs(ours.trajectories, theirs.trajectories))
+    other = {t.actor: t for t in theirs.trajectories}
+    pairs = [(t, other[t.actor]) for t in ours.trajectories if t.actor in other]
     return Judgement(
         simulator=name,
         complaints=theirs.complaints,
@@ -97,13 +97,8 @@ def compared(name: str, ours: Execution, theirs: Execution, declared: Contact | 
         observed=theirs.contact,
         declared=declared is not None,
         as_declared=realised(declared, theirs.contact),
-        short_s=max((_short_s(a, b) for a, b in pairs), default=0.0),
+        short_s=max((round(max(0.0, float(a.t_s[-1] - b.t_s[-1])), 3) for a, b in pairs), default=0.0),
     )
-
-
-def _pairs(ours: Sequence[Trajectory], theirs: Sequence[Trajectory]) -> list[tuple[Trajectory, Trajectory]]:
-    other = {t.actor: t for t in theirs}
-    return [(t, other[t.actor]) for t in ours if t.actor in other]
 
 
 def _deviation(ours: Trajectory, theirs: Trajectory) -> Deviation:
@@ -114,10 +109,6 @@ def _deviation(ours: Trajectory, theirs: Trajectory) -> Deviation:
     away = np.hypot(ours.x_m[:n] - x, ours.y_m[:n] - y)
     k = int(away.argmax())
     return Deviation(actor=ours.actor, t_s=round(float(t_s[k]), 6), distance_m=round(float(away[k]), 6))
-
-
-def _short_s(ours: Trajectory, theirs: Trajectory) -> float:
-    return round(max(0.0, float(ours.t_s[-1] - theirs.t_s[-1])), 3)
 
 
 def _contact(contact: ObservedContact | None) -> str:

@@ -62,19 +62,16 @@ def avoidance(staging: Staging, before_s: Sequence[float] = BEFORE_S) -> Avoidan
     onsets = np.arange(staging.contact_s, max(staging.contact_s - LOOK_BACK_S, -1e-9), -STEP_S)
     brake = next((t for t in onsets if _clear(staging, others, _braked(staging.way, t, full))), None)
     steer = _steered_by(staging, others, onsets)
+    at_contact_m = staging.way.station_at(staging.contact_s)
     asked = [b for b in before_s if b <= staging.contact_s]
     return Avoidance(
         brake_by_s=None if brake is None else round(staging.contact_s - float(brake), 3),
-        brake_by_m=None if brake is None else round(_left_m(staging, float(brake)), 3),
+        brake_by_m=None if brake is None else round(at_contact_m - staging.way.station_at(float(brake)), 3),
         steer_by_s=steer and round(staging.contact_s - steer[0], 3),
         steer_to=steer and steer[1],
         required_mps2={f"{b:g}": _required(staging, others, staging.contact_s - b) for b in asked},
         full_braking_mps2=full,
     )
-
-
-def _left_m(staging: Staging, onset_s: float) -> float:
-    return staging.way.station_at(staging.contact_s) - staging.way.station_at(onset_s)
 
 
 # ------------------------------------------------------------------ the others, and whether they are met

@@ -94,7 +94,8 @@ def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) ->
     size = view.ego.length_m, view.ego.width_m
     found = []
     for user in view.others:
-        if math.hypot(user.x_m - view.ego.x_m, user.y_m - view.ego.y_m) > _reach_m(view.ego, user, horizon_s):
+        reach_m = (view.ego.speed_mps + user.speed_mps) * horizon_s + view.ego.length_m + user.length_m
+        if math.hypot(user.x_m - view.ego.x_m, user.y_m - view.ego.y_m) > reach_m:
             continue
         vx, vy = user.velocity
         theirs = np.column_stack((user.x_m + vx * t, user.y_m + vy * t, np.full(len(t), user.heading_rad)))
@@ -102,7 +103,3 @@ def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) ->
         if len(hits):
             found.append(Meeting(float(t[hits[0]]), float(t[hits[-1]]), user))
     return sorted(found, key=lambda m: m.begins_s)
-
-
-def _reach_m(a: RoadUser, b: RoadUser, horizon_s: float) -> float:
-    return (a.speed_mps + b.speed_mps) * horizon_s + a.length_m + b.length_m

@@ -20,7 +20,7 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats, ObservedContact, Record, Trajectory
 from sgcad_core.execution.contact import realised
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.geometry.plane import arc_lengths, box_gaps
 from sgcad_core.handover.drive import Drive
 from sgcad_core.handover.severity import Severity, severity
 from sgcad_core.metrics import conflict, displacement
@@ -165,17 +165,10 @@ def _nearness(drive: Drive) -> _Nearness:
 def _braking(drive: Drive) -> int | None:
     """The step at which the ego began to brake harder than the report's driver at the same place."""
     way = drive.staging.way
-    own = _own_times(drive)
+    own = np.interp(arc_lengths(drive.ego.points), way.s_m, way.t_s)  # script time at the places of the ego
     scripted = np.interp(own, way.t_s, np.gradient(way.speed_mps, STEP_S) if len(way.speed_mps) > 1 else way.speed_mps)
     harder = np.flatnonzero(drive.accelerations < scripted - _BRAKES_MPS2)
     return int(harder[0]) if len(harder) else None
-
-
-def _own_times(drive: Drive) -> Floats:
-    """(n,) script time at which the report's driver was where the ego is."""
-    x, y = drive.ego.x_m, drive.ego.y_m
-    ran = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))))
-    return np.interp(ran, drive.staging.way.s_m, drive.staging.way.t_s)
 
 
 def time_series(drive: Drive) -> dict[str, Any]:

@@ -184,18 +184,13 @@ def _files(case: CaseRecord, first: bool = False) -> tuple[FileCounts, Counter[L
         written += files
         if (layer := seen.layer) is not None and layer != "content":
             layers[layer] += 1 if _only_opendrive(seen) else files
-    if not first and _died_running(case) and not layers:
+    if not first and not layers and case.status == "failed" and case.of("scenario"):  # the execution failed
         layers["execution"] += FILES["scenario"]
     return FileCounts(written, layers.total()), layers
 
 
 def _only_opendrive(attempt: AttemptRecord) -> bool:
     return {f.source for f in attempt.findings if f.severity == "repair"} == {"opendrive"}
-
-
-def _died_running(case: CaseRecord) -> bool:
-    """Whether both stages were written and the execution failed."""
-    return case.status == "failed" and bool(case.of("scenario"))
 
 
 def _sum(counts: Iterable[Counter[Layer]]) -> dict[Layer, int]:

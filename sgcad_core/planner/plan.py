@@ -175,7 +175,8 @@ class _Cast:
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
-        scene = Scene(contact + round(after / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
+        again = frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
+        scene = Scene(contact + round(after / STEP_S) + 1, contact, again, self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
@@ -205,9 +206,6 @@ class _Cast:
         """Whether an actor goes on far after the first contact: off the road, or into a further contact."""
         afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
         return afar or len(self.behavior.contacts) > 1
-
-    def _struck_again(self) -> frozenset[str]:
-        return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
 
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:

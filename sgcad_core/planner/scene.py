@@ -16,7 +16,7 @@ from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.geometry.plane import Box, Floats, Size, contact_area, first_overlap, gaps_where_near
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
-from sgcad_core.planner.aftermath.hitch import Hitch, hitched
+from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
 from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over
 from sgcad_core.planner.aftermath.wreck import Wreck
@@ -148,12 +148,11 @@ class Scene:
     def wreck(self) -> Wreck:
         """The simulation from the first touch on."""
         movers = tuple(self._mover(track) for track in self.tracks.values())
-        hitches = [self._hitch(*coupled) for coupled in self.hitches]
+        hitches = [
+            hitched((a, b), self.tracks[a].driven[self.contact], self.tracks[b].driven[self.contact], behind_m)
+            for a, b, behind_m in self.hitches
+        ]
         return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
-
-    def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
-        first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))
-        return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
         mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)

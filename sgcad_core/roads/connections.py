@@ -114,7 +114,8 @@ def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
 
 
 def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[list[_Way], list[_Way]]:
-    arriving, leaving = [], []
+    arriving: list[_Way] = []
+    leaving: list[_Way] = []
     for road in spec.roads:
         if node in (road.from_node, road.to_node):
             line = roadways[road.id].center
@@ -123,13 +124,10 @@ def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tupl
             outward: Direction = "backward" if inward == "forward" else "forward"
             h_in, h_out = (ends[1], ends[1] + math.pi) if inward == "forward" else (ends[0] + math.pi, ends[0])
             turns = road.turns_forward if inward == "forward" else road.turns_backward
-            center, more = has_center_lane(road), (road.circle, beside(road))
-            if open_ := open_lanes(road, inward):
-                more_in = (*more, open_, lanes(road, inward))
-                arriving.append(_Way(road.id, inward, road.kind, len(open_), h_in, turns, center, *more_in))
-            if open_ := open_lanes(road, outward):
-                more_out = (*more, open_, lanes(road, outward))
-                leaving.append(_Way(road.id, outward, road.kind, len(open_), h_out, (), center, *more_out))
+            for way, heading, uses, found in ((inward, h_in, turns, arriving), (outward, h_out, (), leaving)):
+                if open_ := open_lanes(road, way):
+                    more = has_center_lane(road), road.circle, beside(road), open_, lanes(road, way)
+                    found.append(_Way(road.id, way, road.kind, len(open_), heading, uses, *more))
     return arriving, leaving
 
 
@@ -194,17 +192,14 @@ def _movements(exits: list[_Exit]) -> dict[Movement, list[_Exit]]:
         straight = straight or (order[0] if abs(order[0].angle_deg) < 110 else None)
     elif straight and abs(order[1].angle_deg) - abs(straight.angle_deg) < 15 and abs(order[1].angle_deg) < THROUGH_DEG:
         straight = None
-    pivot = straight.angle_deg if straight else sum(e.angle_deg for e in order[:2]) / 2 if _fork(order) else 0.0
+    fork = len(order) > 1 and abs(order[1].angle_deg) < THROUGH_DEG
+    pivot = straight.angle_deg if straight else sum(e.angle_deg for e in order[:2]) / 2 if fork else 0.0
     found: dict[Movement, list[_Exit]] = {
         "right": [e for e in exits if e is not straight and e.angle_deg < pivot],
         "through": [straight] if straight else [],
         "left": [e for e in exits if e is not straight and e.angle_deg >= pivot],
     }
     return {movement: targets for movement, targets in found.items() if targets}
-
-
-def _fork(order: list[_Exit]) -> bool:
-    return len(order) > 1 and abs(order[1].angle_deg) < THROUGH_DEG
 
 
 def _lane_uses(approach: _Way, exits: Mapping[Movement, list[_Exit]]) -> list[set[Movement]]:

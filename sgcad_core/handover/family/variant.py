@@ -69,7 +69,7 @@ def basis_of(script: Script) -> FamilyBasis | None:
         return None
     lines: dict[str, Way] = {}
     for name in (contact.actor, contact.other):
-        with_it = staging_for(script, name) if _drivable(script, name) else None
+        with_it = staging_for(script, name) if script.info(name).type in DRIVEN else None
         if with_it is not None:
             lines |= dict(with_it.lines) | {name: with_it.way}
     if len(lines) < len(script.trajectories):
@@ -91,10 +91,6 @@ def _crossing(line: Way, other: Way, contact_s: float) -> float:
         return 0.0
     heading = float(other.pose[k[1], 2])
     return float(-step[0] * np.sin(heading) + step[1] * np.cos(heading)) / length / speed
-
-
-def _drivable(script: Script, name: str) -> bool:
-    return script.info(name).type in DRIVEN
 
 
 def undisturbed(basis: FamilyBasis, values: Values) -> Script:

@@ -252,8 +252,7 @@ def standing(option: Option) -> Motion:
 
 def in_the_way(option: Option, other: Option) -> Motion:
     """Places for an object along the line that another actor takes, `left_m` beside it."""
-    base = other.motion.path
-    return _object_on(option, base, *stand(base, other.role.place.station_m))
+    return _object_on(option, other.motion.path, *stand(other.motion.path, other.role.place.station_m))
 
 
 def in_path_of(option: Option, other: Motion, side: Area) -> Motion:

@@ -183,13 +183,10 @@ class _Parting:
         return self._least(motions, shift_s, LEAD_S[0]) > self.closest_m + _EXACT_M
 
     def _motions(self, most: dict[str, Reaction], share: float) -> tuple[Motion, Motion]:
-        first, second = (self._motion(side, most.get(side.id), share) for side in self.sides)
+        first, second = (
+            reacted(s.option, s.motion, most[s.id].scaled(share)) if s.id in most else s.motion for s in self.sides
+        )
         return first, second
-
-    def _motion(self, side: _Side, most: Reaction | None, share: float) -> Motion:
-        if most is None:
-            return side.motion
-        return reacted(side.option, side.motion, most.scaled(share))
 
     def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0, lead_s: float = LEAD_S[1]) -> float:
         """The least distance of the boxes in a scenario with that lead, metres; the first is `shift_s` later."""

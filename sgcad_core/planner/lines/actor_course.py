@@ -128,12 +128,12 @@ def _pieces(lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
         pieces.append(_Piece(lane.shape, i, False))
         if i < len(links):
             link = links[i]
-            across = link.via_shape if link is not None else _bridge(lane.shape, lanes[i + 1].shape)
+            across = link.via_shape if link is not None else _made_up_link(lane.shape, lanes[i + 1].shape)
             pieces.append(_Piece(across, i, True))
     return pieces
 
 
-def _bridge(first: Floats, second: Floats) -> Floats:
+def _made_up_link(first: Floats, second: Floats) -> Floats:
     """A made-up way from the end of one lane to the start of the next."""
     return bezier(first[-1], end_heading(first, at_end=True), second[0], end_heading(second, at_end=False))
 

@@ -168,10 +168,6 @@ def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:
     return [_way(graph, e) for e in ids if back or road_of(e)[0] != way.road]
 
 
-def _reverse(graph: LaneGraph, way: Way) -> Way:
-    return _way(graph, way.id[1:] if way.id.startswith("-") else f"-{way.id}")
-
-
 def _straightest(graph: LaneGraph, way: Way, limit_rad: float = math.radians(50)) -> Way | None:
     """The way straight on: the least heading change, connected ways first."""
     fitting = [w for w in _leaving(graph, way) if abs(turn_angle(way, w)) < limit_rad]
@@ -188,11 +184,7 @@ def _onward(graph: LaneGraph, start: Way, actor: Actor, notes: list[str]) -> tup
             return _extended(graph, found), len(found) - 2, 0.0
         notes.append(f"no way from {actor.road} to {actor.exit_road} for {actor.id}; its maneuver decides")
     wanted = TURN_RAD.get(actor.maneuver)
-    return _straight(graph, start) if wanted is None else _turning(graph, start, wanted)
-
-
-def _straight(graph: LaneGraph, start: Way) -> tuple[list[Way], int | None, float]:
-    return _extended(graph, [start]), None, 0.0
+    return (_extended(graph, [start]), None, 0.0) if wanted is None else _turning(graph, start, wanted)
 
 
 def _extended(graph: LaneGraph, ways: list[Way]) -> list[Way]:
@@ -228,7 +220,7 @@ def _fits(angle: float, wanted: float) -> bool:
 
 
 def _turned_back(graph: LaneGraph, start: Way, actor: Actor) -> tuple[list[Way], int | None, float]:
-    back = _reverse(graph, start)
+    back = _way(graph, start.id[1:] if start.id.startswith("-") else f"-{start.id}")
     if actor.exit_road not in (None, actor.road):
         reachable = [w for w in _leaving(graph, start) if w.road == actor.exit_road]
         back = reachable[0] if reachable else back
