@@ -10,7 +10,7 @@ from flows.drive.run_drive import FOLDER, Order, drive_script
 from flows.drive.script_of_case import roles_of
 from sgcad_core.config import DriveStage
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.handover.contact_figures import contact_figures, impact_told
+from sgcad_core.handover.contact_figures import contact_figures, impact_summary
 from sgcad_core.handover.outcome import OUTCOMES
 from sgcad_core.handover.script import Script
 from sgcad_core.result import CaseRecord
@@ -35,7 +35,7 @@ def contact(record: CaseRecord) -> dict[str, Any]:
 
 def impact(record: CaseRecord) -> dict[str, Any] | None:
     """What result.json tells of the scripted contact; None where nothing touches."""
-    return impact_told(script_in(record, {}), record.execution.contact if record.execution else None)
+    return impact_summary(script_in(record, {}), record.execution.contact if record.execution else None)
 
 
 def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:

@@ -37,9 +37,9 @@ from sgcad_core.formats.openscenario.writing.logical import (
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.handover.family.discrete_parameters import LIGHTS, PAIR, light_of, unvaried
 from sgcad_core.handover.family.parameter import Parameter
-from sgcad_core.handover.family.parameter_priors import spreads
+from sgcad_core.handover.family.parameter_priors import open_parameters
 from sgcad_core.handover.family.shifted_evasion import LATER_S
-from sgcad_core.handover.family.variant import Basis, basis_of, member, prolonged, undisturbed
+from sgcad_core.handover.family.variant import FamilyBasis, basis_of, member, undisturbed, with_earlier_start
 from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import BehaviorSpec
 from sgcad_core.system import temp_folders
@@ -65,7 +65,7 @@ class Family:
     """A case ready to be varied."""
 
     folder: Path
-    basis: Basis
+    basis: FamilyBasis
     parameters: tuple[Parameter, ...]
     facts: tuple[Mapping[str, Any], ...]
 
@@ -81,7 +81,7 @@ def family_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Family:
     if basis is None:
         raise BadInput(f"{folder}: its first contact is not the declared one, or of no vehicle; nothing to vary about")
     facts = tuple(json.loads((folder / "result.json").read_text(encoding="utf-8")).get("facts", ()))
-    return Family(folder, basis, spreads(script, facts, basis.delays), facts)
+    return Family(folder, basis, open_parameters(script, facts, basis.delays), facts)
 
 
 def vary(family: Family, count: int, seed: int, look: Search | None = None) -> Path:
@@ -161,13 +161,13 @@ def _logical(family: Family, ranges: Sequence[Range], behavior: BehaviorSpec) ->
     back = round((BACK * basis.contact_s + shifted) / 0.05) * 0.05
     lit = any(p.name == "light" for p in family.parameters)
     seen = behavior.model_copy(update={"light": LIGHTS[0]}) if lit else behavior
-    text = write_xosc(nominal.actors, prolonged(nominal, back), seen, "../../road.xodr", "logical")
+    text = write_xosc(nominal.actors, with_earlier_start(nominal, back), seen, "../../road.xodr", "logical")
     text = suns(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
     everybody = [_meets(basis, t.actor, back) for t in nominal.trajectories]
     return logical_xosc(text, ranges, everybody, basis.contact_s)
 
 
-def _meets(basis: Basis, actor: str, back: float) -> Meets:
+def _meets(basis: FamilyBasis, actor: str, back: float) -> Meets:
     """How an actor's motion in the logical file depends on the parameters, as `variant` has it."""
     who = basis.owner(actor)
     lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))

@@ -20,12 +20,12 @@ from flows.drive.script_of_case import egos
 from sgcad_core.case.records import Floats
 from sgcad_core.errors import ConfigError
 from sgcad_core.handover.drive import drive
-from sgcad_core.handover.family.cross_entropy import Searched, decides, search
+from sgcad_core.handover.family.cross_entropy import Searched, rank_correlations, search
 from sgcad_core.handover.family.map_elites import Cell, illuminate
 from sgcad_core.handover.family.parameter import Parameter
 from sgcad_core.handover.family.variant import member, undisturbed
-from sgcad_core.handover.outcome import Came, came
-from sgcad_core.handover.script import staged
+from sgcad_core.handover.outcome import DriveResult, judge_drive
+from sgcad_core.handover.script import staging_for
 
 ROUNDS = 5
 CLOSING_MPS = 2.5
@@ -40,7 +40,7 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
     wanted = egos(family.basis.script, "", [look.role])
     if not wanted:
         raise ConfigError(f"{family.folder}: nobody who can be driven is its {look.role}; give --role")
-    ego, seen = wanted[0][0], list[Came | None]()
+    ego, seen = wanted[0][0], list[DriveResult | None]()
     drives = _driven(family, look, ego, seen)
     dimensions, told = len(family.parameters), {}
     if look.method == "map-elites":
@@ -49,7 +49,7 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
         told = {"elites": [_elite(family, found, seen, k) | _cell(cell) for cell, k in sorted(lit.elites.items())]}
     else:
         found = search(lambda z: _hardness(drives(z)), dimensions, count, ROUNDS, seed)
-    share = decides(found.latents, found.hardness)
+    share = rank_correlations(found.latents, found.hardness)
     names = {p.name: round(float(v), 4) for p, v in zip(family.parameters, share, strict=True)}
     about = {
         "driver": look.driver.label,
@@ -63,28 +63,30 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
 
 
 # ------------------------------------------------------------------ one sample
-def _driven(family: Family, look: Search, ego: str, seen: list[Came | None]) -> Callable[[Floats], Came | None]:
+def _driven(
+    family: Family, look: Search, ego: str, seen: list[DriveResult | None]
+) -> Callable[[Floats], DriveResult | None]:
     """What a driver makes of a sample; None: no member, or lost. All of them are kept in `seen`."""
 
-    def driven(latent: Floats) -> Came | None:
+    def driven(latent: Floats) -> DriveResult | None:
         values = family.values(latent)
         result = None
         if member(family.basis, values) is not None:
-            result = came(drive(staged(undisturbed(family.basis, values), ego), look.driver.driver))
+            result = judge_drive(drive(staging_for(undisturbed(family.basis, values), ego), look.driver.driver))
         seen.append(result)
         return result if result is not None and result.outcome != "lost" else None
 
     return driven
 
 
-def _hardness(result: Came | None) -> float | None:
+def _hardness(result: DriveResult | None) -> float | None:
     """The larger delta-v where the ego touches, else minus its least clearance; None: nothing to judge."""
     if result is None:
         return None
     return result.severity.worst_delta_v_mps if result.severity else -result.closest_m
 
 
-def _judged(result: Came | None) -> tuple[float, Cell] | None:
+def _judged(result: DriveResult | None) -> tuple[float, Cell] | None:
     hardness = _hardness(result)
     if result is None or hardness is None:
         return None
@@ -95,7 +97,7 @@ def _judged(result: Came | None) -> tuple[float, Cell] | None:
 
 
 # ------------------------------------------------------------------ told
-def _rates(family: Family, found: Searched, seen: Sequence[Came | None]) -> dict[str, Any]:
+def _rates(family: Family, found: Searched, seen: Sequence[DriveResult | None]) -> dict[str, Any]:
     same = np.array([c is not None for c in seen])
     touched = np.array([c is not None and c.contact is not None for c in seen])
     inside = found.rate(same)[0]
@@ -109,7 +111,7 @@ def _rates(family: Family, found: Searched, seen: Sequence[Came | None]) -> dict
     }  # fmt: skip
 
 
-def _elite(family: Family, found: Searched, seen: Sequence[Came | None], k: int) -> dict[str, Any]:
+def _elite(family: Family, found: Searched, seen: Sequence[DriveResult | None], k: int) -> dict[str, Any]:
     one = seen[k]
     return {
         "values": family.values(found.latents[k]), "hardness": round(float(found.hardness[k]), 4),

@@ -23,9 +23,9 @@ from sgcad_core.config import DriverEntry
 from sgcad_core.errors import SgcadError
 from sgcad_core.handover.avoidance import avoidance
 from sgcad_core.handover.drive import Drive, drive
-from sgcad_core.handover.outcome import came, series
+from sgcad_core.handover.outcome import judge_drive, time_series
 from sgcad_core.handover.relative_clock import RELEASE_S
-from sgcad_core.handover.script import Script, Staging, staged
+from sgcad_core.handover.script import Script, Staging, staging_for
 from sgcad_core.system import temp_folders
 
 FOLDER = "drive"
@@ -76,7 +76,7 @@ class _Told:
 
     @staticmethod
     def of(script: Script, ego: str) -> _Told:
-        staging = staged(script, ego)
+        staging = staging_for(script, ego)
         could = avoidance(staging)
         return _Told(staging, could.model_dump(mode="json") if could else None)
 
@@ -105,9 +105,9 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
         driven = drive(staging, entry.driver, release_s=order.release_s, factor=order.factor)
     except SgcadError as fault:
         return about | {"outcome": "failed", "reason": str(fault)}
-    about |= came(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
+    about |= judge_drive(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
     about |= {"seconds": round(time.perf_counter() - started, 4)}
-    _leave(driven, about | {"series": series(driven)}, target, order)
+    _leave(driven, about | {"series": time_series(driven)}, target, order)
     return about
 
 

@@ -64,7 +64,7 @@ def frame(view: View) -> tuple[tuple[float, float], float]:
     """Middle and half the side of the square that holds every path, metres."""
     if not view.movers:
         return (0.0, 0.0), 60.0
-    points = np.vstack([np.column_stack((m.track.x_m, m.track.y_m)) for m in view.movers])
+    points = np.vstack([m.track.points for m in view.movers])
     low, high = points.min(axis=0), points.max(axis=0)
     middle = (low + high) / 2
     return (float(middle[0]), float(middle[1])), float(max((high - low).max() / 2 + MARGIN_M, 25.0))

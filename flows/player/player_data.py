@@ -159,7 +159,7 @@ class View:
 def _track(mover: Mover) -> Track:
     t = mover.track
     velocity = np.column_stack((t.speed_mps * np.cos(t.heading_rad), t.speed_mps * np.sin(t.heading_rad)))
-    pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+    pose = t.pose
     return Track(t.t_s, pose, velocity, (mover.info.length_m, mover.info.width_m))
 
 

@@ -20,8 +20,8 @@ from flows.results.levels import level_of
 from sgcad_core.case.records import Finding, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import lanes_between
-from sgcad_core.metrics.generation import AttemptSeen, CaseSeen
-from sgcad_core.metrics.labels.label_match import Made
+from sgcad_core.metrics.generation import AttemptRecord, CaseRecord
+from sgcad_core.metrics.labels.label_match import GeneratedCase
 from sgcad_core.metrics.labels.motion_label_match import Path as Motion
 from sgcad_core.roads.lane_graph import road_counts
 
@@ -62,11 +62,11 @@ class Ran:
         """Whether it ended with an executed scenario."""
         return bool(self.result["status"] == "generated")
 
-    def seen(self) -> CaseSeen:
+    def seen(self) -> CaseRecord:
         """Its attempts and their findings, for the generation figures."""
         places = sorted((self.folder / "attempts").glob("*-*"))
         attempts = (_attempt(place) for place in places if place.name.rpartition("-")[0] in _STAGES)
-        return CaseSeen(self.result["status"], tuple(attempts))
+        return CaseRecord(self.result["status"], tuple(attempts))
 
 
 @dataclass(frozen=True)
@@ -175,13 +175,13 @@ def _labels(truth: Path, cases: Sequence[str]) -> Iterator[tuple[str, Mapping[st
 
 
 # ------------------------------------------------------------------ one case
-def made_of(folder: Path, result: Mapping[str, Any]) -> Made | None:
+def made_of(folder: Path, result: Mapping[str, Any]) -> GeneratedCase | None:
     """What a generated case left behind, to hold against its truth; None if nothing, or nothing readable."""
     try:
         if result.get("status") != "generated":
             return None
         roads = road_counts(lanes_between((folder / "road.net.xml").read_text(encoding="utf-8")))
-        return Made(roads, paths_of(folder, result))
+        return GeneratedCase(roads, paths_of(folder, result))
     except (OSError, ValueError, KeyError, TypeError, InvalidOutput):
         return None
 
@@ -206,9 +206,9 @@ def paths_of(folder: Path, result: Mapping[str, Any]) -> dict[str, Motion]:
     return found
 
 
-def _attempt(place: Path) -> AttemptSeen:
+def _attempt(place: Path) -> AttemptRecord:
     findings = json.loads((place / "findings.json").read_text(encoding="utf-8"))
-    return AttemptSeen(_STAGES[place.name.rpartition("-")[0]], tuple(Finding(**f) for f in findings))
+    return AttemptRecord(_STAGES[place.name.rpartition("-")[0]], tuple(Finding(**f) for f in findings))
 
 
 def _json(file: Path) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from sgcad_core.case.driver_io import STEP_S, Task, View
-from sgcad_core.handover.foresight import Ahead, ahead, meetings
+from sgcad_core.handover.foresight import Ahead, meetings, users_ahead
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Careful:
 
     def _perceived(self, view: View) -> set[str]:
         """Road users that have been a risk for at least the evaluation time."""
-        risks = {a.user.actor for a in ahead(self.task, view) if self._risk(view, a)}
+        risks = {a.user.actor for a in users_ahead(self.task, view) if self._risk(view, a)}
         self._seen_s = {name: self._seen_s.get(name, view.t_s) for name in risks}
         return {n for n, since in self._seen_s.items() if view.t_s - since >= self.config.evaluation_s - 1e-9}
 
@@ -69,7 +69,7 @@ class Careful:
             return False
         if any(m.user.actor in perceived for m in meetings(self.task, view, self.config.critical_s)):
             return True
-        return any(a.user.actor in perceived and self._closes_in(view, a) for a in ahead(self.task, view))
+        return any(a.user.actor in perceived and self._closes_in(view, a) for a in users_ahead(self.task, view))
 
     def _closes_in(self, view: View, a: Ahead) -> bool:
         """The regulation's time to collision, along the lane: gap over speed difference."""

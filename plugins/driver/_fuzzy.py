@@ -24,7 +24,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from sgcad_core.case.driver_io import STEP_S, Task, View
-from sgcad_core.handover.foresight import Ahead, ahead
+from sgcad_core.handover.foresight import Ahead, users_ahead
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Fuzzy:
         return self._braking_mps2
 
     def _counting(self, view: View) -> list[Ahead]:
-        return [a for a in ahead(self.task, view) if a.gap_m > -view.ego.length_m and self._lateral(view, a)]
+        return [a for a in users_ahead(self.task, view) if a.gap_m > -view.ego.length_m and self._lateral(view, a)]
 
     def _lateral(self, view: View, a: Ahead) -> bool:
         """The lateral check: in the strip, or there before the ego has passed (headways with a margin of 0.1 s)."""

@@ -16,7 +16,7 @@ import math
 from pydantic import Field
 
 from sgcad_core.case.driver_io import Command, Seat, Task, View
-from sgcad_core.handover.foresight import Ahead, ahead, meetings
+from sgcad_core.handover.foresight import Ahead, meetings, users_ahead
 from sgcad_core.interfaces import Driver
 
 _CREEP_MPS = 0.5
@@ -51,7 +51,7 @@ class _Seat(Seat):
 
     def act(self, view: View) -> Command:
         """The least acceleration that the free road and every leader allow."""
-        seen = ahead(self._task, view)
+        seen = users_ahead(self._task, view)
         leaders = [(a.gap_m, a.along_mps) for a in seen if a.aside_m <= 0.2 and a.gap_m > -1.0]
         leaders += self._foreseen(view, seen) + self._line(view, seen)
         free = self._free(view)

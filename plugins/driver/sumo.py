@@ -19,8 +19,8 @@ from plugins.driver._sumo_messages import Begin, End, Habits, Mover, Place, Step
 from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import SimulationFailed
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.handover.foresight import Ahead, ahead
-from sgcad_core.handover.route import poses_of, route_of
+from sgcad_core.handover.foresight import Ahead, users_ahead
+from sgcad_core.handover.lane_following import poses_of, route_of
 from sgcad_core.interfaces import Driver
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.system.worker_process import Worker
@@ -73,7 +73,9 @@ class _Seat(Seat):
 
     def act(self, view: View) -> Command:
         """The acceleration towards SUMO's speed."""
-        before = {a.user.actor: a for a in ahead(self._task, view) if a.aside_m <= _IN_THE_WAY_M and a.gap_m > -1.0}
+        before = {
+            a.user.actor: a for a in users_ahead(self._task, view) if a.aside_m <= _IN_THE_WAY_M and a.gap_m > -1.0
+        }
         movers = tuple(
             self._leader(view, before[u.actor]) if u.actor in before else self._mover(u) for u in view.others
         )

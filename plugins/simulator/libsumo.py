@@ -13,7 +13,6 @@ from pydantic import Field
 
 from sgcad_core.case.records import Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.execution.contact import poses
 from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.formats.xml import parse_xml

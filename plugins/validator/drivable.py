@@ -12,7 +12,7 @@ from typing import ClassVar, Literal
 
 from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
-from sgcad_core.metrics.drivability import WHEELED, deepest, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 
@@ -40,7 +40,7 @@ class Drivable(Validator):
 
     def _at_rest(self, scenario: Scenario, behavior: BehaviorSpec) -> list[Finding]:
         """At most one finding: boxes that overlap after all have come to rest."""
-        depth, pair = deepest(scenario.planned, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
+        depth, pair = deepest_overlap(scenario.planned, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
         what, remedy = "two boxes overlap at rest", "let them push each other apart"
         found = Finding(
             source="drivable", severity=self.odd, what=what, where=pair, value=f"{depth:.2f} m", remedy=remedy
@@ -56,6 +56,8 @@ def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Acto
     for actor in behavior.actors:
         if actor.kind not in WHEELED or actor.id not in motions:
             continue
-        seen = driven(motions[actor.id], sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+        seen = driving_peaks(
+            motions[actor.id], sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"
+        )
         if over := seen.excesses(behavior.surface):
             yield actor, over

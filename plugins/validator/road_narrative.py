@@ -23,8 +23,8 @@ from sgcad_core.reading.layout.legs_used import ahead, legs_used, turns_off
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.text.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.records.specs import Compass
-from sgcad_core.roads.compiled_facts import DrawnRoad, drawn_roads, junctions, near
-from sgcad_core.roads.lane_total_readings import allowed_totals, vague
+from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads, headings_agree, junctions
+from sgcad_core.roads.lane_total_readings import allowed_totals, may_show_other_lanes
 
 _finding = Finder("road_narrative")
 
@@ -53,7 +53,7 @@ class RoadNarrative(Validator):
         except InvalidOutput:
             return []
         facts = evidence.report.reading.roads
-        drawn, legs, pictured = drawn_roads(graph), junctions(graph), bool(evidence.report.diagrams)
+        drawn, legs, pictured = compiled_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         found = [
             *_not_drawn(facts), *_no_circle(facts, graph), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
             *self._paths(facts, legs, pictured),
@@ -120,10 +120,12 @@ class RoadNarrative(Validator):
 
     def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
         """Bearings at which no leg is drawn."""
-        return [leg for leg in legs if not any(near(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)]
+        return [
+            leg for leg in legs if not any(headings_agree(angle_of(leg), at, self.tolerance_deg + 15) for at in drawn)
+        ]
 
     # -------------------------------------------------------------- directions of travel
-    def _directions(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+    def _directions(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
         divided = any(road.lanes.divided for road in facts.streets)
         for v in facts.crash.vehicles:
             in_stall = v.maneuver == "backing" and facts.junction.kind == PARKING_LOT
@@ -136,13 +138,13 @@ class RoadNarrative(Validator):
             remedy = f"give a road lanes that head {word}; x is east, y is north"
             yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
 
-    def _carries(self, road: DrawnRoad, way: Compass, divided: bool) -> bool:
+    def _carries(self, road: CompiledRoad, way: Compass, divided: bool) -> bool:
         """Whether traffic may head that way; one carriageway of a divided road may stand for both."""
         tolerance = self.tolerance_deg + 15
         return bool(road.lanes_towards(way, tolerance)) or (divided and road.along(way, tolerance, either=True))
 
     # -------------------------------------------------------------- one-way
-    def _one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+    def _one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
         if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
             return  # it is not known which of the roads is meant
         for road in facts.streets:
@@ -156,16 +158,16 @@ class RoadNarrative(Validator):
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
                 yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=(along(road, either),))
 
-    def _on_axis(self, road: RoadFact, drawn: list[DrawnRoad]) -> list[DrawnRoad]:
+    def _on_axis(self, road: RoadFact, drawn: list[CompiledRoad]) -> list[CompiledRoad]:
         axis = road.axis
         return [d for d in drawn if axis and d.along(axis, self.tolerance_deg, either=True)]
 
     # -------------------------------------------------------------- lanes
-    def _lanes(self, facts: RoadFacts, drawn: list[DrawnRoad], pictured: bool) -> Iterator[Finding]:
+    def _lanes(self, facts: RoadFacts, drawn: list[CompiledRoad], pictured: bool) -> Iterator[Finding]:
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
-            searched = drawn if vague(road, pictured) else here
+            searched = drawn if may_show_other_lanes(road, pictured) else here
             if not allowed or not here or any(d.total in allowed for d in searched):
                 continue
             low, high = min(allowed), max(allowed)
@@ -175,7 +177,7 @@ class RoadNarrative(Validator):
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
             yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
 
-    def _lanes_one_way(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+    def _lanes_one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
         """Lanes of one direction: those that the text counts, and at least the number of a vehicle's stated lane.
 
         If the layout that the rules read has other lanes there, the text contradicts itself, and it is not known which
@@ -202,7 +204,7 @@ class RoadNarrative(Validator):
                 yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds)
 
     # -------------------------------------------------------------- limits
-    def _limits(self, facts: RoadFacts, drawn: list[DrawnRoad]) -> Iterator[Finding]:
+    def _limits(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
         for road in facts.streets:
             here = self._on_axis(road, drawn)
             limit = road.speed_limit_mph
@@ -242,7 +244,7 @@ def _adds_up(road: RoadFact) -> bool:
     return total is None or (total - named in (0, 1) if len(road.lanes.toward) > 1 else named < total)
 
 
-def _ids(roads: list[DrawnRoad]) -> str:
+def _ids(roads: list[CompiledRoad]) -> str:
     return "roads " + ", ".join(d.id for d in roads[:6])
 
 

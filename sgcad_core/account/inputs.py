@@ -19,7 +19,7 @@ from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash
 from sgcad_core.reading.reading import Reading
 from sgcad_core.records.facts import Fact, Value
-from sgcad_core.roads.compiled_facts import DrawnRoad, drawn_roads
+from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads
 from sgcad_core.roads.lane_graph import LaneGraph
 
 
@@ -40,9 +40,9 @@ class Made:
         return parse_net(self.network.net_xml or "<net/>")
 
     @cached_property
-    def drawn(self) -> list[DrawnRoad]:
+    def drawn(self) -> list[CompiledRoad]:
         """The roads of the graph with their lanes and headings."""
-        return drawn_roads(self.graph)
+        return compiled_roads(self.graph)
 
     @cached_property
     def sizes(self) -> Mapping[str, Size]:
@@ -57,10 +57,7 @@ class Made:
     @cached_property
     def crash(self) -> Crash:
         """The execution as the scorers see it."""
-        paths = {
-            name: Path(t.t_s, np.column_stack((t.x_m, t.y_m, t.heading_rad)), self.sizes[name])
-            for name, t in self.tracks.items()
-        }
+        paths = {name: Path(t.t_s, t.pose, self.sizes[name]) for name, t in self.tracks.items()}
         return Crash(paths, self.graph)
 
     @cached_property

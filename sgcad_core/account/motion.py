@@ -17,7 +17,7 @@ from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
 from sgcad_core.metrics.labels.course_label_match import vehicle_marks
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
-from sgcad_core.metrics.labels.observed_crash import Driven
+from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.rest_error import attitude_of
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Fact, Value
@@ -104,7 +104,7 @@ def _lane(made: Made, who: str, value: Value) -> Seen | None:
     if side not in ("left", "right", "middle") and not isinstance(side, int):
         return None
     marks = _marks(made, who, VehicleLabel(lane=side))
-    one = Driven(made.crash, who)
+    one = VehicleMotion(made.crash, who)
     if not marks or one.home is None:
         return None
     edge, lane = one.home
@@ -115,7 +115,7 @@ def _lane(made: Made, who: str, value: Value) -> Seen | None:
 def _spin_deg(made: Made, who: str, value: Value) -> Seen | None:
     if not isinstance(value, int | float):
         return None
-    one = Driven(made.crash, who)
+    one = VehicleMotion(made.crash, who)
     turned = abs(math.degrees(float(wrap_angle(np.diff(one.path.pose[one.hit :, 2])).sum())))
     return Seen(abs(turned - float(value)) <= _SPIN_DEG, round(turned), f"it turns by {turned:.0f} degrees")
 

@@ -16,7 +16,7 @@ from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.closures import tapers
-from sgcad_core.roads.compiled_facts import DrawnRoad, junctions, near
+from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.lane_total_readings import allowed_totals
 
@@ -69,7 +69,7 @@ def _road(made: Made, road: RoadFact, name: str, value: Value) -> Seen | None:
     return _lane_kind(made, here, name, value)
 
 
-def _lanes(made: Made, road: RoadFact, here: list[DrawnRoad], name: str, value: int) -> Seen:
+def _lanes(made: Made, road: RoadFact, here: list[CompiledRoad], name: str, value: int) -> Seen:
     """A counted total with the readings that its words allow; of one carriageway, or of both where that is open."""
     wanted = allowed_totals(road, made.pictured) or {value, 2 * value if name == "lanes_each_way" else value}
     counts = {n for d in here for n in ((d.total, d.forward, d.backward) if road.lanes.divided else (d.total,))}
@@ -80,7 +80,7 @@ def _lanes(made: Made, road: RoadFact, here: list[DrawnRoad], name: str, value: 
     return Seen(bool(counts & wanted), seen, f"drawn: {seen or 'no such road'}")
 
 
-def _lanes_one_way(made: Made, here: list[DrawnRoad], way: str, value: int) -> Seen | None:
+def _lanes_one_way(made: Made, here: list[CompiledRoad], way: str, value: int) -> Seen | None:
     if way not in _WAYS:
         return None
     counts = sorted({d.lanes_towards(_WAYS[way], TOLERANCE_DEG) for d in here} - {0})
@@ -89,12 +89,12 @@ def _lanes_one_way(made: Made, here: list[DrawnRoad], way: str, value: int) -> S
     return Seen(fits, ", ".join(map(str, counts)), f"drawn: {counts or 'none'} that way")
 
 
-def _curved(road: DrawnRoad) -> bool:
+def _curved(road: CompiledRoad) -> bool:
     turns = [abs(math.remainder(b - a, 2 * math.pi)) for a, b in pairwise(road.headings)]
     return bool(turns) and max(sum(turns), *turns) > CURVED_RAD
 
 
-def _lane_kind(made: Made, here: list[DrawnRoad], name: str, value: Value) -> Seen | None:
+def _lane_kind(made: Made, here: list[CompiledRoad], name: str, value: Value) -> Seen | None:
     """One-way, center turn lane, turn lanes, median."""
     if name == "one_way":
         one = any(not d.forward or not d.backward for d in here)
@@ -147,7 +147,7 @@ def _stem(made: Made, value: Value) -> Seen | None:
     if value not in COMPASS:
         return None
     legs = [leg for found in junctions(made.graph) if len(found) > 2 for leg in found]
-    fits = any(near(angle_of(value), leg, TOLERANCE_DEG + 15) for leg in legs)
+    fits = any(headings_agree(angle_of(value), leg, TOLERANCE_DEG + 15) for leg in legs)
     seen = ", ".join(sorted({compass_of_angle(leg) for leg in legs}))
     return Seen(fits, seen, f"legs lie {seen or 'nowhere'}")
 

@@ -17,7 +17,7 @@ from sgcad_core.metrics.rest_error import COMPASS_DEG
 from sgcad_core.reading.language import rule, values
 from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
-from sgcad_core.roads.compiled_facts import near
+from sgcad_core.roads.compiled_facts import headings_agree
 
 _AT_SIGN, _AROUND, _ON_LEG = rule("account.at_sign"), rule("account.around"), rule("account.on_leg")
 _LEG_DEG = 50.0
@@ -103,7 +103,7 @@ def _on_leg(made: Made, sentence: Sentence) -> Iterator[Item]:
     at = made.crash.paths[walker].pose[made.crash.first_of(walker), :2]
     bearing = math.atan2(float(at[1]) - hub[1], float(at[0]) - hub[0])
     wanted = match["way"].upper()[0]
-    fits = near(bearing, math.radians(90.0 - COMPASS_DEG[wanted]), _LEG_DEG)
+    fits = headings_agree(bearing, math.radians(90.0 - COMPASS_DEG[wanted]), _LEG_DEG)
     about = ("leg", walker, wanted)
     yield _item(fits, sentence, about, f"{walker} on the {match['way'].lower()} leg", "it is struck elsewhere")
 

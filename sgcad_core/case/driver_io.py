@@ -65,6 +65,10 @@ class Way:
         s, pose = self._by_station
         return np.column_stack([np.interp(s_m, s, pose[:, i]) for i in range(3)])
 
+    def poses_when(self, t_s: Floats) -> Floats:
+        """(m, 3) poses at script times; clamped to the ends."""
+        return np.column_stack([np.interp(t_s, self.t_s, self.pose[:, i]) for i in range(3)])
+
     def speed_at(self, t_s: float) -> float:
         """How fast the report's driver was at a script time."""
         return float(np.interp(t_s, self.t_s, self.speed_mps))

@@ -135,6 +135,16 @@ class Trajectory(Record):
     """About its long axis, positive to the right; None: on its wheels all the way."""
 
     @property
+    def pose(self) -> Floats:
+        """(n, 3) x, y and heading."""
+        return np.column_stack((self.x_m, self.y_m, self.heading_rad))
+
+    @property
+    def points(self) -> Floats:
+        """(n, 2) x and y."""
+        return np.column_stack((self.x_m, self.y_m))
+
+    @property
     def rolls(self) -> Floats:
         """Roll at every instant, radians."""
         return np.zeros(len(self.t_s)) if self.roll_rad is None else self.roll_rad
@@ -148,6 +158,11 @@ class ObservedContact(Record):
     actor_area: Area
     other_area: Area
     t_s: float
+
+    def is_of(self, contact: Contact) -> bool:
+        """Whether it is between the actors of a declared contact, on the declared areas."""
+        seen = {self.actor: self.actor_area, self.other: self.other_area}
+        return seen == {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
 
 
 class ClosestApproach(Record):

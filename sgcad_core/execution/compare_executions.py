@@ -1,11 +1,10 @@
-"""Two executions of one scenario compared: does another player replay what ours does, and is the contact the same?
+"""Comparison of two executions of one scenario by different simulators: motion and first contact.
 
 Knows trajectories and contacts; no simulator.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -30,13 +29,13 @@ class Deviation(Record):
 
 
 class Judgement(Record):
-    """What another simulator made of a scenario that ours has executed."""
+    """The execution of a scenario by another simulator, compared with ours."""
 
     simulator: str
     failure: str = ""
-    """Why it did not run there; everything else is then empty."""
+    """Reason of a failure; all else is then empty."""
     complaints: tuple[str, ...] = ()
-    """Errors and unsupported elements that it told, though it ran."""
+    """Errors and unsupported elements reported in a successful run."""
     deviation: Deviation | None = None
     observed: ObservedContact | None = None
     declared: bool = False
@@ -44,25 +43,25 @@ class Judgement(Record):
     as_declared: bool = False
     """Whether its first contact is the declared one."""
     short_s: float = 0.0
-    """How much earlier than ours it ends, seconds."""
+    """Time by which it ends earlier than ours, seconds."""
 
     @property
     def loaded(self) -> bool:
-        """It ran, and without a complaint."""
+        """Whether it ran without a complaint."""
         return not self.failure and not self.complaints
 
     @property
     def same_motion(self) -> bool:
-        """All actors move as in ours, to the end."""
+        """Whether all actors move as in ours, to the end."""
         near = self.deviation is not None and self.deviation.distance_m <= TOLERANCE_M
         return near and self.short_s == 0.0
 
     def summary(self) -> dict[str, Any]:
-        """All of it as result.json and metrics.json have it, JSON-able."""
+        """All fields for result.json and metrics.json, JSON-able."""
         return self.model_dump() | {"loaded": self.loaded, "same_motion": self.same_motion}
 
     def lines(self) -> list[str]:
-        """What is to be told: nothing where it agrees."""
+        """Messages on differences; empty where both agree."""
         if self.failure:
             return [f"{self.simulator}: did not run: {self.failure}"]
         told = [f"{self.simulator}: {complaint}" for complaint in self.complaints]
@@ -78,7 +77,7 @@ class Judgement(Record):
 
 
 def judge(simulator: Simulator, ours: Execution, scenario: Scenario, network: RoadNetwork) -> Judgement:
-    """Execute in another simulator and compare. Its failure is a judgement, not an error; raises MissingTool."""
+    """Executes in another simulator and compares. Its failure is a judgement, not an error; raises MissingTool."""
     name = type(simulator).__name__.lower()
     try:
         theirs = simulator.execute(scenario, network)
@@ -89,7 +88,8 @@ def judge(simulator: Simulator, ours: Execution, scenario: Scenario, network: Ro
 
 def compared(name: str, ours: Execution, theirs: Execution, declared: Contact | None) -> Judgement:
     """The judgement on two executions, step by step."""
-    pairs = list(_pairs(ours.trajectories, theirs.trajectories))
+    other = {t.actor: t for t in theirs.trajectories}
+    pairs = [(t, other[t.actor]) for t in ours.trajectories if t.actor in other]
     return Judgement(
         simulator=name,
         complaints=theirs.complaints,
@@ -97,27 +97,18 @@ def compared(name: str, ours: Execution, theirs: Execution, declared: Contact | 
         observed=theirs.contact,
         declared=declared is not None,
         as_declared=realised(declared, theirs.contact),
-        short_s=max((_short_s(a, b) for a, b in pairs), default=0.0),
+        short_s=max((round(max(0.0, float(a.t_s[-1] - b.t_s[-1])), 3) for a, b in pairs), default=0.0),
     )
 
 
-def _pairs(ours: Sequence[Trajectory], theirs: Sequence[Trajectory]) -> list[tuple[Trajectory, Trajectory]]:
-    other = {t.actor: t for t in theirs}
-    return [(t, other[t.actor]) for t in ours if t.actor in other]
-
-
 def _deviation(ours: Trajectory, theirs: Trajectory) -> Deviation:
-    """At the times of ours that theirs has."""
+    """The deviation at the times of ours that theirs covers."""
     n = int(np.searchsorted(ours.t_s, theirs.t_s[-1] + 1e-6))
     t_s = ours.t_s[:n]
     x, y = (np.interp(t_s, theirs.t_s, values) for values in (theirs.x_m, theirs.y_m))
     away = np.hypot(ours.x_m[:n] - x, ours.y_m[:n] - y)
     k = int(away.argmax())
     return Deviation(actor=ours.actor, t_s=round(float(t_s[k]), 6), distance_m=round(float(away[k]), 6))
-
-
-def _short_s(ours: Trajectory, theirs: Trajectory) -> float:
-    return round(max(0.0, float(ours.t_s[-1] - theirs.t_s[-1])), 3)
 
 
 def _contact(contact: ObservedContact | None) -> str:

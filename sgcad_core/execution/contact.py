@@ -1,6 +1,6 @@
-"""The first contact in an execution (exact box overlap over all pairs of actors), and how near two come without one.
+"""The first contact in an execution (box overlap over all pairs of actors), and the closest approach of two.
 
-Knows trajectories and sizes; not who was meant to strike whom.
+Knows trajectories and sizes; not the declared contact.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 
 from sgcad_core.case.records import ClosestApproach, ObservedContact, Trajectory
 from sgcad_core.geometry.distances import box_distances
-from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, contact_area
-from sgcad_core.records.specs import Area, Contact, NearCrash
+from sgcad_core.geometry.plane import Box, Size, contact_area, first_overlap
+from sgcad_core.records.specs import Contact, NearCrash
 
 STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""
@@ -25,9 +25,9 @@ CLEARANCE_TOLERANCE_M = 0.05
 def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
     """The earliest step at which any two boxes share a point; None if nothing touches.
 
-    Pairs are ordered by actor id, since who strikes whom cannot be seen in an overlap; of pairs that touch in
-    the same step the first in that order counts. Pairs that overlap from the start on and never move are parts
-    of one thing or scenery: skipped. Sizes are length and width, metres.
+    Pairs are ordered by actor id, since an overlap does not show the striker; of pairs that touch in the same step the
+    first in that order counts. Pairs that overlap from the start and never move are parts of one object or scenery:
+    skipped. Sizes are length and width, metres.
     """
     ordered = sorted(trajectories, key=lambda t: t.actor)
     hits = ((_first_hit(a, b, sizes), i, a, b) for i, (a, b) in enumerate(combinations(ordered, 2)))
@@ -46,22 +46,19 @@ def first_with(mine: Trajectory, others: Sequence[Trajectory], sizes: Mapping[st
 
 def realised(declared: Contact | None, observed: ObservedContact | None) -> bool:
     """Whether the first contact is the declared pair with the declared areas, in either order."""
-    if declared is None or observed is None:
-        return False
-    seen = {observed.actor: observed.actor_area, observed.other: observed.other_area}
-    return seen == {declared.striker: declared.striker_area, declared.struck: declared.struck_area}
+    return declared is not None and observed is not None and observed.is_of(declared)
 
 
 def closest_approach(
     trajectories: Sequence[Trajectory], sizes: Mapping[str, Size], pair: tuple[str, str]
 ) -> ClosestApproach | None:
-    """How near two actors come over the whole execution; None unless both are in it."""
+    """The closest approach of two actors over the whole execution; None unless both take part."""
     found = {t.actor: t for t in trajectories}
     if not set(pair) <= set(found):
         return None
     a, b = (found[name] for name in pair)
     n = min(len(a.t_s), len(b.t_s))
-    apart = box_distances(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
+    apart = box_distances(a.pose[:n], sizes[a.actor], b.pose[:n], sizes[b.actor])
     k = int(apart.argmin())
     return ClosestApproach(
         actor=a.actor, other=b.actor, clearance_m=round(float(apart[k]), 3), t_s=round(float(a.t_s[k]), 6)
@@ -69,7 +66,7 @@ def closest_approach(
 
 
 def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestApproach | None) -> bool:
-    """Whether a near crash is as declared: nobody touches anybody, and the pair comes as near as it says."""
+    """Whether a near crash is as declared: no contact, and the declared clearance of the pair."""
     if contact is not None or closest is None:
         return False
     return abs(closest.clearance_m - near.closest_m) <= CLEARANCE_TOLERANCE_M
@@ -77,10 +74,9 @@ def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestAp
 
 def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:
     """The contact of two actors at step k, with the sides that touch."""
-    one, two = _box(a, k, sizes[a.actor]), _box(b, k, sizes[b.actor])
-    areas = cast("tuple[Area, Area]", (contact_area(one, two), contact_area(two, one)))
-    t_s = round(float(a.t_s[k]), 6)
-    return ObservedContact(actor=a.actor, other=b.actor, actor_area=areas[0], other_area=areas[1], t_s=t_s)
+    one, two = (Box.at(t.pose[k], sizes[t.actor]) for t in (a, b))
+    areas = {"actor_area": contact_area(one, two), "other_area": contact_area(two, one)}
+    return ObservedContact(actor=a.actor, other=b.actor, t_s=round(float(a.t_s[k]), 6), **areas)
 
 
 def moves(trajectory: Trajectory) -> bool:
@@ -91,18 +87,5 @@ def moves(trajectory: Trajectory) -> bool:
 
 def _first_hit(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> int | None:
     n = min(len(a.t_s), len(b.t_s))
-    gaps = box_gaps(poses(a)[:n], sizes[a.actor], poses(b)[:n], sizes[b.actor])
-    hits = np.flatnonzero(gaps <= 0)
-    if not len(hits) or (hits[0] == 0 and not moves(a) and not moves(b)):
-        return None
-    return int(hits[0])
-
-
-def poses(trajectory: Trajectory) -> Floats:
-    """(n, 3) x, y and heading."""
-    return np.column_stack((trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
-
-
-def _box(trajectory: Trajectory, k: int, size: Size) -> Box:
-    x, y, heading = (float(v[k]) for v in (trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
-    return Box(x, y, heading, *size)
+    hit = first_overlap(a.pose[:n], sizes[a.actor], b.pose[:n], sizes[b.actor])
+    return None if hit == 0 and not moves(a) and not moves(b) else hit

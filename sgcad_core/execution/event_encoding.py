@@ -1,8 +1,8 @@
-"""Plans as maneuver events that were tried: what leads astray when it is played is told in plainer words.
+"""Plans as maneuver events that were tested: parts that are played otherwise are written in plainer form.
 
-Lanes, meetings and conditions make a scenario one that people can edit, but each leaves something to the player. So the
-file is played; who strays from the plan before the contact, or a contact that is not the planned one, costs the
-meeting first, then the lanes of who strays, then the conditions. Knows the writer and the player; no planner.
+Lanes, meetings and conditions make a scenario editable by people, but leave something to the player. So the file is
+played; actors off the plan before the contact, or another contact, cost the meeting first, then the lanes of these
+actors, then the conditions. Knows the writer and the player; no planner.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from sgcad_core.formats.openscenario.writing.writer import Version, write_xosc
 from sgcad_core.records.specs import BehaviorSpec
 
 ASTRAY_M = 0.3
-"""From the plan until the contact, at most."""
+"""Largest distance from the plan until the contact."""
 LATE_S = 0.1
-"""The contact comes so much earlier or later at most."""
+"""Largest difference in time of the contact."""
 
 
 def write_editable(
@@ -46,7 +46,7 @@ def write_editable(
 
 
 def _plainer(told: Plainly, astray: frozenset[str], text: str) -> Plainly:
-    """The next plainer words for those who stray; the same where there are none."""
+    """The next plainer form for the actors off the plan; the same where there is none."""
     if not told.alone and "<SynchronizeAction" in text:
         return replace(told, alone=True)
     if astray - told.paths:
@@ -60,7 +60,7 @@ def _astray(
     contact: ObservedContact | None,
     played: Sequence[Trajectory],
 ) -> frozenset[str]:
-    """Who is too far from the plan before the contact; both of the pair where it is another contact."""
+    """Actors too far from the plan before the contact; both of the pair where it is another contact."""
     by_name = {t.actor: t for t in played}
     until_s = contact.t_s - 1e-6 if contact else float(planned[0].t_s[-1])
     astray = {t.actor for t in planned if _away_m(t, by_name[t.actor], until_s) > ASTRAY_M}
@@ -77,7 +77,7 @@ def _away_m(planned: Trajectory, played: Trajectory, until_s: float) -> float:
 
 
 def _same(contact: ObservedContact, seen: ObservedContact | None) -> bool:
-    """Whether it is the planned one: pair, sides, and the time nearly."""
+    """Whether it is the planned contact: pair, sides, and nearly the time."""
     if seen is None or abs(seen.t_s - contact.t_s) > LATE_S:
         return False
     return seen.model_copy(update={"t_s": contact.t_s}) == contact

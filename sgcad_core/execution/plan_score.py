@@ -1,8 +1,8 @@
-"""What our own checks doubt in a planned behavior, as one number, and the reading that is doubted least.
+"""The doubt on a planned behavior as one number, and the reading of a report with the least doubt.
 
-The checks are those of the validators `meeting` and `drivable`, and that the declared contact is the planned one; where
-a report tells a loss of control, odd driving is no doubt. Plans in ordinary driving only: a reading that needs force is
-no better than the first.
+The checks are those of the validators `meeting` and `drivable`, and that the declared contact is the planned one; with
+a stated loss of control odd driving is no doubt. Plans other readings in ordinary driving only: a reading that needs
+force is no better than the first.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.metrics.drivability import WHEELED, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, driving_peaks, first_touches
 from sgcad_core.planner import plan
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.maneuver_visible import TURNED_RAD
@@ -32,27 +32,27 @@ _AWRY_RAD: dict[Maneuver, float] = {
     **dict.fromkeys(("straight", "slowing"), math.radians(30)),
     **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
 }  # fmt: skip
-"""Who goes along a road and has turned by more is not seen to do so."""
+"""Turn beyond which a maneuver along a road is not visible as such."""
 MOST = 4
-"""Other readings that are planned."""
+"""Largest number of other readings that are planned."""
 
 
-class Tried(NamedTuple):
-    """One reading that was planned: in what it differs, and what is left of the doubt."""
+class TriedReading(NamedTuple):
+    """One planned reading: its difference in words, and its doubt."""
 
     words: str
     doubt: float
 
 
-class Least(NamedTuple):
-    """The facts that are doubted least, which reading they are ("" the first), and what was tried."""
+class LeastDoubted(NamedTuple):
+    """The facts with the least doubt, their reading ("" the first), and all tried ones."""
 
     facts: CrashFacts
     words: str
-    tried: tuple[Tried, ...]
+    tried: tuple[TriedReading, ...]
 
     def notes(self) -> list[str]:
-        """What was tried, for result.json."""
+        """The tried readings, for result.json."""
         if not self.tried:
             return []
         first, *others = self.tried
@@ -62,7 +62,7 @@ class Least(NamedTuple):
 
 
 def doubt(behavior: BehaviorSpec, motions: Sequence[Trajectory], oddity: float) -> float:
-    """0 where the declared pair meets as declared in ordinary driving; the more the less that is so."""
+    """0 where the declared pair meets as declared in ordinary driving; larger with every deviation."""
     sizes = {a.id: size_m(a) for a in behavior.actors}
     if behavior.contacts and not realised(behavior.contacts[0], first_contact(motions, sizes)):
         return _UNMET
@@ -76,7 +76,9 @@ def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
     count = 0
     for actor, track in zip(behavior.actors, motions, strict=True):
         if actor.kind in WHEELED:
-            motion = driven(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+            motion = driving_peaks(
+                track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"
+            )
             count += bool(motion.excesses(behavior.surface))
     return count
 
@@ -87,26 +89,26 @@ def least_doubted(
     graph: LaneGraph,
     first: Scenario,
     may_be: Callable[[CrashFacts], bool] = lambda facts: True,
-) -> Least:
-    """The first reading, or of a few others the cheapest that leaves no doubt; `first`: the first as it was planned,
-    `may_be`: whether another reading is possible at all (none that contradicts a person is).
+) -> LeastDoubted:
+    """The first reading, or the cheapest of a few others that leaves no doubt; `first`: the planned scenario of the
+    first, `may_be`: whether another reading is possible at all (e.g. does not contradict an edit by a person).
 
-    What the text tells gives way only where the declared contact does not come about at all: on the development reports
-    a corner's other side and other headings resolved three doubts of seven, and each time the codes had it as it was
-    first read. What would resolve a doubt is told all the same. Of a report that numbers nobody a corner's other side
-    also stands in where the first one hides what somebody is told to do: the words fit both.
+    Statements of the text give way only where the declared contact does not come about at all: on the development
+    reports the other side of a corner and other headings resolved three doubts of seven, and each time the codes agreed
+    with the first reading. Readings that would resolve a doubt are still noted. In a report without numbered actors the
+    other side of a corner is also used where the first one hides a stated maneuver: the words fit both.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     if most <= 0.0:
-        return Least(facts, "", ())
+        return LeastDoubted(facts, "", ())
     hidden = first.behavior is not None and _hides(first.behavior, first.planned)
-    tried = [Tried("the first reading", most)]
+    tried = [TriedReading("the first reading", most)]
     best: tuple[float, CrashFacts, str] = (most, facts, "")
     for other in [one for one in hypotheses(facts) if may_be(one.facts)][:MOST]:
         left = _left(other, behave, graph)
         if left is None:
             continue
-        tried.append(Tried(other.words, left))
+        tried.append(TriedReading(other.words, left))
         gives_way = other.open or most >= _UNMET or (other.corner and hidden)
         if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
@@ -114,14 +116,14 @@ def least_doubted(
             break
     if best[0] >= _UNMET and (met := _by_force(facts, behave, graph)):
         best = (met[1], met[0].facts, met[0].words)
-        tried.append(Tried(f"{met[0].words}, by force", met[1]))
-    return Least(best[1], best[2], tuple(tried))
+        tried.append(TriedReading(f"{met[0].words}, by force", met[1]))
+    return LeastDoubted(best[1], best[2], tuple(tried))
 
 
 def _by_force(
     facts: CrashFacts, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph
 ) -> tuple[Hypothesis, float] | None:
-    """Somebody who does not slow, with whom the declared contact comes about at least in odd driving."""
+    """A reading without slowing, for which the declared contact comes about at least in odd driving."""
     for other in hypotheses(facts):
         left = _left(other, behave, graph, by_force=True) if other.words.endswith(ONWARD) else None
         if left is not None and left < _UNMET:
@@ -130,8 +132,7 @@ def _by_force(
 
 
 def _hides(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> bool:
-    """Whether one of the first pair, before it is touched, turns though it goes straight, or hardly turns though it is
-    to turn."""
+    """Whether one of the first pair, before its contact, turns in a straight maneuver, or hardly turns in a turn."""
     sizes = {a.id: size_m(a) for a in behavior.actors}
     touches = first_touches(motions, sizes)
     pair = {name for c in behavior.contacts[:1] for name in (c.striker, c.struck)}
@@ -153,7 +154,7 @@ def _turned_otherwise(maneuver: Maneuver, track: Trajectory, until_s: float) -> 
 def _left(
     other: Hypothesis, behave: Callable[[CrashFacts], BehaviorSpec], graph: LaneGraph, *, by_force: bool = False
 ) -> float | None:
-    """The doubt that another reading leaves; None where it cannot be placed on the roads."""
+    """The doubt on another reading; None where it cannot be placed on the roads."""
     try:
         behavior = behave(other.facts)
         planned = plan(behavior, graph, by_force=by_force)

@@ -1,4 +1,4 @@
-"""What every simulator of scenario files shares: playing the .xosc and looking for the first contact.
+"""Common steps of the simulators of scenario files: playing the .xosc and finding the first contact.
 
 Knows the player; no simulator.
 """

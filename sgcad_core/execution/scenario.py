@@ -1,4 +1,4 @@
-"""A behavior on a road network becomes an executable scenario. Knows the planner and the scenario writer."""
+"""Compiles a behavior on a road network into an executable scenario. Knows the planner and the scenario writer."""
 
 from __future__ import annotations
 
@@ -36,13 +36,14 @@ def compile_scenario(
     courses: Courses = NOTHING_TOLD,
     signals: Mapping[str, str] | None = None,
 ) -> Scenario:
-    """Plan the behavior's motions on the network and write them in a version of OpenSCENARIO. Raises InvalidOutput.
+    """Plans the motions of a behavior on the network and writes them in a version of OpenSCENARIO. Raises
+    InvalidOutput.
 
     `encoding`: timed polylines, or maneuver events that people edit by hand.
 
-    What the planner had to change stands in the notes; that the declared contact is not the planned one is
-    for the validators to say. `may_skid`: the report tells that somebody lost control. `courses`: what it tells of
-    every vehicle's evasion and rest. `signals`: what the traffic signal showed to a vehicle, by id, where it is told.
+    The notes list the changes of the planner; validators report a contact that is not the declared one. `may_skid`: the
+    report states a loss of control. `courses`: stated evasion and rest by vehicle. `signals`: the stated signal state
+    by vehicle id.
     """
     _check_ids(behavior)
     if network.net_xml is None:
@@ -78,7 +79,7 @@ def actor_infos(behavior: BehaviorSpec) -> tuple[ActorInfo, ...]:
 
 
 def _check_ids(behavior: BehaviorSpec) -> None:
-    """Raise InvalidOutput for actor ids used twice and for contacts of unknown actors or with oneself."""
+    """Raises InvalidOutput for actor ids used twice and for contacts of unknown actors or of one actor with itself."""
     ids = [actor.id for actor in behavior.actors]
     findings = [
         _finding(
@@ -106,7 +107,7 @@ def _check_ids(behavior: BehaviorSpec) -> None:
 
 
 def _near_crash(behavior: BehaviorSpec, ids: list[str], known: str) -> list[Finding]:
-    """What is wrong with a near crash: contacts beside it, unknown actors, one actor in conflict with itself."""
+    """Faults of a near crash: contacts beside it, unknown actors, one actor in conflict with itself."""
     near = behavior.near_crash
     if near is None:
         return []
@@ -127,19 +128,19 @@ def _near_crash(behavior: BehaviorSpec, ids: list[str], known: str) -> list[Find
 
 
 def _next(place: int, ids: list[str]) -> tuple[Hold, ...]:
-    """The next number in place of one that is taken."""
+    """The next free number instead of a used one."""
     taken = sum(name[0] == ids[place][0] for name in dict.fromkeys(ids[:place]))
     return (_named(place, f"{ids[place][0]}{taken + 1}"),)
 
 
 def _in_place(name: str, ids: list[str]) -> tuple[Hold, ...]:
-    """One that a contact names and no actor is: a vehicle belongs where its number says, others behind the vehicles."""
+    """An actor that only a contact names: vehicles are placed by their number, others behind the vehicles."""
     place = int(name[1:]) - 1 if name.startswith("V") else sum(other.startswith("V") for other in ids)
     return (_named(place, name),) if 0 <= place <= len(ids) else ()
 
 
 def _another(place: int, ids: list[str]) -> tuple[Hold, ...]:
-    """Whoever strikes, somebody else is struck."""
+    """Any other actor for each possible striker."""
     names = dict.fromkeys(ids)
     either = tuple({"striker": (name,), "struck": tuple(other for other in names if other != name)} for name in names)
     return (Hold(items="contacts", at=place, either=either),) if len(names) > 1 else ()

@@ -1,7 +1,7 @@
-"""Facts of what was written: roads; where every actor starts, how fast, where it leaves; and what each rests on.
+"""Facts of the written scenario: roads; start, speed and exit of every actor; and their sources.
 
-A value that the reading told or suggests points to its sentence; one that a model answered has the model's grounding;
-the rest is a default of a template or of the planner and says so. Knows records and the reading; no file.
+A value that the text states or suggests points to its sentence; one that a model answered has the model's grounding;
+the rest is a default of a template or of the planner and is marked so. Knows records and the reading; no file.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from sgcad_core.units import MPS_PER_MPH
 
 @dataclass(frozen=True)
 class Grounds:
-    """What the values of one stage may rest on: facts read, by name, and a model's answer if one was asked."""
+    """Sources of the values of one stage: facts by name, and the answer of a model if there is one."""
 
     told: Mapping[str, Fact]
     answer: Generation | None = None
@@ -45,7 +45,7 @@ class Grounds:
         return next((self.told[name] for name in sources if name in self.told), None)
 
     def _answered(self, field: str, value: Value, path: str, sources: tuple[str, ...]) -> Fact:
-        """What the evidence carries and no sentence tells is from the drawing, where there is one."""
+        """Grounded values that no sentence states are from the drawing, where there is one."""
         nats = self.answer.grounding.get(path) if self.answer else None
         known = self._known(sources)
         silent = known is None or known.status == "default"
@@ -56,7 +56,7 @@ class Grounds:
 
 
 def _followed(known: Fact, value: Value) -> dict[str, object]:
-    """A value that is not the told one itself follows from it."""
+    """Changes of a fact whose value differs from the stated one: it is inferred."""
     if known.value == value:
         return {}
     return {"status": "inferred", "confidence": min(known.confidence, CONFIDENCE.inferred)}

@@ -1,7 +1,7 @@
-"""When the traffic signals of a map show what: so that at the crash they show what the report tells.
+"""Timing of the traffic signals of a map, so that they show at the crash what the report states.
 
-Phases and their durations are those of the map's own program; the report only says where in its turn the program
-stands. Where no phase shows all that is told, nothing is written and a note says so. Knows maps and motions.
+Phases and their durations are those of the map's own program; the report only determines its offset. Where no phase
+shows all stated states, none is written and a note says so. Knows maps and motions.
 """
 
 from __future__ import annotations
@@ -26,20 +26,21 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import arc_lengths
 
 SHOWN_S = 0.5
-"""The phase has begun so long at least before the first told vehicle comes to its signal."""
+"""Least time from the beginning of the phase to the first stated vehicle at its signal."""
 _TURN_RAD = 0.6
 _DIRECTIONS = re.compile(r"\((.*)\)")
 
 
 class SignalTimes(NamedTuple):
-    """Controllers whose first phase begins at the scenario's start, and what could not be told."""
+    """Controllers whose first phase begins at the start of the scenario, and notes on stated states that cannot be
+    shown."""
 
     controllers: tuple[Controller, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 class _Approach(NamedTuple):
-    """A vehicle on its way to a signal head: its id, the head, when it passes it (s), what it is told to show."""
+    """The approach of a vehicle to a signal head: its id, the head, the time of passing (s), the stated state."""
 
     actor: str
     head: str
@@ -50,7 +51,7 @@ class _Approach(NamedTuple):
 def signal_times(
     network: RoadNetwork, motions: Sequence[Trajectory], told: Mapping[str, str], crash_s: float | None
 ) -> SignalTimes:
-    """The programs that show at the crash (or, without one, when the first passes) what is told of its vehicles.
+    """The programs that show the stated states at the crash (without one: when the first vehicle passes).
 
     `motions`: of entities' origins. Nothing on a map without signals. Raises InvalidOutput where it is no map.
     """
@@ -69,14 +70,14 @@ def signal_times(
     )
 
 
-# ------------------------------------------------------------------ who comes to which signal
+# ------------------------------------------------------------------ approaches to signals
 def _approach(move: Trajectory, control: Control, roads: XodrRoads, state: str) -> _Approach | None:
     """The first head on a vehicle's way."""
     place = roads.nearest(Pose(float(move.x_m[0]), float(move.y_m[0]), float(move.heading_rad[0])))
     if place is None:
         return None
     way = _way(move, roads, place)
-    along, gone = arc_lengths(way.points), arc_lengths(np.column_stack((move.x_m, move.y_m)))
+    along, gone = arc_lengths(way.points), arc_lengths(move.points)
     for number, (road, lane, _) in enumerate(way.lanes):
         heads = [s for s in control.signals if s.type == HEAD and s.road == road and lane in s.lanes]
         if heads:
@@ -87,7 +88,7 @@ def _approach(move: Trajectory, control: Control, roads: XodrRoads, state: str) 
 
 
 def _way(move: Trajectory, roads: XodrRoads, place: LanePlace) -> Way:
-    """The lanes it drives; those straight on where its end (in a spin, off the roads) is reached by none."""
+    """The lanes of a motion; those straight on where its end (in a spin, off the roads) is off the lanes."""
     try:
         return driven_way(move, roads, place)
     except ValueError:
@@ -95,7 +96,7 @@ def _way(move: Trajectory, roads: XodrRoads, place: LanePlace) -> Way:
 
 
 def _for_turn(heads: Sequence[Signal], move: Trajectory) -> Signal:
-    """Of several heads of one lane that for the way it turns."""
+    """The head for the turn of a motion, of several heads of one lane."""
     turned = float(move.heading_rad[-1] - move.heading_rad[0])
     way = "through" if abs(math.remainder(turned, 2 * math.pi)) < _TURN_RAD else "left" if turned > 0 else "right"
     named = {head.id: _DIRECTIONS.search(head.name) for head in heads}
@@ -103,7 +104,7 @@ def _for_turn(heads: Sequence[Signal], move: Trajectory) -> Signal:
 
 
 def _programs(control: Control, approaches: Sequence[_Approach]) -> Iterator[tuple[list[Controller], list[_Approach]]]:
-    """The controllers of each program that shows something told, with whom it is told of."""
+    """The controllers of each program with a stated state, and the approaches to it."""
     for program in dict.fromkeys(c.program for c in control.controllers):
         controllers = [c for c in control.controllers if c.program == program]
         heads = {head for c in controllers for head in c.signals}
@@ -111,7 +112,7 @@ def _programs(control: Control, approaches: Sequence[_Approach]) -> Iterator[tup
             yield controllers, told
 
 
-# ------------------------------------------------------------------ where the program stands
+# ------------------------------------------------------------------ offset of the program
 def _timed(part: tuple[list[Controller], list[_Approach]], crash_s: float | None) -> SignalTimes:
     controllers, told = part
     first_s = min(a.at_s for a in told)
@@ -131,14 +132,14 @@ def _states(controllers: Sequence[Controller], number: int) -> dict[str, str]:
 
 
 def _into(duration_s: float, since_s: float) -> float:
-    """How long the phase lasts already at the crash: half of it, or since before the first one passed."""
+    """Time in the phase before the crash: half of it, or since before the first vehicle passed."""
     return min(max(duration_s / 2, since_s + SHOWN_S), max(duration_s - SHOWN_S, duration_s / 2))
 
 
 def _turned(controller: Controller, number: int, begin_s: float) -> Controller:
-    """The phases in turn from time 0, where the one of this number begins at `begin_s`.
+    """The phases in turn from time 0, with phase `number` beginning at `begin_s`.
 
-    The one that is cut by the start stands at both ends: first its rest, last what went before.
+    The phase at the start is split: its rest comes first, its beginning last.
     """
     phases = controller.phases
     starts = [0.0, *accumulate(p.duration_s for p in phases)]

@@ -1,20 +1,49 @@
-"""Exact distances in the plane: points to a polyline, box to box. Metres; knows geometry only."""
+"""Distances in the plane: from points to a polyline, and between boxes. Metres; knows geometry only."""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import NamedTuple
 
-from sgcad_core.geometry.plane import Box, Floats, Size, box_gaps, corners, corners_of, local_points, overlap
+import numpy as np
+from numpy.typing import NDArray
+
+from sgcad_core.geometry.plane import (
+    Box,
+    Floats,
+    Size,
+    arc_lengths,
+    box_gaps,
+    corners,
+    corners_of,
+    local_points,
+    overlap,
+)
+
+
+class Nearest(NamedTuple):
+    """(m,) nearest places on a polyline: number of the segment, station, and metres to the left of the line."""
+
+    segment: NDArray[np.int_]
+    station_m: Floats
+    left_m: Floats
+
+
+def nearest_on(line: Floats, points: Floats) -> Nearest:
+    """The places on an (n, 2) polyline that are nearest to (m, 2) points."""
+    start, step = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((step**2).sum(axis=1), 1e-12)
+    share = np.clip(((points[:, None] - start) * step).sum(axis=2) / square, 0.0, 1.0)
+    away = points[:, None] - (start + share[..., None] * step)
+    rows = np.arange(len(points))
+    segment = np.hypot(*away.transpose(2, 0, 1)).argmin(axis=1)
+    away, along = away[rows, segment], share[rows, segment] * np.sqrt(square[segment])
+    left = step[segment, 0] * away[:, 1] - step[segment, 1] * away[:, 0]
+    return Nearest(segment, arc_lengths(line)[segment] + along, np.copysign(np.hypot(*away.T), left))
 
 
 def distance_to(line: Floats, points: Floats) -> Floats:
-    """(m,) distance of (m, 2) points to an (n, 2) polyline."""
-    start, step = line[:-1], np.diff(line, axis=0)
-    length = np.maximum((step**2).sum(axis=1), 1e-12)
-    share = np.clip(((points[:, None] - start) * step).sum(axis=2) / length, 0.0, 1.0)
-    nearest = start + share[..., None] * step
-    best: Floats = np.hypot(*(points[:, None] - nearest).transpose(2, 0, 1)).min(axis=1)
-    return best
+    """(m,) distance of (m, 2) points to an (n, 2) polyline, metres."""
+    return np.abs(nearest_on(line, points).left_m)
 
 
 def box_distance(first: Box, second: Box) -> float:

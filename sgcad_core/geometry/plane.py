@@ -7,7 +7,7 @@ heading, length (along the heading) and width.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Size = tuple[float, float]
 """Length and width, metres."""
+Side = Literal["front", "back", "left", "right"]
 
 
 class Box(NamedTuple):
@@ -25,6 +26,11 @@ class Box(NamedTuple):
     heading_rad: float
     length_m: float
     width_m: float
+
+    @classmethod
+    def at(cls, pose: Floats, size: Size) -> Box:
+        """The box of a size in a pose (x, y, heading)."""
+        return cls(float(pose[0]), float(pose[1]), float(pose[2]), *size)
 
 
 def wrap_angle(angle_rad: ArrayLike) -> Floats:
@@ -63,9 +69,9 @@ def box_gaps(first: Floats, first_size: Size, second: Floats, second_size: Size)
 
 
 def gaps_where_near(first: Floats, first_size: Size, second: Floats, second_size: Size, near_m: float = 0.0) -> Floats:
-    """As `box_gaps` where that is at most `near_m` (0 or more); inf where circles around the boxes tell that it is not.
+    """As `box_gaps` where that is at most `near_m` (0 or more); inf where circles around the boxes show a larger gap.
 
-    Of two ways over the ground most poses lie far apart, and two centers are told apart in a fifth of the time.
+    Most poses of two motions lie far apart, and comparing centers takes a fifth of the time.
     """
     # a gap g along the best axis leaves corners no more than g * sqrt(2) apart
     reach = (math.hypot(*first_size) + math.hypot(*second_size)) / 2 + 1.5 * near_m + 1e-6
@@ -75,6 +81,12 @@ def gaps_where_near(first: Floats, first_size: Size, second: Floats, second_size
     if len(near):
         gaps[near] = box_gaps(first[near], first_size, second[near], second_size)
     return gaps
+
+
+def first_overlap(first: Floats, first_size: Size, second: Floats, second_size: Size) -> int | None:
+    """The first row in which two moving boxes overlap; None where they never do."""
+    hits = np.flatnonzero(gaps_where_near(first, first_size, second, second_size) <= 0)
+    return int(hits[0]) if len(hits) else None
 
 
 def overlap(first: Box, second: Box) -> bool:
@@ -109,7 +121,7 @@ def _clip(polygon: list[tuple[float, ...]], a: Floats, b: Floats) -> list[tuple[
     return out
 
 
-def contact_area(box: Box, other: Box) -> str:
+def contact_area(box: Box, other: Box) -> Side:
     """Side of `box` (front, back, left, right) on which `other` overlaps it.
 
     The centroid of the shared polygon's corners, measured in half lengths and half widths, decides.
@@ -135,6 +147,12 @@ def resample(points: Floats, s_m: ArrayLike) -> Floats:
     """(m, 2) points at the given distances along a polyline, clamped to its ends."""
     along = arc_lengths(points)
     return np.column_stack([np.interp(np.asarray(s_m, dtype=float), along, points[:, i]) for i in (0, 1)])
+
+
+def distinct(points: Floats, apart_m: float = 1e-3) -> Floats:
+    """The points of a polyline that lie further than `apart_m` from the one before."""
+    kept: Floats = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > apart_m)]
+    return kept
 
 
 def headings(points: Floats) -> Floats:
@@ -164,9 +182,10 @@ def parallel_polyline(points: Floats, left_m: float) -> Floats:
 
 
 def prolonged(points: Floats, by_m: float) -> Floats:
-    """(m + 2, 2) polyline that goes on straight at both ends, `by_m` metres; points within 1 mm of the last one go."""
-    kept = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
-    points = points[kept] if kept.sum() > 1 else points[[0, -1]]
+    """(m + 2, 2) polyline extended straight at both ends by `by_m` metres; points within 1 mm of the last one are
+    dropped."""
+    kept = distinct(points)
+    points = kept if len(kept) > 1 else points[[0, -1]]
     first, last = points[0] - points[1], points[-1] - points[-2]
     ahead, behind = (step / max(float(np.hypot(*step)), 1e-12) * by_m for step in (first, last))
     longer: Floats = np.vstack((points[0] + ahead, points, points[-1] + behind))
@@ -174,7 +193,7 @@ def prolonged(points: Floats, by_m: float) -> Floats:
 
 
 # ------------------------------------------------------------------ many boxes at once
-SIDES = ("front", "left", "back", "right")
+SIDES: tuple[Side, ...] = ("front", "left", "back", "right")
 """Names of the side codes 0 to 3, counter-clockwise from the front."""
 
 
@@ -196,9 +215,8 @@ def corners_of(poses: Floats, size: Size) -> Floats:
 def overlap_centers(first: Floats, first_size: Size, second: Floats, second_size: Size) -> Floats:
     """(n, 2) mean of the corners of the shared polygon of two boxes, row by row; nan where they are apart.
 
-    The same point that `overlap_polygon(...).mean(axis=0)` gives, without its walk around the polygon: the
-    corners of either box inside the other, and the crossings of their sides. (Where sides coincide exactly,
-    either way may count a corner twice.)
+    The same point as `overlap_polygon(...).mean(axis=0)` without building the polygon: the corners of either box inside
+    the other, and the crossings of their sides. (Where sides coincide exactly, either method may count a corner twice.)
     """
     theirs = corners_of(second, second_size)
     ours = corners_of(first, first_size)

@@ -1,9 +1,9 @@
-"""What the ego could still have done: when it had to brake, how hard, until when it could steer.
+"""The last chances of the ego to avoid the contact: by braking and by steering, and the deceleration needed.
 
-Against the script: the others go on as they did, the ego leaves it at an onset and brakes, or moves aside. Every onset
-is tried, 0.05 s apart, and every answer is played against the others' boxes, so nothing is assumed of the kind of
-conflict. Braking is constant from the onset on; who brakes too late may also get through before, or behind, the other.
-Steering is a constant lateral acceleration until a lane's width aside (left or right) at unchanged speed. SI units.
+The others follow the script; the ego leaves it at an onset and brakes or moves aside. All onsets, 0.05 s apart, are
+tested against the boxes of the others, so nothing is assumed on the kind of conflict. Braking is constant from the
+onset on; late braking may also pass before or behind the other. Steering is a constant lateral acceleration until a
+lane's width aside (left or right) at unchanged speed. SI units.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from sgcad_core.handover.script import Staging
 
 LOOK_BACK_S = 6.0
 GRAIN_S = 0.01
-"""Between two looks whether boxes touch: at 0.05 s crossing corners can miss each other by 0.5 m."""
+"""Time between two tests for overlap: at 0.05 s crossing corners can miss each other by 0.5 m."""
 _GRAINS = round(STEP_S / GRAIN_S)
 AFTER_S = 6.0
-"""Behind the scripted contact: whoever has not met by then has avoided."""
+"""Time after the scripted contact that is tested."""
 ASIDE_M = 3.5
 BEFORE_S = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0)
-"""Onsets, before the contact, for which the least deceleration is asked."""
+"""Onsets before the contact for which the least deceleration is computed."""
 _BISECTIONS = 12
 _GLANCE = 8
-"""Every so many looks are taken first."""
+"""Every eighth sample is tested first."""
 _STEER_SHARE = 0.7
-"""Of the friction that a driver uses for moving aside; the rest is left for the recovery."""
+"""Share of the friction for moving aside; the rest is for the recovery."""
 
 
 class Avoidance(Record):
@@ -40,20 +40,20 @@ class Avoidance(Record):
     brake_by_s: float | None
     """The last onset of full braking that avoids the contact."""
     brake_by_m: float | None
-    """The way that the ego still had at that onset to where it was at the contact."""
+    """Distance of the ego at that onset from its place at the contact."""
     steer_by_s: float | None
     """The last onset of moving aside that avoids it."""
     steer_to: str | None
-    """left or right: to which side that was."""
+    """Side of that maneuver: left or right."""
     required_mps2: dict[str, float | None]
     """Least constant deceleration that avoids it, by onset (s before the contact); None: not even full braking does."""
     full_braking_mps2: float
 
 
 def avoidance(staging: Staging, before_s: Sequence[float] = BEFORE_S) -> Avoidance | None:
-    """What could have been done against the ego's scripted contact; None where it has none.
+    """The last chances before the ego's scripted contact; None without a contact.
 
-    `before_s`: for which onsets the least deceleration is asked, seconds before the contact.
+    `before_s`: onsets for which the least deceleration is computed, seconds before the contact.
     """
     if staging.contact is None:
         return None
@@ -62,10 +62,11 @@ def avoidance(staging: Staging, before_s: Sequence[float] = BEFORE_S) -> Avoidan
     onsets = np.arange(staging.contact_s, max(staging.contact_s - LOOK_BACK_S, -1e-9), -STEP_S)
     brake = next((t for t in onsets if _clear(staging, others, _braked(staging.way, t, full))), None)
     steer = _steered_by(staging, others, onsets)
+    at_contact_m = staging.way.station_at(staging.contact_s)
     asked = [b for b in before_s if b <= staging.contact_s]
     return Avoidance(
         brake_by_s=None if brake is None else round(staging.contact_s - float(brake), 3),
-        brake_by_m=None if brake is None else round(_left_m(staging, float(brake)), 3),
+        brake_by_m=None if brake is None else round(at_contact_m - staging.way.station_at(float(brake)), 3),
         steer_by_s=steer and round(staging.contact_s - steer[0], 3),
         steer_to=steer and steer[1],
         required_mps2={f"{b:g}": _required(staging, others, staging.contact_s - b) for b in asked},
@@ -73,27 +74,15 @@ def avoidance(staging: Staging, before_s: Sequence[float] = BEFORE_S) -> Avoidan
     )
 
 
-def _left_m(staging: Staging, onset_s: float) -> float:
-    return staging.way.station_at(staging.contact_s) - staging.way.station_at(onset_s)
-
-
 # ------------------------------------------------------------------ the others, and whether they are met
 def _others(staging: Staging) -> dict[str, Floats]:
-    """(n, 3) poses of everybody else on the script's clock, from 0 to the end of the look ahead."""
-    times = _clock(staging)
-    return {
-        name: np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
-        for name, line in staging.lines.items()
-        if name not in staging.coupled
-    }
-
-
-def _clock(staging: Staging) -> Floats:
-    return np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
+    """(n, 3) poses of the others on the clock of the script, up to the end of the tested time."""
+    times = np.arange(0.0, staging.contact_s + AFTER_S, GRAIN_S)
+    return {name: line.poses_when(times) for name, line in staging.lines.items() if name not in staging.coupled}
 
 
 def _clear(staging: Staging, others: dict[str, Floats], poses: tuple[int, Floats]) -> bool:
-    """Whether an ego with these poses, from a sample on, touches nobody."""
+    """Whether an ego with these poses, from a sample on, touches none of the others."""
     start, mine = poses
     size = staging.script.sizes
     for name, theirs in others.items():
@@ -165,7 +154,7 @@ class _Aside:
         self.rate = lateral * (first - second)
 
     def poses(self, number: int, side: float) -> tuple[int, Floats]:
-        """First sample, and poses from there on, of who moves to a side (1 left, -1 right) at an onset."""
+        """First sample, and poses from there on, of a move to a side (1 left, -1 right) at an onset."""
         onset_s = self.last_s - number * STEP_S
         poses = self.table[self.before - number * _GRAINS :].copy()
         moved, rate = side * self.moved[: len(poses)], side * self.rate[: len(poses)]
@@ -175,7 +164,7 @@ class _Aside:
 
 
 def _course(poses: Floats) -> Floats:
-    """(n,) direction in which a box moves; of one that stands that of its last motion, before any its heading."""
+    """(n,) direction of motion of a box; while it stands that of its last motion, before any its heading."""
     step = np.diff(poses[:, :2], axis=0)
     moving = np.hypot(*step.T) > 1e-6
     if not moving.any():

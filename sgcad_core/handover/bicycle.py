@@ -1,4 +1,4 @@
-"""How the ego moves: along its way without steering, as a kinematic bicycle with it.
+"""The motion of the ego: along its way without steering, as a kinematic bicycle with steering.
 
 The bicycle (R. Rajamani, Vehicle Dynamics and Control, ch. 2.2): the rear axle goes where the vehicle points, the yaw
 rate is v tan(steering) / wheelbase. Acceleration and lateral acceleration stay within the friction circle. Knows a way;
@@ -20,7 +20,7 @@ FASTEST_MPS = 70.0
 
 @dataclass
 class Ego:
-    """Where the driven vehicle is: its box center, heading and speed, and how far along its way."""
+    """State of the ego: box center, heading, speed, and station on its way."""
 
     x_m: float
     y_m: float
@@ -28,7 +28,7 @@ class Ego:
     speed_mps: float
     station_m: float
     free: bool = False
-    """It has been steered, so it is not on its way any more."""
+    """Whether it has been steered and so left its way."""
     backing: bool = False
 
     @staticmethod
@@ -41,7 +41,7 @@ class Ego:
         return Ego(x, y, heading, float(way.speed_mps[0]) * factor, 0.0, backing=backing)
 
     def move(self, command: Command, way: Way, length_m: float, friction_mps2: float) -> float:
-        """One step; the acceleration that it really took."""
+        """Moves the ego by one step. Returns the actual acceleration."""
         if command.pose is not None:
             return self._put(command.pose, way)
         asked = min(max(command.acceleration_mps2, -friction_mps2), friction_mps2)
@@ -68,7 +68,7 @@ class Ego:
     def _steer(
         self, steering: float | None, travel: float, length_m: float, friction_mps2: float, taken: float
     ) -> None:
-        """Move the rear axle; a vehicle that has left its way and is not steered keeps straight on."""
+        """Moves the rear axle; a vehicle off its way without steering goes straight on."""
         self.free = True
         base, sign = WHEELBASE * length_m, -1.0 if self.backing else 1.0
         left = math.sqrt(max(friction_mps2**2 - taken**2, 0.0))
@@ -84,7 +84,7 @@ class Ego:
         self.x_m, self.y_m = x + behind * math.cos(turned), y + behind * math.sin(turned)
 
     def _locate(self, way: Way, travel: float) -> None:
-        """The station on the way that is nearest, looked for near where it must be."""
+        """Finds the nearest station on the way, near the expected one."""
         around = [self.station_m + travel * k for k in (0.0, 0.5, 0.8, 1.0, 1.2, 1.5)]
         self.station_m = min(around, key=lambda s: _away(way, s, self.x_m, self.y_m))
 

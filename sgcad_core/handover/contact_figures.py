@@ -1,6 +1,6 @@
-"""What a scripted crash's contact was like and what could have been done against it: figures beside the metrics.
+"""Figures of the contact of a script and of the chances to avoid it, beside the metrics.
 
-Stand in metrics.json under `exact`. By actor where they are one vehicle's.
+They are part of metrics.json (`exact`), by actor where they belong to one vehicle.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.handover.avoidance import avoidance
-from sgcad_core.handover.script import DRIVEN, Script, staged
+from sgcad_core.handover.script import DRIVEN, Script, staging_for
 from sgcad_core.handover.severity import severity
 
 _STANDS_M = 1e-4
-"""Who moves (m) or turns (rad) less in a sample stands."""
+"""An actor that moves (m) or turns (rad) less in a sample stands."""
 _ASKED_S = 2.0
-"""How long before the contact the least deceleration is asked: `required_2_s_before_mps2`."""
+"""Time before the contact for which the least deceleration is computed: `required_2_s_before_mps2`."""
 
 
 def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str, Any]:
@@ -36,15 +36,18 @@ def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str
         "brake_by_s": {}, "brake_by_m": {}, "steer_by_s": {}, "required_2_s_before_mps2": {},
     }  # fmt: skip
     for name in (contact.actor, contact.other):
-        if script.info(name).type in DRIVEN and (could := avoidance(staged(script, name), (_ASKED_S,))) is not None:
+        if (
+            script.info(name).type in DRIVEN
+            and (could := avoidance(staging_for(script, name), (_ASKED_S,))) is not None
+        ):
             figures["brake_by_s"][name], figures["brake_by_m"][name] = could.brake_by_s, could.brake_by_m
             figures["steer_by_s"][name] = could.steer_by_s
             figures["required_2_s_before_mps2"][name] = could.required_mps2.get(f"{_ASKED_S:g}")
     return figures
 
 
-def impact_told(script: Script, contact: ObservedContact | None) -> dict[str, Any] | None:
-    """What result.json tells of the first contact: by actor its change of velocity and where it comes to rest.
+def impact_summary(script: Script, contact: ObservedContact | None) -> dict[str, Any] | None:
+    """The first contact for result.json: change of velocity and rest of both actors.
 
     `delta_v_mps`: of the center; `ahead`: its part along the heading, negative where slowed. `rest`: box center and
     heading, from when it stands (null: it still moves at the end), how far it went and turned since the contact
@@ -65,7 +68,7 @@ def impact_told(script: Script, contact: ObservedContact | None) -> dict[str, An
 
 
 def _rest(track: Trajectory, contact_s: float) -> dict[str, Any]:
-    """The last pose, and what became of the actor since the contact."""
+    """The last pose, and distance and rotation since the contact."""
     k = min(max(round(contact_s / STEP_S), 0), len(track.t_s) - 1)
     x, y, heading = track.x_m, track.y_m, np.unwrap(track.heading_rad)
     steps = np.hypot(np.diff(x), np.diff(y))

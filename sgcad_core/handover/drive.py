@@ -1,6 +1,6 @@
-"""The drive: a driver in the ego's seat, everybody else on the relative clock, 20 steps a second.
+"""A drive: a driver controls the ego, the others follow the relative clock, 20 steps a second.
 
-Ends when the ego has touched somebody, or a while after the conflict would have been over. Knows the seat; no plugin.
+It ends when the ego has touched another actor, or some time after the conflict. Knows the driver's seat; no plugin.
 """
 
 from __future__ import annotations
@@ -17,26 +17,27 @@ from sgcad_core.execution.contact import first_contact, first_with
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.bicycle import Ego
 from sgcad_core.handover.relative_clock import RELEASE_S, Clock
+from sgcad_core.handover.right_of_way import give_way_station, limit_mps
 from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
 
 AFTER_S = 5.0
-"""Of the others' clock, behind the scripted contact: who has not met by then does not meet."""
+"""Time of the others' clock after the scripted contact at which a drive ends."""
 LONGEST_S = 40.0
 _CHECKED = 20
-"""Steps between two looks whether the ego has touched anybody: one look over many steps is cheap."""
+"""Steps between two tests for overlap: one test over many steps is cheap."""
 
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What came of a drive. All trajectories have the same clock, 0 at the hand-over."""
+    """Result of a drive. All trajectories have the same clock, 0 at the hand-over."""
 
     staging: Staging
     trajectories: tuple[Trajectory, ...]
     contact: ObservedContact | None
     """The ego's first contact."""
     elsewhere: ObservedContact | None
-    """The first contact among the others before that; they do not heed each other."""
+    """The first contact among the others before that; they do not react to each other."""
     accelerations: Floats
     """(n,) that the ego took, m/s2."""
     others_s: Floats
@@ -51,7 +52,7 @@ class Drive:
 
 
 def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, factor: float = 1.0) -> Drive:
-    """Hand the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
+    """Hands the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
 
     Raises SimulationFailed where the driver is gone.
     """
@@ -65,9 +66,7 @@ def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, fac
 
 
 def task_of(staging: Staging) -> Task:
-    """What the driver is told."""
-    from sgcad_core.handover.priority import gives_way, limit_mps  # reads the network
-
+    """The task record of a driver."""
     script, way = staging.script, staging.way
     ego = Ego.at_start(way)
     return Task(
@@ -75,14 +74,14 @@ def task_of(staging: Staging) -> Task:
         way=way,
         friction_mps2=script.friction_mps2,
         speed_limit_mps=limit_mps(script.graph, way),
-        gives_way_m=gives_way(script.graph, way, script.info(staging.ego).length_m),
+        gives_way_m=give_way_station(script.graph, way, script.info(staging.ego).length_m),
         net_xml=script.net_xml,
         case=script.case,
     )
 
 
 class _Run:
-    """A drive on its way."""
+    """A running drive."""
 
     def __init__(self, staging: Staging, seat: Seat, release_s: float, factor: float) -> None:
         self.staging, self.seat = staging, seat
@@ -131,7 +130,7 @@ class _Run:
         return _user(self.staging, name, line, self.clock.now_s, self.clock.rate or 1.0)
 
     def _touched(self) -> bool:
-        """Whether the ego has touched anybody in the steps since the last look."""
+        """Whether the ego has touched another actor since the last test."""
         sizes, ego = self.staging.script.sizes, self.staging.ego
         mine = np.array(self.rows[ego][-_CHECKED - 1 :])
         return any(
@@ -140,13 +139,18 @@ class _Run:
             if name != ego and name not in self.staging.coupled
         )
 
+    def _tracks(self, count: int | None) -> dict[str, Trajectory]:
+        """All motions, up to a number of samples."""
+        return {name: _trajectory(name, rows[:count]) for name, rows in self.rows.items()}
+
     def drive(self) -> Drive:
-        tracks = {name: _trajectory(name, rows) for name, rows in self.rows.items()}
+        """The drive, cut behind the ego's first contact."""
+        tracks = self._tracks(None)
         sizes, ego = self.staging.script.sizes, self.staging.ego
         others = [t for name, t in tracks.items() if name != ego]
         contact = first_with(tracks[ego], [t for t in others if t.actor not in self.staging.coupled], sizes)
         last = round(contact.t_s / STEP_S) + 1 if contact else len(self.taken)
-        cut = {name: _until(t, last) for name, t in tracks.items()}
+        cut = self._tracks(last)
         elsewhere = first_contact([t for name, t in cut.items() if name != ego], sizes)
         order = [a.id for a in self.staging.script.actors if a.id in cut]
         taken, seen = np.array(self.taken[:last]), np.array(self.seen_s[:last])
@@ -155,7 +159,7 @@ class _Run:
 
 
 def _user(staging: Staging, name: str, line: Way, script_s: float, rate: float, ego: Ego | None = None) -> RoadUser:
-    """A road user on its line at a script time, its clock running at a rate; the ego where it is."""
+    """A road user at a script time on its line with the rate of its clock; the ego in its own state."""
     info = staging.script.info(name)
     if ego is not None:
         course = ego.heading_rad + (math.pi if ego.backing else 0.0)
@@ -178,8 +182,3 @@ def _trajectory(name: str, rows: Sequence[tuple[float, float, float, float]]) ->
     t_s = np.round(np.arange(len(rows)) * STEP_S, 3)
     x, y, heading, speed = (table[:, i].copy() for i in range(4))
     return Trajectory(actor=name, t_s=t_s, x_m=x, y_m=y, heading_rad=np.unwrap(heading), speed_mps=speed)
-
-
-def _until(t: Trajectory, count: int) -> Trajectory:
-    names = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
-    return Trajectory(actor=t.actor, **{name: getattr(t, name)[:count] for name in names})

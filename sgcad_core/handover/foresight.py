@@ -1,7 +1,7 @@
-"""What a driver can foresee: who is, or comes, before the ego on its way, and when boxes would touch.
+"""Prediction for drivers: actors ahead of the ego on its way, and times at which boxes would touch.
 
-The ego is taken to keep to its way at its present speed, the others to keep speed and direction. Knows the seat's
-records; no simulation and no driver.
+The ego is assumed to keep its way and its speed, the others speed and direction. Knows the records of the seat; no
+simulation and no driver.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Meeting(NamedTuple):
     user: RoadUser
 
 
-def ahead(task: Task, view: View) -> list[Ahead]:
-    """Everybody whose center lies before the ego's rear on its next 150 m."""
+def users_ahead(task: Task, view: View) -> list[Ahead]:
+    """The actors with their center ahead of the ego's rear on its next 150 m."""
     stations = np.arange(view.station_m, min(view.station_m + _LOOK_M, float(task.way.s_m[-1]) + 1.0), _STEP_M)
     if len(stations) < 2:
         return []
@@ -85,7 +85,7 @@ def _ahead(view: View, user: RoadUser, stations: Floats, course: Floats, place: 
 
 
 def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) -> list[Meeting]:
-    """Who would touch the ego (or come nearer than a margin) within a horizon, soonest first."""
+    """Predicted contacts with the ego (or approaches within a margin) up to a horizon, soonest first."""
     if view.ego.speed_mps < 0.1 and all(u.speed_mps < 0.1 for u in view.others):
         return []
     t = np.arange(0.0, horizon_s + _GRAIN_S, _GRAIN_S)
@@ -94,7 +94,8 @@ def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) ->
     size = view.ego.length_m, view.ego.width_m
     found = []
     for user in view.others:
-        if math.hypot(user.x_m - view.ego.x_m, user.y_m - view.ego.y_m) > _reach_m(view.ego, user, horizon_s):
+        reach_m = (view.ego.speed_mps + user.speed_mps) * horizon_s + view.ego.length_m + user.length_m
+        if math.hypot(user.x_m - view.ego.x_m, user.y_m - view.ego.y_m) > reach_m:
             continue
         vx, vy = user.velocity
         theirs = np.column_stack((user.x_m + vx * t, user.y_m + vy * t, np.full(len(t), user.heading_rad)))
@@ -102,7 +103,3 @@ def meetings(task: Task, view: View, horizon_s: float, margin_m: float = 0.0) ->
         if len(hits):
             found.append(Meeting(float(t[hits[0]]), float(t[hits[-1]]), user))
     return sorted(found, key=lambda m: m.begins_s)
-
-
-def _reach_m(a: RoadUser, b: RoadUser, horizon_s: float) -> float:
-    return (a.speed_mps + b.speed_mps) * horizon_s + a.length_m + b.length_m

@@ -1,26 +1,26 @@
-"""What a drive came to, against the script: avoided, mitigated, unchanged, worse, or lost.
+"""The outcome of a drive against the script: avoided, mitigated, unchanged, worse, or lost.
 
-    avoided     the conflict came about and the ego touched nobody
-    mitigated   it touched somebody, and clearly softer than in the script
+    avoided     the conflict came about and the ego touched no actor
+    mitigated   the ego touched an actor, clearly softer than in the script
     unchanged   as hard as in the script, within the margins of `Margins`
     worse       clearly harder
     lost        the ego never came into the conflict, so that nothing can be credited to its driver
 
-Whether the conflict came about is asked of the clock: had the ego gone on from the release in step with the others, at
-their proportion of the script's speeds, it would have touched. Knows drives; no plugin.
+Whether the conflict came about is decided on the clock: had the ego gone on from the release in step with the others,
+in proportion to the scripted speeds, it would have touched. Knows drives; no plugin.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from sgcad_core.case.driver_io import STEP_S, Way
+from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats, ObservedContact, Record, Trajectory
-from sgcad_core.execution.contact import poses, realised
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.execution.contact import realised
+from sgcad_core.geometry.plane import arc_lengths, box_gaps
 from sgcad_core.handover.drive import Drive
 from sgcad_core.handover.severity import Severity, severity
 from sgcad_core.metrics import conflict, displacement
@@ -30,19 +30,18 @@ Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
 OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")
 _BRAKES_MPS2 = 1.0
 """Deceleration beyond the script's that counts as braking."""
-_ASIDE_M = 0.3
 _GRAIN_S = 0.05
 
 
 class Margins(Record):
-    """What counts as clearly softer or harder: both by the larger delta-v of the pair."""
+    """Margins of "clearly softer" or "harder", by the larger delta-v of the pair."""
 
     share: float = 0.1
     least_mps: float = 0.5
 
 
-class Came(Record):
-    """A drive's result: the figures that tables and drive.json have."""
+class DriveResult(Record):
+    """The result of a drive: the figures of tables and drive.json."""
 
     outcome: Outcome
     reason: str
@@ -53,11 +52,11 @@ class Came(Record):
     scripted: Severity | None
     """Of the ego's contact in the script."""
     braked_s: float | None
-    """When it began to brake: before its contact or, if it had none, before its closest approach."""
+    """Beginning of braking before the contact or, without one, before the closest approach."""
     braked_at_ttc_s: float | None
     hardest_mps2: float
     closest_m: float
-    """Least clearance of the boxes to anybody it is not coupled to."""
+    """Least clearance to any actor that is not coupled to the ego."""
     least_ttc_s: float | None
     pet_s: float | None
     pet_reason: str
@@ -65,25 +64,27 @@ class Came(Record):
     elsewhere: ObservedContact | None
 
 
-def came(drive: Drive, margins: Margins | None = None) -> Came:
-    """Judge a drive."""
+def judge_drive(drive: Drive, margins: Margins | None = None) -> DriveResult:
+    """Judges a drive."""
     staging, script = drive.staging, drive.staging.script
     infos = {a.id: a for a in script.actors}
     scripted = severity(staging.contact, script.trajectories, infos) if staging.contact else None
     now = severity(drive.contact, drive.trajectories, infos) if drive.contact else None
     outcome, reason = _outcome(drive, now, scripted, margins or Margins())
-    closest, ttc, pet = _nearness(drive)
+    near = _nearness(drive)
+    nearest = int(near.clearance_m.argmin())
     onset = _braking(drive)
-    until = drive.contact.t_s if drive.contact else float(closest[1])
-    seen = ttc[onset] if onset is not None else math.inf
-    return Came(
+    until = drive.contact.t_s if drive.contact else float(drive.ego.t_s[nearest])
+    seen = near.ttc_s[onset] if onset is not None else math.inf
+    return DriveResult(
         outcome=outcome, reason=reason,
         as_declared=realised(script.declared, drive.contact) if script.declared else None,
         contact=drive.contact, severity=now, scripted=scripted,
         braked_s=None if onset is None else round(until - onset * STEP_S, 3),
         braked_at_ttc_s=_finite(seen), hardest_mps2=round(float(max(-drive.accelerations.min(initial=0.0), 0.0)), 3),
-        closest_m=round(closest[0], 3), least_ttc_s=_finite(float(ttc.min())),
-        pet_s=pet.seconds, pet_reason=pet.reason, lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
+        closest_m=round(float(near.clearance_m[nearest]), 3), least_ttc_s=_finite(float(near.ttc_s.min())),
+        pet_s=near.pet.seconds, pet_reason=near.pet.reason,
+        lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
     )  # fmt: skip
 
 
@@ -107,7 +108,7 @@ def _outcome(drive: Drive, now: Severity | None, scripted: Severity | None, marg
 
 
 def _lost(drive: Drive) -> str:
-    """Why the conflict never came about; empty: it did."""
+    """The reason why the conflict never came about; empty where it did."""
     clock = drive.clock
     if drive.staging.contact is None:
         return "the ego has no contact in the script"
@@ -119,76 +120,64 @@ def _lost(drive: Drive) -> str:
 
 
 def _would_touch(drive: Drive) -> bool:
-    """Whether the ego, going on in step with the others, would have touched its partner of the script."""
+    """Whether the ego, in step with the others, would have touched its partner of the script."""
     staging, clock = drive.staging, drive.clock
     contact = staging.contact
     other = contact.other if contact and contact.actor == staging.ego else contact.actor if contact else ""
     t = np.arange(0.0, 3 * clock.release_s + 4.0, _GRAIN_S)
     begun = staging.contact_s - clock.release_s
-    mine = _at(staging.way, begun + clock.lag_s + clock.rate * t)
-    theirs = _at(staging.lines[other], begun + clock.rate * t)
+    mine = staging.way.poses_when(begun + clock.lag_s + clock.rate * t)
+    theirs = staging.lines[other].poses_when(begun + clock.rate * t)
     sizes = staging.script.sizes
     return bool((box_gaps(mine, sizes[staging.ego], theirs, sizes[other]) <= 0).any())
 
 
-def _at(line: Way, times: Floats) -> Floats:
-    return np.column_stack([np.interp(times, line.t_s, line.pose[:, i]) for i in range(3)])
-
-
 # ------------------------------------------------------------------ figures on the way
 def _track(t: Trajectory, size: tuple[float, float]) -> Track:
-    return Track(t.t_s, poses(t), displacement.velocities(t), size)
+    return Track(t.t_s, t.pose, displacement.velocities(t), size)
 
 
-def _nearness(drive: Drive) -> tuple[tuple[float, float], Floats, conflict.Encroachment]:
-    """Least clearance and when; TTC over time to the nearest in time; PET with the partner that comes nearest."""
+class _Nearness(NamedTuple):
+    """(n,) clearance (m) and time to collision (s), the least over all others; PET with the one that comes nearest."""
+
+    clearance_m: Floats
+    ttc_s: Floats
+    pet: conflict.Encroachment
+
+
+def _nearness(drive: Drive) -> _Nearness:
     sizes, staging = drive.staging.script.sizes, drive.staging
     ego = _track(drive.ego, sizes[staging.ego])
-    best, ttc = (math.inf, 0.0), np.full(len(ego.t_s), math.inf)
+    clearance, ttc = np.full((2, len(ego.t_s)), math.inf)
     pet = conflict.Encroachment(None, "no common area")
     for t in drive.trajectories:
         if t.actor == staging.ego or t.actor in staging.coupled:
             continue
         other = _track(t, sizes[t.actor])
-        gap = conflict.box_distance(ego, other)
         ttc = np.minimum(ttc, conflict.time_to_collision(ego, other))
-        k = int(gap.argmin())
-        if gap[k] < best[0]:
-            best, pet = (float(gap[k]), float(ego.t_s[k])), conflict.post_encroachment_time(ego, other)
-    return best, ttc, pet
+        gap = conflict.box_distance(ego, other)
+        if gap.min() < clearance.min():
+            pet = conflict.post_encroachment_time(ego, other)
+        clearance = np.minimum(clearance, gap)
+    return _Nearness(clearance, ttc, pet)
 
 
 def _braking(drive: Drive) -> int | None:
-    """The step at which the ego began to brake harder than the report's driver did there, for good."""
+    """The step at which the ego began to brake harder than the report's driver at the same place."""
     way = drive.staging.way
-    own = _own_times(drive)
+    own = np.interp(arc_lengths(drive.ego.points), way.s_m, way.t_s)  # script time at the places of the ego
     scripted = np.interp(own, way.t_s, np.gradient(way.speed_mps, STEP_S) if len(way.speed_mps) > 1 else way.speed_mps)
     harder = np.flatnonzero(drive.accelerations < scripted - _BRAKES_MPS2)
     return int(harder[0]) if len(harder) else None
 
 
-def _own_times(drive: Drive) -> Floats:
-    """(n,) script time at which the report's driver was where the ego is."""
-    x, y = drive.ego.x_m, drive.ego.y_m
-    ran = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))))
-    return np.interp(ran, drive.staging.way.s_m, drive.staging.way.t_s)
-
-
-def series(drive: Drive) -> dict[str, Any]:
-    """Over time: TTC, clearance, the ego's acceleration, and the script time of the others; rounded, None: infinite."""
-    _, ttc, _ = _nearness(drive)
-    sizes, staging = drive.staging.script.sizes, drive.staging
-    ego = _track(drive.ego, sizes[staging.ego])
-    apart = [
-        conflict.box_distance(ego, _track(t, sizes[t.actor]))
-        for t in drive.trajectories
-        if t.actor != staging.ego and t.actor not in staging.coupled
-    ]
-    clear = np.min(apart, axis=0) if apart else np.full(len(ego.t_s), math.inf)
+def time_series(drive: Drive) -> dict[str, Any]:
+    """Time series: TTC, clearance, acceleration of the ego, script time of the others; rounded, None: infinite."""
+    near = _nearness(drive)
     return {
-        "t_s": [round(float(t), 2) for t in ego.t_s],
-        "time_to_collision_s": [_finite(float(v)) for v in ttc],
-        "clearance_m": [_finite(float(v)) for v in clear],
+        "t_s": [round(float(t), 2) for t in drive.ego.t_s],
+        "time_to_collision_s": [_finite(float(v)) for v in near.ttc_s],
+        "clearance_m": [_finite(float(v)) for v in near.clearance_m],
         "acceleration_mps2": [round(float(v), 3) for v in drive.accelerations],
         "others_script_s": [round(float(v), 3) for v in drive.others_s],
     }

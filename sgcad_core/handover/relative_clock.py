@@ -1,10 +1,10 @@
-"""The others' clock: they keep the conflict with an ego that does not drive as the report's driver did.
+"""The clock of the other actors, which keep the conflict with an ego that drives otherwise than the script.
 
-Triggers are relative. Until the release everybody else is where he was when the report's driver was where the ego is
-now (the same time to the conflict point), at a speed in proportion to the ego's; from the release on, a set time before
-the contact, each goes on at the proportion that he had then and heeds the ego no more. So an ego that drives as the
-report's driver meets the same crash, faster or slower, and one that reacts has the whole time since the release to do
-so. Nothing depends on a fixed time or on distances of centers. Knows one way; no simulation.
+Triggers are relative. Until the release each other actor is where it was when the report's driver was at the ego's
+place (the same time to the conflict point), at a speed in proportion to the ego's. From the release on, a set time
+before the contact, each keeps its proportion and no longer depends on the ego. So a driver like the report's meets the
+same crash, faster or slower, and a reaction has the whole time since the release. Nothing depends on a fixed time or on
+distances of centers. Knows one way; no simulation.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from sgcad_core.case.driver_io import STEP_S, Way
 
 RELEASE_S = 4.0
-"""Before the scripted contact. A driver who brakes gently (3 m/s2) stops from 12 m/s in that time."""
+"""Before the scripted contact. Gentle braking (3 m/s2) stops from 12 m/s in that time."""
 _SLOW_MPS = 1.0
 _SLOWEST, _FASTEST = 0.3, 1.7
-"""Of the scripted speeds: what others' driving may be stretched to."""
+"""Range of the proportion to the scripted speeds."""
 _CATCH_UP_S = 1.0
 _GENTLE_MPS2 = 3.0
-"""With which the fastest of them changes its proportion."""
+"""Acceleration of the fastest of them at a change of proportion."""
 
 
 @dataclass
@@ -34,13 +34,13 @@ class Clock:
     release_s: float = RELEASE_S
     now_s: float = 0.0
     rate: float = 0.0
-    """Script seconds per second; 0 before the first step, when nobody has a speed to change from."""
+    """Script seconds per second; 0 before the first step."""
     released: bool = False
     lag_s: float = 0.0
-    """At the release: how far the ego's own script time was ahead of the others'."""
+    """At the release: lead of the ego's script time over that of the others."""
 
     def advance(self, script_s: float, speed_mps: float) -> None:
-        """One step on: the ego is where the report's driver was at `script_s`, with that speed."""
+        """Advances by one step: the ego is where the report's driver was at `script_s`, with that speed."""
         if not self.released:
             self._follow(script_s, speed_mps)
             if self.now_s >= self.contact_s - self.release_s:

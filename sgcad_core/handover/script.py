@@ -1,8 +1,8 @@
-"""A written crash as a hand-over needs it: who drove which line when, until the contact and as if there were none.
+"""A written crash for a hand-over: the motion of each actor up to the contact, and as if there were none.
 
-A line holds a pose every 0.05 s. Until its actor touches the ego it is the script; from there on the actor goes on
-undisturbed, at the speed that it had. Contacts of others with one another stay as scripted. Knows trajectories,
-sizes and the lane graph; no driver.
+A line has a pose every 0.05 s. It follows the script until its actor touches the ego, then goes on undisturbed at the
+same speed. Contacts of the others with each other stay as scripted. Knows trajectories, sizes and the lane graph; no
+driver.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S, Way
 from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.errors import ConfigError
-from sgcad_core.execution.contact import first_with, poses
+from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
-from sgcad_core.handover.after_contact import Start, gone_on
+from sgcad_core.handover.lane_following import Start, continued_line
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import Contact, Surface
 from sgcad_core.roads.lane_graph import LaneGraph
 
 BEYOND_S = 15.0
-"""How long lines go on behind the contact."""
+"""Time for which lines go on after the contact."""
 _SLOW_MPS = 0.3
 DRIVEN = frozenset({"car", "suv", "pickup", "van", "truck", "bus", "motorcycle"})
-"""Kinds that a driver can be put into."""
+"""Kinds of actors that a driver can control."""
 _TREND = 4
 """Steps over which the trend of an actor's course is taken."""
 _TIGHTEST_PER_M = 0.2
 _COUPLED_M = 1.5
-"""A trailer keeps this close to its distance from what tows it."""
+"""Largest variation of the distance of a coupled trailer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +68,18 @@ class Script:
         return found
 
     def ego_of(self, role: str) -> str | None:
-        """The first actor of a role that somebody can drive."""
+        """The first actor of a role that a driver can control."""
         return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.type in DRIVEN), None)
 
     def contact_of(self, ego: str) -> ObservedContact | None:
-        """The script's first contact of an actor with anybody that is not coupled to it."""
+        """The first scripted contact of an actor with an actor that is not coupled to it."""
         track = {t.actor: t for t in self.trajectories}
         coupled = self.coupled_to(ego)
         others = [t for a, t in track.items() if a != ego and a not in coupled]
         return first_with(track[ego], others, self.sizes)
 
     def coupled_to(self, ego: str) -> frozenset[str]:
-        """Trailers that keep their distance from the ego (or what tows it) from the start, and do so moving."""
+        """Actors that keep their distance from the ego while moving, where either is a trailer."""
         track = {t.actor: t for t in self.trajectories}
         kinds = {a.id: a.type for a in self.actors}
         pairs = [a for a in track if a != ego and "trailer" in (kinds[a], kinds[ego])]
@@ -111,8 +111,8 @@ class Staging:
         return self.contact.t_s if self.contact else float(self.script.trajectories[0].t_s[-1])
 
 
-def staged(script: Script, ego: str) -> Staging:
-    """Put an actor's seat at a driver's disposal. Raises ConfigError for one that nobody can drive."""
+def staging_for(script: Script, ego: str) -> Staging:
+    """The staging with an actor as the ego. Raises ConfigError for an actor that no driver can control."""
     info = script.info(ego)
     if info.type not in DRIVEN:
         known = ", ".join(a.id for a in script.actors if a.type in DRIVEN) or "none"
@@ -124,7 +124,7 @@ def staged(script: Script, ego: str) -> Staging:
 
 
 def _cut(script: Script, ego: str, track: Trajectory) -> int | None:
-    """The last sample before the actor is disturbed by the ego (the ego: by anybody); None: it never is."""
+    """The last sample before the ego disturbs the actor (the ego: before any contact); None without one."""
     if track.actor == ego or track.actor in script.coupled_to(ego):
         contact = script.contact_of(ego)
     else:
@@ -135,7 +135,7 @@ def _cut(script: Script, ego: str, track: Trajectory) -> int | None:
 
 def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
     """An actor's line: its script up to the cut, then on as before."""
-    table: Floats = poses(track)
+    table: Floats = track.pose
     last = len(table) - 1 if cut is None else min(cut, len(table) - 1)
     table = table[: last + 1].copy()
     table[:, 2] = np.unwrap(table[:, 2])
@@ -149,7 +149,7 @@ def _line(script: Script, track: Trajectory, cut: int | None) -> Way:
 
 
 def _start(table: Floats) -> tuple[Start, float]:
-    """Where the last samples lead: place, course and bend, and the speed."""
+    """Start of the continuation from the last samples: place, course and bend, and the speed."""
     steps = np.diff(table[-_TREND - 1 :, :2], axis=0)
     moved = np.hypot(*steps.T) if len(steps) else np.zeros(1)
     x, y, heading = (float(v) for v in table[-1])
@@ -166,7 +166,7 @@ def _beyond(script: Script, actor: str, pose: Floats, start: Start, speed_mps: f
     """(m, 3) poses from the next sample on, along the lanes; the box keeps its angle to its way."""
     info = script.info(actor)
     graph = script.graph if info.type in DRIVEN or info.type in ("trailer", "bicycle") else LaneGraph({}, (), {})
-    points = gone_on(graph, start, speed_mps * BEYOND_S, info.maneuver)
+    points = continued_line(graph, start, speed_mps * BEYOND_S, info.maneuver)
     along = arc_lengths(points)
     way = np.diff(points, axis=0)
     course = np.unwrap(np.concatenate(([start.course_rad], np.arctan2(way[:, 1], way[:, 0]))))

@@ -1,4 +1,4 @@
-"""How hard a contact is: closing speed, change of velocity of both, energy, and the risk of injury that goes with it.
+"""Severity of a contact: closing speed, change of velocity of both, energy, and risk of death.
 
 One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.aftermath.impact`); masses are
 typical of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
@@ -13,7 +13,7 @@ from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.geometry.plane import Size
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
-from sgcad_core.planner.encounter.box_scalar import apart, mean, touch_points
+from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 
@@ -22,7 +22,7 @@ _PEOPLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle"})
 
 
 class Struck(Record):
-    """What one of both takes from a contact."""
+    """Effect of a contact on one actor."""
 
     actor: str
     speed_mps: float
@@ -51,7 +51,7 @@ class Severity(Record):
         return max(self.first.delta_v_mps, self.second.delta_v_mps)
 
     def of(self, actor: str) -> Struck:
-        """What one of both takes."""
+        """The effect on one of the two actors."""
         return self.first if self.first.actor == actor else self.second
 
 
@@ -72,10 +72,10 @@ def severity(contact: ObservedContact, trajectories: Sequence[Trajectory], infos
 def exchanged(
     first: Body, second: Body, restitution: float = RESTITUTION, friction: float = FRICTION
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Let two that touch exchange momentum at once; the changes of velocity of their centers, m/s."""
+    """Exchanges the momentum of two touching bodies at once; the changes of velocity of their centers, m/s."""
     before = [(b.vx, b.vy) for b in (first, second)]
-    at = mean(touch_points(first, second))
-    collide(first, second, at, apart(first, second).normal, restitution, friction)
+    at = center_of(touch_points(first, second))
+    collide(first, second, at, separation(first, second).normal, restitution, friction)
     changes = [(b.vx - v[0], b.vy - v[1]) for b, v in zip((first, second), before, strict=True)]
     return changes[0], changes[1]
 

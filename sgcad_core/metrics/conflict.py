@@ -1,8 +1,8 @@
-"""How near two actors come, in space and time: distance, time to collision, post-encroachment time.
+"""Conflict measures of two actors: distance, time to collision, post-encroachment time.
 
-Two readings, never mixed. `paper`: the formulas to the letter, on box centres. `exact`: oriented boxes,
-only on a collision course, 0 on overlap, infinite (not a number that means something) where there is
-none. Tracks are (n, 3) poses (x, y, heading) and (n, 2) velocities; sizes are length and width, metres.
+Two readings, never mixed. `paper`: the formulas to the letter, on box centres. `exact`: oriented boxes, only on a
+collision course, 0 on overlap, infinite (no finite number) without a collision course. Tracks are (n, 3) poses (x, y,
+heading) and (n, 2) velocities; sizes are length and width, metres.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from sgcad_core.case.records import Floats
+from sgcad_core.geometry import plane
 from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import gaps_where_near
 
@@ -20,7 +21,7 @@ Size = tuple[float, float]
 
 
 class Track(NamedTuple):
-    """One actor's motion as the metrics need it."""
+    """The motion of one actor for the metrics."""
 
     t_s: Floats
     pose: Floats
@@ -29,7 +30,7 @@ class Track(NamedTuple):
 
 
 class Encroachment(NamedTuple):
-    """A post-encroachment time and why it is what it is."""
+    """A post-encroachment time and the reason of its value."""
 
     seconds: float | None
     reason: Literal["measured", "overlap", "no common area", "ego never leaves", "other there from the start"]
@@ -50,6 +51,11 @@ def box_distance(first: Track, second: Track) -> Floats:
 def overlaps(first: Track, second: Track) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Whether the boxes share a point, one value an instance."""
     return gaps_where_near(first.pose, first.size, second.pose, second.size) <= 0
+
+
+def first_overlap(first: Track, second: Track) -> int | None:
+    """The first instance in which the boxes share a point; None where there is none."""
+    return plane.first_overlap(first.pose, first.size, second.pose, second.size)
 
 
 # ------------------------------------------------------------------ time to collision
@@ -84,14 +90,14 @@ def time_to_collision(first: Track, second: Track) -> Floats:
     return np.where(meets, np.maximum(enter, 0.0), np.inf)
 
 
-def required_deceleration(first: Track, second: Track) -> Floats:
-    """Deceleration rate to avoid the crash (DRAC), m/s^2: what one of both needs at once so that they do not touch.
+def required_deceleration(first: Track, second: Track, ttc: Floats | None = None) -> Floats:
+    """Deceleration rate to avoid the crash (DRAC), m/s^2: the deceleration that one of the two needs at once.
 
-    Closing speed^2 / (2 * way to the contact), which is closing speed / (2 * TTC); 0 off a collision course, infinite
-    on overlap. Two-dimensional form, along the relative velocity, of J. Archer, Indicators for Traffic Safety
-    Assessment and Prediction, 2005, ch. 2 (there of one who follows another).
+    Closing speed^2 / (2 * distance to the contact) = closing speed / (2 * TTC); 0 off a collision course, infinite on
+    overlap. Two-dimensional form, along the relative velocity, of J. Archer, Indicators for Traffic Safety Assessment
+    and Prediction, 2005, ch. 2 (there for car following). `ttc`: the time to collision, if known.
     """
-    ttc = time_to_collision(first, second)
+    ttc = time_to_collision(first, second) if ttc is None else ttc
     closing = np.hypot(*(first.velocity - second.velocity).T)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(np.isfinite(ttc), np.where(ttc > 0, closing / (2 * ttc), np.inf), 0.0)
@@ -110,7 +116,7 @@ def _presence(track: Track, origin: Floats, shape: tuple[int, int]) -> tuple[Flo
     east, north = (origin[k] + (np.arange(shape[k]) + 0.5) * CELL_M for k in (0, 1))
     cos, sin = np.cos(track.pose[:, 2]), np.sin(track.pose[:, 2])
     moved = np.append(True, (np.diff(track.pose, axis=0) != 0.0).any(axis=1))
-    last = np.append(np.flatnonzero(moved)[1:], len(moved)) - 1  # who stands is looked at once
+    last = np.append(np.flatnonzero(moved)[1:], len(moved)) - 1  # a standing box is entered once
     for k, stays in zip(np.flatnonzero(moved), last, strict=True):
         if (highs[k] <= lows[k]).any():
             continue
@@ -147,8 +153,8 @@ def _conflict_area(first: Track, second: Track) -> tuple[tuple[Floats, Floats], 
 def post_encroachment_time_paper(ego: Track, other: Track) -> Encroachment:
     """|t_ego_exit - t_other_entry| of the area that both sweep, s.
 
-    Only where both happen: an ego that stands in the area when the clock stops has not left it, and an other that
-    stands there when it starts has not come to it; the formula would then measure the clock.
+    Undefined where the ego is in the area at the end, or the other one at the start; the formula would then measure the
+    clock.
     """
     area = _conflict_area(ego, other)
     if area is None:

@@ -1,4 +1,4 @@
-"""How critical an execution is: collision and near-miss probability, interaction intensity, S_e, levels.
+"""Criticality of an execution: collision and near-miss probability, interaction intensity, S_e, levels.
 
 Functions of arrays and numbers that `conflict` measures; thresholds come in as a record.
 """

@@ -1,7 +1,7 @@
 """Displacement errors: between two trajectories, and of a constant-velocity prediction.
 
-A crash worth testing is hard to predict, so the prediction error of the simplest predictor measures
-how much happens. Knows no interaction.
+The error of the simplest predictor measures how much happens, since crashes worth testing are hard to predict. Knows no
+interaction.
 """
 
 from __future__ import annotations
@@ -9,11 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from sgcad_core.case.records import Floats, Trajectory
-
-
-def positions(trajectory: Trajectory) -> Floats:
-    """(n, 2) positions, metres."""
-    return np.column_stack((trajectory.x_m, trajectory.y_m))
 
 
 def average_displacement_error(predicted: Floats, truth: Floats) -> float:
@@ -32,12 +27,12 @@ def velocities(trajectory: Trajectory) -> Floats:
     """(n, 2) velocities by central differences of the positions, m/s."""
     if len(trajectory.t_s) < 2:
         return np.zeros((len(trajectory.t_s), 2))
-    return np.gradient(positions(trajectory), trajectory.t_s, axis=0)
+    return np.gradient(trajectory.points, trajectory.t_s, axis=0)
 
 
 def constant_velocity_error(trajectory: Trajectory) -> tuple[float, float]:
     """`paper` reading: ADE and FDE of one prediction from the first instance to the last, metres."""
-    truth = positions(trajectory)
+    truth = trajectory.points
     predicted = truth[0] + np.outer(trajectory.t_s - trajectory.t_s[0], velocities(trajectory)[0])
     return average_displacement_error(predicted, truth), final_displacement_error(predicted, truth)
 
@@ -49,7 +44,7 @@ def windowed_velocity_error(trajectory: Trajectory, horizon_s: float) -> tuple[f
     """
     dt = float(trajectory.t_s[1] - trajectory.t_s[0]) if len(trajectory.t_s) > 1 else 0.0
     steps = round(horizon_s / dt) if dt else 0
-    truth, speed = positions(trajectory), velocities(trajectory)
+    truth, speed = trajectory.points, velocities(trajectory)
     starts = len(truth) - steps
     if steps < 1 or starts < 1:
         return None

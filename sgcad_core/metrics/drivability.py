@@ -1,9 +1,9 @@
-"""Whether a motion can be driven: sideways acceleration, yaw rate and slip angle of a box, and how far boxes overlap.
+"""Whether a vehicle can drive a motion: lateral acceleration, yaw rate, slip angle, and overlaps of boxes.
 
-Pure functions on trajectories. Knows sizes and the surface; not who was meant to meet whom, nor what a report tells.
+Pure functions on trajectories. Knows sizes and the surface; no declared contact and no report.
 
-The box of a vehicle rolls without slip at its rear axle (the kinematic bicycle model: R. Rajamani, Vehicle Dynamics
-and Control, ch. 2.2), which lies `REAR_AXLE` of its length behind its center, as the writer of the .xosc has it.
+The box of a vehicle rolls without slip at its rear axle (the kinematic bicycle model: R. Rajamani, Vehicle Dynamics and
+Control, ch. 2.2), which lies `REAR_AXLE` of its length behind its center, as in the .xosc.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from sgcad_core.case.records import Record, Trajectory
-from sgcad_core.geometry.plane import Floats, Size, box_gaps, wrap_angle
+from sgcad_core.geometry.plane import Floats, Size, box_gaps, first_overlap, wrap_angle
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import ActorKind, Surface
 
@@ -25,10 +25,10 @@ WHEELED: frozenset[ActorKind] = frozenset(
     {"car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "trailer"}
 )
 _MOVING_MPS = 1.0
-"""A slower box tells no direction of travel."""
+"""A slower box has no direction of travel."""
 
 
-class Driven(Record):
+class DrivingPeaks(Record):
     """The peaks of one motion: lateral acceleration (m/s2), yaw rate (rad/s) and slip at the rear axle (rad)."""
 
     lateral_mps2: float
@@ -36,7 +36,7 @@ class Driven(Record):
     slip_rad: float
 
     def excesses(self, surface: Surface | None) -> tuple[str, ...]:
-        """What is over its limit, in words with value and limit; empty where everything can be driven."""
+        """The exceeded limits, in words with value and limit; empty where a vehicle can drive it."""
         friction = DRIVING.friction_mps2(surface)
         rows = (
             ("lateral acceleration", self.lateral_mps2, friction, "m/s2"),
@@ -46,20 +46,22 @@ class Driven(Record):
         return tuple(f"{what} {value:.1f} of {most:g} {unit}" for what, value, most, unit in rows if value > most)
 
 
-def driven(motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False) -> Driven:
+def driving_peaks(
+    motion: Trajectory, length_m: float, until: int | None = None, *, backing: bool = False
+) -> DrivingPeaks:
     """The peaks before the sample `until` (the first touch, which falls between that sample and the one before).
 
-    `backing`: the box is meant to travel against its heading, slip is told from that.
+    `backing`: the box travels against its heading, which the slip allows for.
     """
     x, y, heading = (np.asarray(c, dtype=float)[:until] for c in (motion.x_m, motion.y_m, motion.heading_rad))
     if len(x) < 3:
-        return Driven(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
+        return DrivingPeaks(lateral_mps2=0.0, yaw_radps=0.0, slip_rad=0.0)
     heading = np.unwrap(heading)
     center = np.column_stack((x, y))
     ahead = np.column_stack((np.cos(heading), np.sin(heading)))
     yaw = float(np.abs(np.diff(heading)).max()) / STEP_S
     slip = _slip(center - REAR_AXLE * length_m * ahead, heading, backing=backing)
-    return Driven(lateral_mps2=_lateral(center), yaw_radps=yaw, slip_rad=slip)
+    return DrivingPeaks(lateral_mps2=_lateral(center), yaw_radps=yaw, slip_rad=slip)
 
 
 def _lateral(center: Floats) -> float:
@@ -80,19 +82,21 @@ def _slip(axle: Floats, heading: Floats, *, backing: bool) -> float:
 
 # ------------------------------------------------------------------ overlaps
 def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> dict[str, int]:
-    """Actor -> the sample at which it first overlaps anybody; actors that never do are left out."""
+    """Actor -> the sample of its first overlap with any other; without one it is left out."""
     found: dict[str, int] = {}
     for a, b in combinations(motions, 2):
-        hits = np.flatnonzero(gaps(a, b, sizes) <= 0)
-        for name in (a.actor, b.actor) if len(hits) else ():
-            found[name] = min(found.get(name, len(a.t_s)), int(hits[0]))
+        if (hit := first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])) is not None:
+            found |= {name: min(found.get(name, hit), hit) for name in (a.actor, b.actor)}
     return found
 
 
-def deepest(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False) -> tuple[float, str]:
-    """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and of whom.
+def deepest_overlap(
+    motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest: bool = False
+) -> tuple[float, str]:
+    """Deepest overlap of any two boxes over all samples (`at_rest`: in the last one), metres, and their names.
 
-    The depth is the least way that parts the boxes. Pairs that overlap in the first sample are skipped: parts of one.
+    The depth is the least distance that separates the boxes. Pairs that overlap in the first sample are skipped: parts
+    of one object.
     """
     worst, who = 0.0, ""
     for a, b in combinations(motions, 2):
@@ -104,5 +108,4 @@ def deepest(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_rest
 
 def gaps(a: Trajectory, b: Trajectory, sizes: Mapping[str, Size]) -> Floats:
     """Separation of two moving boxes at each sample, metres; negative where they overlap."""
-    first, second = (np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in (a, b))
-    return box_gaps(first, sizes[a.actor], second, sizes[b.actor])
+    return box_gaps(a.pose, sizes[a.actor], b.pose, sizes[b.actor])

@@ -16,7 +16,7 @@ from sgcad_core.case.records import Finding, Stage
 
 Layer = Literal["parse", "schema", "netconvert", "references", "execution", "content"]
 LAYERS: tuple[Layer, ...] = ("parse", "schema", "netconvert", "references", "execution", "content")
-"""In the order in which an answer passes them; a file fails in the first that finds fault.
+"""In the order in which an answer passes them; a file fails in the first with a fault.
 
 parse: no document, JSON or Python to be read. schema: SUMO's, OpenSCENARIO's. netconvert: it compiles nothing.
 references: elements, lanes and places that are not there, or a file that SUMO or the player cannot take.
@@ -43,8 +43,8 @@ class FileCounts(NamedTuple):
 
 
 @dataclass(frozen=True)
-class AttemptSeen:
-    """One attempt of a stage and what was found wrong with it."""
+class AttemptRecord:
+    """One attempt of a stage with its findings."""
 
     stage: Stage
     findings: tuple[Finding, ...]
@@ -56,33 +56,33 @@ class AttemptSeen:
 
     @property
     def usable(self) -> bool:
-        """Whether nothing had to be repaired or refused; it may be doubted."""
+        """Whether no finding asks for a repair or a refusal; doubts are allowed."""
         return not any(f.severity in ("repair", "refuse") for f in self.findings)
 
     @property
     def doubts(self) -> int:
-        """Number of findings that an attempt may do without."""
+        """Number of findings of severity `doubt`."""
         return sum(f.severity == "doubt" for f in self.findings)
 
     @property
     def layer(self) -> Layer | None:
-        """The layer in which it failed; None if nothing has to be repaired."""
+        """The layer in which it failed; None without a finding to repair."""
         found = {layer_of(f) for f in self.findings if f.severity == "repair"}
         return next((layer for layer in LAYERS if layer in found), None)
 
 
 @dataclass(frozen=True)
-class CaseSeen:
+class CaseRecord:
     """One case of a batch: how it ended and its attempts, in order."""
 
     status: str
-    attempts: tuple[AttemptSeen, ...]
+    attempts: tuple[AttemptRecord, ...]
 
-    def of(self, stage: Stage) -> tuple[AttemptSeen, ...]:
+    def of(self, stage: Stage) -> tuple[AttemptRecord, ...]:
         """A stage's attempts."""
         return tuple(a for a in self.attempts if a.stage == stage)
 
-    def standing(self, stage: Stage) -> AttemptSeen | None:
+    def standing(self, stage: Stage) -> AttemptRecord | None:
         """The attempt of a stage that stands: the least doubtful usable one (`refine.outcome_of`), else the last."""
         seen = self.of(stage)
         return min((a for a in seen if a.usable), key=lambda a: a.doubts, default=seen[-1] if seen else None)
@@ -125,10 +125,10 @@ def api_error_rate(files: Iterable[FileCounts]) -> float:
 
 
 def layer_of(finding: Finding) -> Layer:
-    """The layer that a finding belongs to, by its source; what a narrative or a stranger's validator says is content.
+    """The layer of a finding, by its source; findings of narratives and of foreign validators are content.
 
-    Three sources speak of more than one: SUMO's schema names the document in its source where that is no XML,
-    OpenSCENARIO's schema places its faults by line and not by element, and the contact is content.
+    Three sources belong to more than one layer: SUMO's schema names the document where it is no XML, OpenSCENARIO's
+    schema locates faults by line and not by element, and contacts are content.
     """
     source, where = finding.source, finding.where
     if source.startswith("sumo_xsd ") or (source in FILES and not where):  # an answer without findings is unreadable
@@ -141,7 +141,7 @@ def layer_of(finding: Finding) -> Layer:
 
 
 # ------------------------------------------------------------------ a batch
-def quality(cases: Sequence[CaseSeen]) -> Quality:
+def quality(cases: Sequence[CaseRecord]) -> Quality:
     """Figures of one config's cases."""
     first, last = [_files(c, first=True) for c in cases], [_files(c) for c in cases]
     count = max(len(cases), 1)
@@ -160,17 +160,17 @@ def quality(cases: Sequence[CaseSeen]) -> Quality:
     )
 
 
-def written_files(case: CaseSeen) -> FileCounts:
+def written_files(case: CaseRecord) -> FileCounts:
     """Files of a case after refinement: written, and those with an error."""
     return _files(case)[0]
 
 
-def _at_once(case: CaseSeen) -> bool:
-    """Whether it was generated, and would have been without any refinement."""
+def _at_once(case: CaseRecord) -> bool:
+    """Whether it was generated without any refinement."""
     return case.status == "generated" and all(a.usable for stage in FILES for a in case.of(stage)[:1])
 
 
-def _files(case: CaseSeen, first: bool = False) -> tuple[FileCounts, Counter[Layer]]:
+def _files(case: CaseRecord, first: bool = False) -> tuple[FileCounts, Counter[Layer]]:
     """Files of each stage's attempt that stands, or of its first, and the layers in which the faulty ones failed.
 
     A refused attempt writes no file. A stage that was never reached has none either. Of a road attempt both
@@ -184,18 +184,13 @@ def _files(case: CaseSeen, first: bool = False) -> tuple[FileCounts, Counter[Lay
         written += files
         if (layer := seen.layer) is not None and layer != "content":
             layers[layer] += 1 if _only_opendrive(seen) else files
-    if not first and _died_running(case) and not layers:
+    if not first and not layers and case.status == "failed" and case.of("scenario"):  # the execution failed
         layers["execution"] += FILES["scenario"]
     return FileCounts(written, layers.total()), layers
 
 
-def _only_opendrive(attempt: AttemptSeen) -> bool:
+def _only_opendrive(attempt: AttemptRecord) -> bool:
     return {f.source for f in attempt.findings if f.severity == "repair"} == {"opendrive"}
-
-
-def _died_running(case: CaseSeen) -> bool:
-    """Whether both stages were written and the execution failed."""
-    return case.status == "failed" and bool(case.of("scenario"))
 
 
 def _sum(counts: Iterable[Counter[Layer]]) -> dict[Layer, int]:

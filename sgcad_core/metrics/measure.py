@@ -1,4 +1,4 @@
-"""One execution in, one JSON mapping out: metrics.json. Both readings, never mixed.
+"""Measures one execution: the contents of metrics.json, in two readings that are never mixed.
 
 `paper` looks from the ego (the first vehicle, V1) at every other road user; `exact` looks at every pair,
 so that a crash between others is not lost. Infinite and undefined values are null with a reason.
@@ -41,8 +41,7 @@ def _ego(tracks: dict[str, Track]) -> str | None:
 
 
 def _track(trajectory: Trajectory, size: tuple[float, float]) -> Track:
-    pose = np.column_stack((trajectory.x_m, trajectory.y_m, trajectory.heading_rad))
-    return Track(trajectory.t_s, pose, displacement.velocities(trajectory), size)
+    return Track(trajectory.t_s, trajectory.pose, displacement.velocities(trajectory), size)
 
 
 def _paper(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], limits: Thresholds) -> dict[str, Any]:
@@ -77,7 +76,7 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
     collision = any(conflict.overlaps(a, b).any() for a, b in pairs)
     ttc = _least([conflict.time_to_collision(a, b).min() for a, b in pairs])
     pet = _soonest([conflict.post_encroachment_time(a, b) for a, b in pairs])
-    needed = [conflict.required_deceleration(a, b)[: _first_overlap(a, b)] for a, b in pairs]
+    needed = [conflict.required_deceleration(a, b)[: conflict.first_overlap(a, b)] for a, b in pairs]
     distance = _least([conflict.box_distance(a, b).min() for a, b in pairs])
     errors = displacement.windowed_velocity_error(motion[ego], limits.prediction_horizon_s)
     score = criticality.emergency_score(collision, ttc, pet.seconds, distance, limits)
@@ -92,32 +91,26 @@ def _exact(ego: str, tracks: dict[str, Track], motion: dict[str, Trajectory], li
         "average_displacement_error_m": errors[0] if errors else None,
         "final_displacement_error_m": errors[1] if errors else None,
         "emergency_score": score, "emergency_level": criticality.emergency_level(score, limits),
-        **precontact_metrics.told(tracks),
+        **precontact_metrics.precontact_figures(tracks),
     }  # fmt: skip
 
 
 def _counts(a: Track, b: Track) -> bool:
-    """Two things that never move have no conflict."""
+    """Whether one of the two moves; pairs that never move have no conflict."""
     return bool(np.ptp(a.pose[:, :2], axis=0).max() > 0.1 or np.ptp(b.pose[:, :2], axis=0).max() > 0.1)
 
 
 def _impact_speed(pairs: list[tuple[Track, Track]]) -> float | None:
     """Relative speed over the step that ends in the first overlap of any pair, m/s.
 
-    From positions, backwards: velocities are central differences, and what the contact does must not be in it.
+    From positions before the contact: velocities are central differences, which would include its effect.
     """
     first: tuple[float, float] | None = None
     for a, b in pairs:
-        hit = np.flatnonzero(conflict.overlaps(a, b))
-        if hit.size and (first is None or a.t_s[hit[0]] < first[0]):
-            first = float(a.t_s[hit[0]]), float(np.hypot(*(_arriving(a, int(hit[0])) - _arriving(b, int(hit[0])))))
+        hit = conflict.first_overlap(a, b)
+        if hit is not None and (first is None or a.t_s[hit] < first[0]):
+            first = float(a.t_s[hit]), float(np.hypot(*(_arriving(a, hit) - _arriving(b, hit))))
     return first[1] if first else None
-
-
-def _first_overlap(a: Track, b: Track) -> int | None:
-    """The instance of the first overlap; None where there is none."""
-    hit = np.flatnonzero(conflict.overlaps(a, b))
-    return int(hit[0]) if hit.size else None
 
 
 def _most(values: list[Floats]) -> float | None:

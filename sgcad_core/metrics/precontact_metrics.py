@@ -1,13 +1,13 @@
-"""Metrics that tell crashes apart: how the last seconds before the first contact went.
+"""Metrics of the last seconds before the first contact, which distinguish crashes.
 
-At the contact every time to collision is 0, in every crash alike; a second before it is not. Exact boxes, constant
-velocity, the pair that touches first. SI units; None where the value is not defined.
+At the contact every time to collision is 0; a second before it is not. Exact boxes, constant velocity, the pair that
+touches first. SI units; None where the value is not defined.
 
 TTC at 0.5, 1 and 2 s before the contact: the time left if both kept speed and direction. Time exposed (TET) and its
 integral (TIT): of TTC under a threshold; TIT sums threshold - TTC (M. M. Minderhoud, P. H. L. Bovy, Accident Analysis
-and Prevention 33 (2001) 89). DRAC: (v1 - v2)^2 / (2 gap) in line (D. F. Cooper, N. Ferguson, 1976); in the plane with
-the relative speed, and for the gap what that covers until the touch, so |v_rel| / (2 TTC). Onset of braking: the first
-step from which a vehicle decelerates by more than 2 m/s2 until the contact, with the TTC then.
+and Prevention 33 (2001) 89). DRAC: (v1 - v2)^2 / (2 gap) in line (D. F. Cooper, N. Ferguson, 1976); in the plane
+|v_rel| / (2 TTC). Onset of braking: the first step from which a vehicle decelerates by more than 2 m/s2 until the
+contact, with the TTC then.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def first_pair(tracks: dict[str, Track]) -> Pair | None:
     """The pair that overlaps first, neither from the start on; of several in one step the first by name."""
     found: tuple[int, str, str] | None = None
     for a, b in combinations(sorted(tracks), 2):
-        hits = np.flatnonzero(conflict.overlaps(tracks[a], tracks[b]))
-        if len(hits) and hits[0] > 1 and (found is None or hits[0] < found[0]):
-            found = int(hits[0]), a, b
+        hit = conflict.first_overlap(tracks[a], tracks[b])
+        if hit is not None and hit > 1 and (found is None or hit < found[0]):
+            found = hit, a, b
     if found is None:
         return None
     k, a, b = found
@@ -54,18 +54,18 @@ def first_pair(tracks: dict[str, Track]) -> Pair | None:
 
 
 def _until(track: Track, k: int) -> Track:
-    """The part before a step, with velocities from steps before it only (what the contact does is not in it)."""
+    """The part before a step, with velocities from earlier steps only (without the effect of the contact)."""
     velocity = np.gradient(track.pose[:k, :2], track.t_s[:k], axis=0) if k > 1 else track.velocity[:k]
     return Track(track.t_s[:k], track.pose[:k], velocity, track.size)
 
 
-def told(tracks: dict[str, Track]) -> dict[str, Any]:
-    """The figures by name; an empty mapping where nobody touches."""
+def precontact_figures(tracks: dict[str, Track]) -> dict[str, Any]:
+    """The figures by name; empty without a contact."""
     pair = first_pair(tracks)
     if pair is None:
         return {}
     ttc = conflict.time_to_collision(pair.a, pair.b)
-    drac = deceleration_rate(pair.a, pair.b, ttc)
+    drac = conflict.required_deceleration(pair.a, pair.b, ttc)
     figures: dict[str, Any] = {}
     for before in BEFORE_S:
         k = _step(pair, before)
@@ -80,22 +80,14 @@ def told(tracks: dict[str, Track]) -> dict[str, Any]:
     return figures | _braking(pair, ttc)
 
 
-def deceleration_rate(first: Track, second: Track, ttc: Floats) -> Floats:
-    """DRAC in the plane, m/s2: |v_rel| / (2 TTC); 0 where there is no collision course, infinite on contact."""
-    closing = np.hypot(*(first.velocity - second.velocity).T)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rate: Floats = np.where(np.isfinite(ttc), closing / (2 * ttc), 0.0)
-    return rate
-
-
 def _step(pair: Pair, before_s: float) -> int | None:
-    """The step so long before the contact; None where the clock begins later."""
+    """The step at a time before the contact; None where the clock begins later."""
     at = pair.contact_s - before_s
     return None if at < pair.a.t_s[0] - 1e-9 else int(np.abs(pair.a.t_s - at).argmin())
 
 
 def _braking(pair: Pair, ttc: Floats) -> dict[str, Any]:
-    """Of the one that brakes first: how long before the contact, and at which TTC."""
+    """The first of the two to brake: time before the contact and TTC."""
     onsets = [k for track in (pair.a, pair.b) if (k := _onset(track)) is not None]
     if not onsets:
         return {"braking_s_before_s": None, "ttc_at_braking_s": None}

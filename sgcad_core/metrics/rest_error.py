@@ -1,7 +1,7 @@
-"""How far a pose is from the rest that a report tells: facing, place and side, each as an error of its own.
+"""Errors of a pose at rest against the stated rest: facing, place and side, each on its own.
 
-The planner fits the run-out of a wreck by these errors, `sgcad score` counts them: what may be missed by how much
-stands here once. Angles in radians counter-clockwise from east unless a name says otherwise; metres.
+The planner fits run-outs by these errors, and `sgcad score` counts them; the tolerances are defined here. Angles in
+radians counter-clockwise from east unless a name says otherwise; metres.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ COMPASS_DEG: dict[str, float] = {
     "N": 0.0, "NE": 45.0, "E": 90.0, "SE": 135.0, "S": 180.0, "SW": 225.0, "W": 270.0, "NW": 315.0,
 }  # fmt: skip
 FACING_RAD = math.radians(45.0)
-"""A facing is right within an eighth of the circle: half an eighth for the word, half for the fit."""
+"""A facing is right within an eighth of the circle: half of it for the word, half for the fit."""
 SIDE_RAD = math.radians(68.0)
-"""A side is right where the point lies within so much of it, seen from the nearest lane or the junction's center; of
-what stands in the road no side is right."""
+"""A side is right within this angle, seen from the nearest lane or the center of the junction; in the road no side is
+right."""
 SPINS_RAD = math.radians(8.0)
-"""Turned by so much behind its first contact a vehicle is seen to spin."""
+"""Rotation after its first contact from which a vehicle spins."""
 SHOULDER_M = (-1.2, 4.0)
-"""How far beyond the edge of the nearest lane the center of a box lies that stands on a shoulder."""
+"""Distances beyond the edge of the nearest lane of a box center on a shoulder."""
 OFF_M = 0.0
 """Off the road from here on: the center is beyond the edge."""
 _JUNCTION_M = 1.5
-"""How far out of the junction's area a center may lie that is still in the intersection."""
+"""Distance out of the area of a junction at which a center still counts as in the intersection."""
 _CORNER_M = 45.0
-"""A side is seen from the center of a junction that is nearer than this."""
+"""A side is seen from the center of a junction within this distance."""
 
 
 class RestErrors(NamedTuple):
-    """(n,) errors of poses: 0 or less is right, None what is not told."""
+    """(n,) errors of poses: 0 or less is right, None where the report states nothing."""
 
     facing_rad: Floats | None
     """Beyond what is allowed."""
@@ -45,7 +45,7 @@ class RestErrors(NamedTuple):
     side_rad: Floats | None
 
     def right(self) -> dict[str, bool]:
-        """Which of the told parts the only pose gets right."""
+        """By stated part whether a single pose is right."""
         return {
             name: bool(error[0] <= 1e-9)
             for name, error in zip(("facing", "where", "side"), self, strict=True)
@@ -65,7 +65,7 @@ def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSur
 
 
 def attitude_of(roll_rad: float) -> Attitude:
-    """On what a vehicle lies after a roll, positive to the right: the nearest quarter turn."""
+    """The side on which a vehicle lies after a roll (positive to the right): the nearest quarter turn."""
     lies: tuple[Attitude, ...] = ("wheels", "right", "roof", "left")
     return lies[round(roll_rad / (math.pi / 2)) % 4]
 
@@ -80,7 +80,7 @@ def _apart(angles: Floats, wanted: float) -> Floats:
 
 
 def _misplaced(told: RestTold, poses: Floats, off: Floats, surface: RoadSurface) -> Floats:
-    """By how many metres the told kind of place is missed."""
+    """Distance from the stated kind of place, metres; 0 or less is right."""
     if told.where == "road":
         return off - OFF_M
     if told.where == "shoulder":
@@ -95,7 +95,8 @@ def _misplaced(told: RestTold, poses: Floats, off: Floats, surface: RoadSurface)
 
 
 def _beside(side: Compass | Hand, poses: Floats, bearing: Floats, came_rad: float, surface: RoadSurface) -> Floats:
-    """Angle between the told side and where the point lies: from the nearest lane, or from the junction's center."""
+    """Angle between the stated side and the direction of the point: from the nearest lane, or from the center of the
+    junction."""
     if side in ("left", "right"):
         return _apart(bearing, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
     wanted = compass_rad(COMPASS_DEG[side])

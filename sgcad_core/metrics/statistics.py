@@ -1,36 +1,35 @@
-"""How sure a figure over cases is, and whether two arms differ: bootstrap intervals, paired tests, Holm's correction.
+"""Confidence intervals of a figure over cases, and tests whether two arms differ.
 
-A figure is a ratio of sums over cases, sum(a) / sum(b); with b = 1 it is the mean, and with a in {0, 1} besides a
-share. Everything random is seeded, so the same cases give the same digits. Knows arrays, no metric and no file.
+A figure is a ratio of sums over cases, sum(a) / sum(b): a mean where b = 1, a share where also a is 0 or 1. All random
+draws are seeded, so the same cases give the same digits. `scipy.stats` does the work where it has the method (bootstrap
+and binomial intervals and tests); it is imported on first use, since it takes a second to load.
 """
 
 from __future__ import annotations
 
-import math
+import warnings
 from collections.abc import Mapping
-from functools import lru_cache
-from statistics import NormalDist
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sgcad_core.case.records import Floats
 
 LEVEL = 0.95
 RESAMPLES = 5_000
-"""The ends of an interval then move by about 0.01 standard errors of a percentile from seed to seed."""
+"""With these many the ends of an interval move by about 0.01 standard errors of a percentile from seed to seed."""
 FLIPS = 9_999
+"""Sign patterns drawn by `swap_test` where not all are counted."""
 EXACT_CASES = 13
-"""Up to so many differing cases every one of the 2^n sign patterns is counted instead of drawn."""
+"""Up to this number of differing cases all 2^n sign patterns are counted instead of drawn."""
 SEED = 42
 BLOCK = 4_000_000
-"""Elements of the resampling table kept at a time."""
-_NORMAL = NormalDist()
+"""Elements of the resampling table in memory at a time."""
 
 
 class Interval(NamedTuple):
-    """A confidence interval and how it was found: `bca`, `percentile`, or `exact` (Clopper and Pearson)."""
+    """A confidence interval and its method: `bca`, `percentile`, or `exact` (Clopper and Pearson)."""
 
     low: float
     high: float
@@ -39,24 +38,27 @@ class Interval(NamedTuple):
 
 # ------------------------------------------------------------------ intervals
 def share_interval(outcomes: ArrayLike, level: float = LEVEL, seed: int = SEED) -> Interval | None:
-    """Bootstrap interval of a share: outcomes are 0 or 1, one a case.
+    """Bootstrap interval of a share; outcomes are 0 or 1, one a case.
 
-    A share of 0 or 1 has a bootstrap interval of no width, which would claim certainty from any number of cases:
-    there the exact binomial interval stands.
+    A share of 0 or 1 has a bootstrap interval of no width, which would claim certainty from any number of cases.
+    The exact binomial interval (Clopper and Pearson) replaces it.
     """
     x = np.asarray(outcomes, dtype=float)
     if x.size and x.min() == x.max():
-        return _unanimous(len(x), bool(x[0]), level)
+        return Interval(*_binomial_interval(int(x.sum()), len(x), level, "exact"), "exact")
     return mean_interval(x, level, seed)
 
 
 def wilson(hits: int, n: int, level: float = LEVEL) -> tuple[float, float]:
     """Score interval of hits of n (E. B. Wilson, JASA 22 (1927) 209): no wider than [0, 1], never empty; n > 0."""
-    z = _NORMAL.inv_cdf((1 + level) / 2)
-    share, weight = hits / n, 1 + z * z / n
-    middle = (share + z * z / (2 * n)) / weight
-    half = z / weight * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n))
-    return max(middle - half, 0.0), min(middle + half, 1.0)
+    return _binomial_interval(hits, n, level, "wilson")
+
+
+def _binomial_interval(hits: int, n: int, level: float, method: Literal["exact", "wilson"]) -> tuple[float, float]:
+    from scipy.stats import binomtest
+
+    low, high = binomtest(hits, n).proportion_ci(level, method)
+    return float(low), float(high)
 
 
 def mean_interval(values: ArrayLike, level: float = LEVEL, seed: int = SEED) -> Interval | None:
@@ -70,84 +72,59 @@ def ratio_interval(
 ) -> Interval | None:
     """Interval of sum(a) / sum(b), cases drawn with replacement; None where sum(b) is 0.
 
-    Bias-corrected and accelerated (Efron 1987); the plain percentiles where a jackknife sample has no
-    denominator. A resample without denominator is drawn out of the picture.
+    Bias-corrected and accelerated (B. Efron, JASA 82 (1987) 171); plain percentiles where that is not defined, e.g.
+    where all denominators but one are 0. Resamples whose denominator is 0 are left out.
     """
     a, b = np.asarray(numerators, dtype=float), np.asarray(denominators, dtype=float)
     if not a.size or b.sum() == 0:
         return None
-    estimate = float(a.sum() / b.sum())
-    draws = np.sort(_resampled(a, b, seed))
-    ends = _bca_ends(estimate, draws, a, b, level)
-    method: Literal["bca", "percentile"] = "percentile" if ends is None else "bca"
-    low, high = np.quantile(draws, ends or ((1 - level) / 2, (1 + level) / 2))
-    return Interval(float(low), float(high), method)
+    if a.size == 1:
+        return Interval(float(a[0] / b[0]), float(a[0] / b[0]), "percentile")
+    return _bootstrapped(a, b, level, np.random.default_rng((seed, a.size)))
 
 
-def _resampled(a: Floats, b: Floats, seed: int) -> Floats:
-    """(RESAMPLES,) ratios of resampled sums."""
-    rows = max(1, BLOCK // len(a))
-    pair = np.stack((a, b), axis=1)
-    total: Floats = np.concatenate([counts @ pair for counts in _counts(len(a), seed, rows)])
-    total = total[total[:, 1] > 0]
-    ratios: Floats = total[:, 0] / total[:, 1]
-    return ratios
+def _bootstrapped(a: Floats, b: Floats, level: float, draw: np.random.Generator) -> Interval:
+    from scipy.stats import DegenerateDataWarning, bootstrap
+
+    settings: dict[str, Any] = {"paired": True, "vectorized": True, "confidence_level": level}
+    with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):
+        warnings.simplefilter("ignore", DegenerateDataWarning)
+        drawn = bootstrap(
+            (a, b), _ratio_of_sums, n_resamples=RESAMPLES, batch=max(1, BLOCK // a.size), method="percentile",
+            random_state=draw, **settings,
+        )  # fmt: skip
+        drawn.bootstrap_distribution = drawn.bootstrap_distribution[np.isfinite(drawn.bootstrap_distribution)]
+        settings |= {"n_resamples": 0, "bootstrap_result": drawn}
+        low, high = bootstrap((a, b), _ratio_of_sums, method="BCa", **settings).confidence_interval
+        if np.isfinite(low) and np.isfinite(high):
+            return Interval(float(low), float(high), "bca")
+        low, high = bootstrap((a, b), _ratio_of_sums, method="percentile", **settings).confidence_interval
+    return Interval(float(low), float(high), "percentile")
 
 
-@lru_cache(maxsize=4)
-def _counts(n: int, seed: int, rows: int) -> tuple[NDArray[np.float32], ...]:
-    """How often each of n cases is drawn in each resample, in blocks of rows; single precision holds counts exactly."""
-    draw = np.random.default_rng((seed, n))
-    blocks = []
-    for start in range(0, RESAMPLES, rows):
-        size = min(rows, RESAMPLES - start)
-        picks = draw.integers(0, n, (size, n)) + np.arange(size)[:, None] * n
-        blocks.append(np.bincount(picks.ravel(), minlength=size * n).reshape(size, n).astype(np.float32))
-    return tuple(blocks)
-
-
-def _bca_ends(estimate: float, draws: Floats, a: Floats, b: Floats, level: float) -> tuple[float, float] | None:
-    """The two percentiles of the BCa interval; None where they are undefined."""
-    rest = b.sum() - b
-    below = float((draws < estimate).mean() + (draws == estimate).mean() / 2)
-    if len(a) < 2 or (rest <= 0).any() or not 0 < below < 1:
-        return None
-    left_out = (a.sum() - a) / rest
-    pull = left_out.mean() - left_out
-    spread = float((pull**2).sum())
-    if spread < 1e-24:
-        return None
-    bias, bend = _NORMAL.inv_cdf(below), float((pull**3).sum()) / (6 * spread**1.5)
-
-    def end(share: float) -> float:
-        z = bias + _NORMAL.inv_cdf(share)
-        return _NORMAL.cdf(bias + z / (1 - bend * z)) if bend * z < 1 else 1.0
-
-    return end((1 - level) / 2), end((1 + level) / 2)
-
-
-def _unanimous(n: int, all_ones: bool, level: float) -> Interval:
-    """Clopper and Pearson's interval of n of n or 0 of n."""
-    edge = ((1 - level) / 2) ** (1 / n)
-    return Interval(edge, 1.0, "exact") if all_ones else Interval(0.0, 1 - edge, "exact")
+def _ratio_of_sums(a: Floats, b: Floats, axis: int) -> Floats:
+    ratio: Floats = a.sum(axis=axis) / b.sum(axis=axis)
+    return ratio
 
 
 # ------------------------------------------------------------------ paired tests
 def mcnemar(first: ArrayLike, second: ArrayLike) -> float:
-    """Exact two-sided McNemar test on paired 0/1 outcomes of the same cases: p that neither is right more often."""
+    """Exact two-sided McNemar test on paired 0/1 outcomes of the same cases: p of "neither is right more often"."""
+    from scipy.stats import binomtest
+
     x, y = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     _check_paired(x, y)
     only_first, only_second = int(((x == 1) & (y == 0)).sum()), int(((x == 0) & (y == 1)).sum())
-    differing = only_first + only_second
-    tail = sum(math.comb(differing, k) for k in range(min(only_first, only_second) + 1))
-    return min(1.0, 2 * tail / (1 << differing))
+    if not only_first + only_second:
+        return 1.0
+    return float(binomtest(only_first, only_first + only_second).pvalue)
 
 
 def swap_test(first: tuple[Floats, Floats], second: tuple[Floats, Floats], seed: int = SEED) -> float:
-    """Two-sided paired permutation test on two ratios sum(a) / sum(b): the arms change places case by case.
+    """Two-sided paired permutation test on two ratios sum(a) / sum(b): the arms are swapped case by case.
 
-    Every pattern is counted while 13 or fewer cases differ; else 9,999 are drawn and the seen one added to them
-    (so that p is never 0).
+    All patterns are counted where 13 or fewer cases differ; else 9,999 are drawn and the observed one is added, so that
+    p is never 0. (`scipy.stats.permutation_test` would draw other patterns, and published digits would change.)
     """
     x, y = np.stack(first, axis=1).astype(float), np.stack(second, axis=1).astype(float)
     _check_paired(x, y)

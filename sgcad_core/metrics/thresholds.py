@@ -41,7 +41,7 @@ class Thresholds(Record):
 
 
 class DrivingLimits(Record):
-    """What a vehicle can do before a contact without losing control; SI units.
+    """Limits of a vehicle before a contact without loss of control; SI units.
 
     Friction is the peak coefficient of road adhesion of J. Y. Wong, Theory of Ground Vehicles, table 1.3 (asphalt dry
     0.8 to 0.9, wet 0.5 to 0.7, snow packed 0.2, ice 0.1), sliding the coefficient of locked wheels there.
@@ -55,11 +55,11 @@ class DrivingLimits(Record):
     """Between a vehicle's heading and the way of its rear axle; beyond it tires are saturated."""
 
     def friction_mps2(self, surface: Surface | None) -> float:
-        """Highest acceleration that tires transmit on a surface (dry where it is not told)."""
+        """Highest acceleration that tires transmit on a surface (None: dry)."""
         return self.gravity_mps2 * self.peak[surface or "dry"]
 
     def sliding_mps2(self, surface: Surface | None) -> float:
-        """Deceleration of what slides over a surface."""
+        """Deceleration of a body that slides over a surface."""
         return self.gravity_mps2 * self.sliding[surface or "dry"]
 
 

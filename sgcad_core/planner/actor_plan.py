@@ -1,4 +1,4 @@
-"""What one actor brings into the planning of an encounter, and what its usual driving is.
+"""The input of one actor to the planning of an encounter, and its usual driving.
 
 Knows one actor, its course and its meeting place.
 """
@@ -10,11 +10,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from sgcad_core.geometry.plane import SIDES, Size
+import numpy as np
+
+from sgcad_core.geometry.plane import SIDES, Floats, Size
 from sgcad_core.metrics.rest_error import compass_rad
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.encounter.meeting_place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.path import Path, ramp
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, Area, Surface
 from sgcad_core.units import MPS_PER_MPH
@@ -22,52 +25,53 @@ from sgcad_core.units import MPS_PER_MPH
 IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
-"""Who brakes before the contact has so much of the speed left there: seldom is there time for more."""
+"""Share of the speed that is left at the contact after braking: there is seldom time for more."""
 PUSHED_M = 0.8
-"""Who stands and is pushed into another rolls so far."""
+"""Distance that a standing actor rolls when it is pushed into another one."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
 
 @dataclass(frozen=True)
 class Role:
-    """What one actor brings into the planning of an encounter."""
+    """One actor in the planning of an encounter."""
 
     actor: Actor
     course: Course
     size: Size
     place: Place
     side: Area | None = None
-    """The side on which it is to be touched."""
+    """The side on which the contact is declared."""
     other_mps: float = 0.0
-    """How fast the other one comes."""
+    """Speed of the other one."""
     other_width_m: float = 1.8
     other_side: Area | None = None
     other_road: str | None = None
     """The road on which the other one starts."""
     surface: Surface | None = None
     other_spins: bool = False
-    """Whether the blow is to turn the other one in a told way."""
+    """Whether the report states how the impact turns the other one."""
     may_skid: bool = False
-    """The report tells that somebody lost control."""
+    """Whether the report states a loss of control."""
     pushed: bool = False
     """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
-    """What the report tells of its evasion."""
+    """The evasion that the report states."""
 
     @cached_property
     def kept(self) -> dict[str, Any]:
-        """What was made for this role and is asked for again."""
+        """Results computed once for this role."""
         return {}
 
     @property
     def glances(self) -> bool:
-        """Whether it goes off the road behind the blow, which a full one would not let it do."""
+        """Whether it leaves the road after the impact, which a full impact would prevent."""
         return self.told.rest.where in ("off_road", "shoulder", "median")
 
     @property
     def spins(self) -> float:
-        """How the blow is to turn it: 1 counter-clockwise, -1 clockwise; less where only the told facing asks."""
+        """Sense in which the impact turns it: 1 counter-clockwise, -1 clockwise; less where only the stated facing asks
+        for it."""
         if self.told.spin:
             return 1.0 if self.told.spin == "counterclockwise" else -1.0
         if self.told.rest.facing_deg is None or self.actor.kind == "object":
@@ -78,7 +82,7 @@ class Role:
 
     @property
     def grip_mps2(self) -> float:
-        """What tires transmit on the surface."""
+        """Highest acceleration that tires transmit on the surface."""
         return DRIVING.friction_mps2(self.surface)
 
 
@@ -96,7 +100,24 @@ class Drift(NamedTuple):
     """Displaced along the heading at the meeting place as well (a course bent towards the other one's)."""
     note: str = ""
     evades: bool = False
-    """It is the evasion that the report tells."""
+    """Whether it is the evasion that the report states."""
+
+    def profile(self, s_m: Floats) -> Floats:
+        """(n,) metres to the left of the undisturbed line at stations."""
+        rise = ramp(s_m, self.end_m - self.length_m, self.length_m)
+        if self.back:
+            rise = rise - ramp(s_m, self.end_m, self.length_m)
+        profile: Floats = self.before_m + self.left_m * rise
+        return profile
+
+    def on(self, base: Path, place_m: float) -> Path:
+        """A line with this change on it; `ahead_m` is measured along the heading at the station `place_m`."""
+        if self.ahead_m:
+            heading = float(base.poses([place_m])[0, 2])
+            c, s = math.cos(heading), math.sin(heading)
+            by = np.array([self.ahead_m * c - self.left_m * s, self.ahead_m * s + self.left_m * c])
+            return base.displaced(ramp(base.s_m, self.end_m - self.length_m, self.length_m)[:, None] * by)
+        return base.moved(self.profile(base.s_m)) if self.left_m or self.before_m else base
 
 
 class Pacing(NamedTuple):
@@ -117,7 +138,7 @@ class Twist(NamedTuple):
     skids: bool = False
     """The box turns against its line; else the line turns with it."""
     through: bool = False
-    """It swings out to the other side first, so that it comes through the meeting place all the same."""
+    """It swings out to the other side first, so that it still passes through the meeting place."""
     radius_m: float | None = None
     """Of the bend; None: as tight as the speed allows."""
 
@@ -158,7 +179,7 @@ def mismatch(role: Role) -> float:
 
 
 def along_with(role: Role) -> bool:
-    """Whether both drive the same way, so that the choice of speeds decides who comes from where."""
+    """Whether both drive in one direction, so that their speeds decide which one is behind."""
     return abs(role.place.angle_rad) < 0.6 and not is_standing(role) and role.other_mps > 0
 
 
@@ -190,7 +211,7 @@ def facing(side: Area) -> float:
 
 
 def starts_at_m(role: Role, pacing: Pacing) -> float | None:
-    """The station up to which it stands; None for who does not start from a stop."""
+    """The station up to which it stands; None without a standing start."""
     if role.pushed:
         return role.place.station_m - PUSHED_M
     if pacing.from_stop and role.course.turn is not None:
@@ -201,7 +222,8 @@ def starts_at_m(role: Role, pacing: Pacing) -> float | None:
 
 
 def line_m(role: Role) -> float:
-    """Where it would stand at the last stop line before the meeting place; in its stall where it backs out of one."""
+    """The station of its center at the last stop line before the meeting place; in its stall when backing out of
+    one."""
     if role.course.stalls and role.actor.maneuver == "backing":
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]

@@ -1,6 +1,6 @@
 """Actors outside the first contact: kept clear of it, or led into the later contact that is declared for them.
 
-Works on a scene that already holds the first contact. Knows options and tracks.
+Works on a scene that already holds the first contact. Knows motion options and tracks.
 """
 
 from __future__ import annotations
@@ -10,25 +10,25 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.encounter.encounter_search import meet
+from sgcad_core.planner.encounter.encounter_search import find_meeting
 from sgcad_core.planner.encounter.motion_options import Option, forced, in_path_of, options
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import CLEAR_M, Scene
 from sgcad_core.records.specs import Area
 
 _OWN_S = (-0.8, -1.6, -2.4, 0.8, -3.2, -4.0, 1.6, -5.0, 2.4, -6.0, 3.2, -7.5, 4.0, -9.0)
-"""Own times at the first contact that are tried: at its own place a little later comes first."""
+"""Own times at the first contact that are tried, in this order: a little behind its own place comes first."""
 _FAR_S = (-11.0, 6.0, -13.0, 8.0, -15.0, 11.0, -18.0, -22.0, -27.0, 15.0)
 _STANDING_S = (0.0, -1.3, -2.6, 1.3, -3.9, -5.2, 2.6, -6.5, -8.0, 4.0, -10.0, -12.5)
 _WAYS = 6
 _LATER_WAYS = 6
 _LATER_S = ((0.7, 3.5), (0.1, 0.7))
-"""Spans of time after the first contact in which a later one is looked for: once the first pair has parted."""
+"""Time spans after the first contact in which a later one is searched: the first pair has parted by then."""
 _OUTSIDE = 20.0
 
 
-def stand_clear(scene: Scene, role: Role) -> str | None:
-    """Place an actor that takes no part; a note where it could not be kept clear to the end."""
+def place_clear(scene: Scene, role: Role) -> str | None:
+    """Places an actor outside the contacts. Returns a note where it could not be kept clear to the end."""
     best: tuple[int, Motion, float] | None = None
     for motion, own in _tries(role):
         poses = scene.poses(motion, own, brakes=True)
@@ -60,10 +60,10 @@ def _plain(ways: Sequence[Option]) -> list[Option]:
     return [way for way in ways if not way.twist.angle_rad or way.role.actor.kind == "object"]
 
 
-def strike_later(scene: Scene, role: Role, partner: str, sides: tuple[Area, Area]) -> bool:
-    """Place an actor so that a partner already in the scene touches it after the first contact.
+def place_for_later_contact(scene: Scene, role: Role, partner: str, sides: tuple[Area, Area]) -> bool:
+    """Places an actor so that a partner in the scene touches it after the first contact. Returns whether it did.
 
-    `sides`: of the partner and of the actor; any sides are taken where the wanted ones cannot be had.
+    `sides`: of the partner and of the actor; any sides are taken where the wanted ones are not reached.
     """
     wanted: tuple[tuple[Area, Area] | None, ...] = (sides, None)
     ways = options(role)[:_LATER_WAYS] + forced(role)[:_LATER_WAYS]
@@ -81,14 +81,14 @@ def _struck_by(
     motion = in_path_of(way, replay, sides[0]) if way.role.actor.kind == "object" else way.motion
     if not motion.drivable:
         return False
-    found = meet(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
+    found = find_meeting(replay, replace(motion, penalty=0 * motion.penalty), sides[1])
     if found is None or found.cost > _OUTSIDE:
         return False
-    return _placed(scene, way.role, motion, found.first_s, found.second_s, partner)
+    return _placed(scene, way.role, motion, found.first_s, found.second_s)
 
 
-def _placed(scene: Scene, role: Role, motion: Motion, partner_s: float, own_s: float, partner: str) -> bool:
-    """Add the actor unless it touches somebody before, and let the two collide."""
+def _placed(scene: Scene, role: Role, motion: Motion, partner_s: float, own_s: float) -> bool:
+    """Adds the actor unless it touches another one earlier, and lets the two collide."""
     step = math.ceil(partner_s / STEP_S - 1e-6)
     at_contact = own_s if motion.standing else own_s - partner_s
     poses = scene.poses(motion, at_contact, brakes=False)

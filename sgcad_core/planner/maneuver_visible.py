@@ -1,4 +1,4 @@
-"""Whether a told turn, change of lane or evasion is seen before the first contact, as anybody who looks on would say.
+"""Whether a stated turn, lane change or evasion is visible before the first contact, by the rules of `sgcad score`.
 
 Knows one actor's course and its poses up to the contact; no other actor.
 """
@@ -20,11 +20,11 @@ from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor
 
 TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
-"""A smaller change of heading is no turn to be seen, a smaller shift no change of lane."""
+"""A smaller change of heading is no visible turn, a smaller shift no visible lane change."""
 
 
-def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
-    """What of its maneuver is not seen on (n, 3) poses from the start to the contact, in words; None: all is."""
+def unseen_maneuver(actor: Actor, course: Course, poses: Floats) -> str | None:
+    """The note on a maneuver that (n, 3) poses from the start to the contact do not show; None where it shows."""
     turned = float(np.unwrap(poses[:, 2])[-1] - poses[0, 2])
     if actor.maneuver in TURNING:
         way = -1.0 if actor.maneuver == "turn_right" else 1.0
@@ -35,8 +35,8 @@ def not_shown(actor: Actor, course: Course, poses: Floats) -> str | None:
     return None if moved >= MOVED_M else f"{actor.id} has hardly begun to change lanes when they touch"
 
 
-def not_evading(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
-    """What of its told evasion is not seen on such poses, in words; as `sgcad score` sees it."""
+def unseen_evasion(actor: str, course: Course, told: CourseTold, poses: Floats) -> Iterator[str]:
+    """The parts of the stated evasion that (n, 3) poses do not show, in words; the rules are those of `sgcad score`."""
     recent = poses[-round(BEFORE_S / STEP_S) - 1 :]
     steps_m = np.hypot(*np.diff(recent[:, :2], axis=0).T)
     aside = np.array([_aside(course, pose) for pose in recent[[0, -2, -1]]]) if told.steers else np.zeros(0)
@@ -51,5 +51,5 @@ def _aside(course: Course, pose: Floats) -> float:
     path = course.path
     offset = pose[:2] - path.points
     nearest = int(np.hypot(*offset.T).argmin())
-    angle = path.tangents()[nearest]
+    angle = path.tangents[nearest]
     return float(offset[nearest, 1] * math.cos(angle) - offset[nearest, 0] * math.sin(angle))

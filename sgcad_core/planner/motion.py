@@ -1,7 +1,7 @@
 """Motion along a path: where a box is at which time, for one way to drive.
 
-A motion has a clock of its own, 0 at the place that was chosen for the encounter; the planner shifts clocks
-against each other. Knows no other actor. SI units.
+A motion has its own clock, which is 0 at the place chosen for the encounter; the planner shifts clocks against each
+other. Knows no other actor. SI units.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ STEP_S = 0.05
 LEAD_S = (4.2, 8.0)
 """Shortest and longest approach before the first contact."""
 WINDOW_S = (-6.0, 4.5)
-"""Own time in which an encounter is looked for."""
+"""Own times in which an encounter is searched."""
 LATERAL_MPS2 = 3.0
 """Sideways in ordinary driving, on a road that allows it."""
 HARD_MPS2 = 4.5
-"""Sideways where a driver swerves, or drives a bend at a speed that the report tells."""
+"""Sideways in a swerve, or in a bend at a speed that the report states."""
 ACCELERATION_MPS2 = 2.2
 BRAKING_MPS2 = 3.0
 YAW_RADPS = 1.1
@@ -37,7 +37,7 @@ _STANDING_MPS = 5.0
 _CRAWL_MPS = 1.0
 _ABOUT = 0.98
 _CURVE_PER_M = 0.02
-"""A road that bends more is a turn, which one takes as slowly as one usually takes turns."""
+"""A road that bends more is a turn and is driven at the usual speed of turns."""
 _SHARE = {"lateral": 0.35, "hard": 0.5, "speeding": 0.25, "braking": 0.4}
 """Of the friction that a driver uses; the rest is the reserve for bends that begin and end."""
 
@@ -55,9 +55,9 @@ class Pace:
     grip_mps2: float = DRIVING.friction_mps2(None)
     """What tires transmit on the surface."""
     hard: bool = False
-    """Bends are driven as fast as a driver dares, not as one usually does."""
+    """Whether bends are driven at the highest lateral acceleration instead of the usual one."""
     brakes: bool = False
-    """It slows down as one does who sees a crash coming."""
+    """Whether it brakes as before an expected crash."""
 
     @property
     def lateral_mps2(self) -> float:
@@ -83,8 +83,8 @@ def gentle_mps2(grip_mps2: float) -> float:
 class Motion:
     """A box on a path: knots of time and station, both increasing.
 
-    `standing`: it does not move; its "time" then only enumerates places along the path. `begins_m`: station
-    at which the maneuver begins. `penalty`: one value a path point, how ill an encounter there fits.
+    `standing`: it does not move; its time then only enumerates places along the path. `begins_m`: station at which the
+    maneuver begins. `penalty`: the cost of an encounter at each path point.
     """
 
     path: Path
@@ -95,9 +95,9 @@ class Motion:
     begins_m: float
     standing: bool = False
     fixed: bool = False
-    """Cannot be pushed away (trees, poles, walls)."""
+    """Whether it cannot be pushed away (trees, poles, walls)."""
     axle: Path | None = None
-    """The line of the rear axle, with the stations of the box; None of what does not roll."""
+    """The line of the rear axle, with the stations of the box; None without wheels."""
     drivable: bool = True
     """Whether the box can follow this line at all."""
 
@@ -117,18 +117,18 @@ class Motion:
     def seen_at(self, speed_mps: float, before_s: float) -> float:
         """The last own time up to a given one at which it drives about a speed or more; -inf if never."""
         axle = self.axle or self.path
-        along = np.interp(self.station_m, axle.s_m, axle.lengths())
+        along = np.interp(self.station_m, axle.s_m, axle.lengths)
         speed = np.diff(along) / np.maximum(np.diff(self.time_s), 1e-9)
         fast = np.flatnonzero((speed > _ABOUT * speed_mps) & (self.time_s[1:] <= before_s))
         return float(self.time_s[fast[-1]]) if len(fast) else -math.inf
 
     def penalties(self, time_s: ArrayLike) -> Floats:
-        """How ill an encounter at own times fits the maneuver and the place."""
+        """The cost of an encounter at own times, by place and visible maneuver."""
         return np.interp(self.stations(time_s), self.path.s_m, self.penalty)
 
     @cached_property
     def digest(self) -> bytes:
-        """What its poses follow from: two motions with the same one stand alike at all times."""
+        """A hash of all that determines its poses: two motions with equal digests have equal poses at all times."""
         found = hashlib.blake2b(repr((self.size, self.standing)).encode(), digest_size=16)
         path = self.path
         for part in (path.points, path.s_m, path.heading_rad, self.time_s, self.station_m):
@@ -161,7 +161,7 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
     v^2 an acceleration is a slope, so each pass is a running minimum.
     """
     station = _refined(path.s_m, pace.starts_at_m)
-    along = np.interp(station, path.s_m, path.lengths())
+    along = np.interp(station, path.s_m, path.lengths)
     limit = np.interp(station, path.s_m, _limits(path, more or (path, path), pace)) ** 2
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
@@ -191,9 +191,9 @@ def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
 def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:
     """(n,) speeds that friction, yaw and habit allow on a line, m/s."""
     box, road = more
-    bend = np.maximum(np.maximum(np.abs(path.curvature()), np.abs(box.curvature())), 1e-5)
+    bend = np.maximum(np.maximum(np.abs(path.curvature), np.abs(box.curvature)), 1e-5)
     curve = np.minimum(np.sqrt(pace.lateral_mps2 / bend), YAW_RADPS / bend)
-    turning = np.interp(path.s_m, road.s_m, np.abs(road.curvature())) > _CURVE_PER_M
+    turning = np.interp(path.s_m, road.s_m, np.abs(road.curvature)) > _CURVE_PER_M
     curve = np.where(turning, np.minimum(curve, pace.curve_mps), curve)
     return np.clip(curve, _CRAWL_MPS, pace.cruise_mps)
 

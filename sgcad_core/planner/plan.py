@@ -1,8 +1,8 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
-The one face of the planner: `plan`. Ordinary driving is tried first, then slower or faster, beside the
-lane, with a swerve; what was changed stands in the plan's notes. Boxes that slide against their way without
-a told loss of control are the last resort: noted, and doubted by the validator `drivable`.
+The public function of the planner is `plan`. Ordinary driving is tried first, then other speeds, lines beside the lane,
+and swerves; the notes of the plan list the changes. Boxes that slide against their direction of travel without a stated
+loss of control are the last resort: noted, and doubted by the validator `drivable`.
 """
 
 from __future__ import annotations
@@ -14,21 +14,27 @@ from functools import cached_property
 
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.aftermath.later_contacts import expect, run_out, strikes_of
+from sgcad_core.planner.actor_plan import Role, usual_speed
+from sgcad_core.planner.aftermath.later_contacts import (
+    bring_to_rest,
+    expect_later_contacts,
+    other_of,
+    pair_of,
+    strikes_of,
+)
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
-from sgcad_core.planner.bystanders import stand_clear, strike_later
+from sgcad_core.planner.bystanders import place_clear, place_for_later_contact
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.contact_queries import course_of, is_declared, other_of, pair_of, seen_s
 from sgcad_core.planner.encounter.meeting_place import Place, place_near, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
-from sgcad_core.planner.encounter.near_miss import parted
+from sgcad_core.planner.encounter.near_miss import as_near_miss
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
+from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.gore_lines import into_gores
-from sgcad_core.planner.maneuver_visible import not_evading, not_shown
+from sgcad_core.planner.lines.maneuver_course import course_of
+from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
@@ -37,20 +43,22 @@ from sgcad_core.records.specs import BehaviorSpec, Contact, NearCrash, size_m
 from sgcad_core.roads.lane_graph import LaneGraph
 
 _FURTHER_S = 3.0
-"""More time behind the first contact where somebody goes on far."""
+"""Additional time after the first contact where an actor goes on far."""
 _LATER_S = 1.2
-"""A later contact is looked for around where its partner is this long after the first."""
+"""A later contact is searched around where its partner is this long after the first."""
 _MANEUVER_MISSED = 3.0
-"""Cost of a told maneuver that is not seen: more than any two parts of the course behind the contact."""
+"""Cost of a stated maneuver that is not visible: more than any two parts of the course after the contact."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
+_SPEED_SHOWS_S = 0.3
+"""Time for which a stated speed is driven before the contact at least."""
 
 
 class Plan(Record):
     """Trajectories of all actors, in the order of the behavior, on one clock.
 
-    `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the
-    declared areas (where no contact is declared: nobody touches). `notes` say what was changed.
+    `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the declared areas
+    (without a declared contact: no boxes touch). `notes` list what was changed.
 
     `oddity` says how far from ordinary driving the declared pair meets: the sum of both actors' `Option.oddity`, 0 for
     ordinary lines in any lane, up to 0.4 for other speeds and swerves, more for skids, spins and driving off the road,
@@ -70,8 +78,8 @@ def plan(
 ) -> Plan:  # fmt: skip
     """Motions for a behavior on a network. Raises InvalidOutput for road ids that the network does not have.
 
-    `courses`: what the report tells of evasion and rest, by actor. `may_skid`: it tells that somebody lost control, so
-    boxes may turn against their way before they touch. Not `by_force`: without slides and the longest search.
+    `courses`: evasion and rest that the report states, by actor. `may_skid`: it states a loss of control, so boxes may
+    turn against their direction before they touch. Not `by_force`: without slides and the longest search.
     """
     behavior = into_gores(behavior)
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
@@ -82,8 +90,9 @@ def plan(
     found = conflicts.of(contacts[0]) if contacts else cast.near_crash(near, conflicts) if near else None
     cast.notes += conflicts.notes
     done = least_missed(found, lambda encounter, impacts: cast.unfolded(encounter, graph, impacts))
+    first = behavior.contacts[0] if behavior.contacts else None
     observed = done.scene.first_contact()
-    realised = is_declared(observed, behavior.contacts[0] if behavior.contacts else None)
+    realised = observed is None if first is None else observed is not None and observed.is_of(first)
     return Plan(
         trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors), courses), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(done.notes)), oddity=round(done.oddity, 3) if realised else 0.0,
@@ -92,7 +101,7 @@ def plan(
 
 @dataclass
 class _Cast:
-    """The actors with their courses, and what happened to their stated behavior on the way."""
+    """The actors with their courses; collects notes on changes of the stated behavior."""
 
     behavior: BehaviorSpec
     courses: dict[str, Course]
@@ -101,19 +110,19 @@ class _Cast:
     notes: list[str]
     oddity: float = 0.0
     missed: float = 0.0
-    """Cost of told maneuvers and evasions that are not seen before the first contact."""
+    """Cost of stated maneuvers and evasions that are not visible before the first contact."""
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
 
     @cached_property
     def things(self) -> frozenset[str]:
-        """What is struck on the way to rest: placed when that way is known."""
+        """Objects that are struck on the way to rest; they are placed when that way is known."""
         return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.contacts))
 
     @cached_property
     def contacts(self) -> list[Contact]:
-        """Those of the behavior that can come about."""
+        """The contacts of the behavior that are possible."""
         return self.usable(self.behavior.contacts)
 
     def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
@@ -128,22 +137,22 @@ class _Cast:
         return found
 
     # -------------------------------------------------------------- the whole course
-    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> Unfolded:
-        """All that follows from an encounter, and how far it is from what is told; this cast stays as it is."""
+    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> WholeCourse:
+        """The whole course from an encounter on, and its distance from what is stated; this object stays unchanged."""
         cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
         lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
         scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
-        expect(scene, cast.contacts)
+        expect_later_contacts(scene, cast.contacts)
         for contact in cast.contacts[1:]:
             cast.later(scene, contact)
         cast.rest(scene)
         scene.settle()
-        ended = run_out(scene, self.behavior, cast.contacts, self.told, graph, impacts)
+        ended = bring_to_rest(scene, self.behavior, cast.contacts, self.told, graph, impacts)
         missed = ended.missed + cast.missed + MISSED * sum(1 for _ in cast.unmet(scene))
-        return Unfolded(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
+        return WholeCourse(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
 
     def unmet(self, scene: Scene) -> Iterator[Contact]:
-        """Further contacts of vehicles that do not come about; those of things and second ones are told elsewhere."""
+        """Further contacts of vehicles that do not happen; those with objects and second ones are counted elsewhere."""
         met = {frozenset((touch.first, touch.second)) for touch in scene.touches}
         for contact in self.contacts[1:]:
             if contact.struck not in self.things and pair_of(contact) not in met:
@@ -151,22 +160,23 @@ class _Cast:
 
     # -------------------------------------------------------------- the first contact
     def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
-        """A conflict with its evasion; None where the two cannot be brought near, or not be parted."""
+        """A conflict with its evasion; None where the two cannot be brought near or cannot be parted."""
         course = conflicts.as_they_drive(near.conflict) if self.usable((near.conflict,)) else None
-        found, notes = parted(course, near)
+        found, notes = as_near_miss(course, near)
         self.notes += notes
         return found
 
     def staged(self, found: Encounter) -> Scene:
-        """Both actors on the world clock, with what they tow, colliding."""
+        """Both actors with what they tow on the world clock, through the collision."""
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
+        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
         after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
-        scene = Scene(contact + round(after / STEP_S) + 1, contact, self._struck_again(), self.behavior.surface)
+        again = frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
+        scene = Scene(contact + round(after / STEP_S) + 1, contact, again, self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
@@ -179,30 +189,28 @@ class _Cast:
         return scene
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
-        """Note what of the told maneuvers and evasions is not seen before they touch."""
+        """Notes which stated maneuvers and evasions are not visible before the contact."""
         for option, motion, _ in pair:
             role = option.role
             until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
             if motion.standing:
                 continue
-            if words := not_shown(role.actor, role.course, until):
+            if words := unseen_maneuver(role.actor, role.course, until):
                 self.notes.append(words)
                 self.missed += _MANEUVER_MISSED
-            unseen = list(not_evading(role.actor.id, role.course, role.told, until))
+            unseen = list(unseen_evasion(role.actor.id, role.course, role.told, until))
             self.notes += unseen
             self.missed += len(unseen)
 
     def _runs_on(self) -> bool:
-        """Whether anybody goes on far behind the first contact: off the road, or into something else."""
+        """Whether an actor goes on far after the first contact: off the road, or into a further contact."""
         afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
         return afar or len(self.behavior.contacts) > 1
 
-    def _struck_again(self) -> frozenset[str]:
-        return frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
-
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:
-        """Add the trailer behind a tractor, or the tractor before a trailer; apart where they would touch first."""
+        """Adds the trailer behind a tractor, or the tractor before a trailer; uncoupled where they would touch another
+        actor first."""
         track = scene.tracks[actor]
         for trailer, tractor in list(self.tractors.items()):
             other = self.actors[tractor if actor == trailer else trailer]
@@ -219,11 +227,11 @@ class _Cast:
             scene.hitches.append((tractor, trailer, coupling_m(scene.tracks[tractor].size)))
 
     def _in_contact(self, actor: str) -> bool:
-        """Whether an actor has part in the first declared contact."""
+        """Whether an actor takes part in the first declared contact."""
         return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
 
     def later(self, scene: Scene, contact: Contact) -> None:
-        """A further declared contact of vehicles, where one of the two is not placed yet; best effort."""
+        """Arranges a further declared contact of vehicles where one of the two is not placed yet, if possible."""
         placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
         if len(placed) != 1 or contact.struck in self.things:
             return
@@ -232,15 +240,15 @@ class _Cast:
         role = self._own_role(new)
         target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
         role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
-        if not strike_later(scene, role, partner, sides):
+        if not place_for_later_contact(scene, role, partner, sides):
             self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
 
     def rest(self, scene: Scene) -> None:
-        """Everybody who is not placed yet and is not struck on the way, clear of the others."""
+        """Places all remaining actors that are not struck on the way, clear of the others."""
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things:
                 continue
-            note = stand_clear(scene, self._own_role(actor.id))
+            note = place_clear(scene, self._own_role(actor.id))
             self.notes += [note] if note else []
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
@@ -250,3 +258,11 @@ class _Cast:
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
         return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)
+
+
+def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
+    """Time before the contact at which the clock must begin to show a stated speed; 0 where it is never driven."""
+    if motion.standing or role.actor.speed_mph is None:
+        return 0.0
+    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
+    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0

@@ -7,41 +7,42 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.case.records import ObservedContact, Trajectory
-from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near
+from sgcad_core.geometry.plane import Box, Floats, Size, contact_area, first_overlap, gaps_where_near
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
-from sgcad_core.planner.aftermath.hitch import Hitch, hitched
+from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
-from sgcad_core.planner.aftermath.rollover import rolled, rolls_over
+from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
-from sgcad_core.records.specs import ActorKind, Area, Surface
+from sgcad_core.records.specs import ActorKind, Surface
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
 BRAKED_MPS2 = 4.5
-"""Of a struck vehicle along its wheels: some of them locked or bent, its driver on the brake."""
+"""Of a struck vehicle along its wheels: some locked or bent, with the brake applied."""
 ROLLING_MPS2 = 2.2
-"""Of a vehicle that is to reach something else."""
+"""Of a vehicle that has a further contact."""
 THROWN_MPS2 = 5.5
-"""Of people, and of two-wheelers on their side, over the ground."""
+"""Of pedestrians, and of two-wheelers on their side, over the ground."""
 _TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 _REACTION_S = 0.5
 _BRAKING_MPS2 = 5.0
 _STANDS_MPS, _SHOWN_MPS = 0.02, 2.6
-"""Between the two a vehicle moves less than 0.11 m in a sample: vertices that lie nearer are dropped by players, and
-with them the moment at which it is struck."""
+"""Between these speeds a vehicle moves less than 0.11 m in a sample. Players drop vertices that lie nearer, and with
+them the moment of the impact."""
 _UNSEEN_COST = 2.0
 CLEAR_M = 0.25
-"""Actors that do not touch pass each other at least this far apart where that can be had."""
+"""Actors that do not touch pass each other at this distance or more where possible."""
 
 
 @dataclass
@@ -58,22 +59,22 @@ class Track:
     hit: int | None = None
     """Index of its first impact."""
     mass: float | None = None
-    """Its mass, where it is not that of its kind, kg."""
+    """Its mass where it differs from that of its kind, kg."""
     driven: Floats = field(init=False)
-    """Its poses where nobody touches it."""
+    """Its poses without any contact."""
 
     def __post_init__(self) -> None:
         self.driven = self.poses
 
 
 class _Settled(NamedTuple):
-    """What came of a settled scene: poses, touches, and the index of the first impact by actor."""
+    """Result of a settled scene: poses, touches, and the index of the first impact by actor."""
 
     poses: dict[str, Floats]
     touches: list[Touch]
     hits: dict[str, int | None]
     driven: list[Floats]
-    """The undisturbed poses behind it, so that they stay what their ids stand for."""
+    """The undisturbed poses; kept so that their ids stay valid as keys."""
 
 
 @dataclass
@@ -83,32 +84,32 @@ class Scene:
     count: int
     contact: int
     rolling: frozenset[str] = frozenset()
-    """Actors that have a further contact before them."""
+    """Actors with a further contact ahead."""
     surface: Surface | None = None
     tracks: dict[str, Track] = field(default_factory=dict)
     hitches: list[tuple[str, str, float]] = field(default_factory=list)
     """Tractor, trailer, and how far behind the tractor's center they are coupled."""
     touches: list[Touch] = field(default_factory=list)
-    """What touched, in order, when the scene was last settled."""
+    """Touches in order, as of the last settling."""
     runs: dict[str, RunOut] = field(default_factory=dict)
-    """How actors run out from their blow, where that was chosen."""
+    """Chosen run-out after the impact, by actor."""
     friction: float = FRICTION
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch a second time as told."""
+    """Pairs with a stated second contact."""
     told: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch behind the first contact as told."""
+    """Pairs with a stated contact after the first."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
 
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
-        """Place an actor so that its own clock shows the given time at the first contact."""
+        """Places an actor so that its own clock shows the given time at the first contact."""
         own = own_at_contact_s if motion.standing else own_at_contact_s - self.contact * STEP_S
         track = Track(actor, kind, motion.size, self.poses(motion, own_at_contact_s, brakes=brakes), motion, own)
         self.tracks[actor] = track
         return track
 
     def poses(self, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Floats:
-        """(count, 3) poses of a motion; `brakes`: it comes to a stop behind the first contact."""
+        """(count, 3) poses of a motion; `brakes`: it stops after the first contact."""
         if motion.standing:
             return np.repeat(motion.poses([own_at_contact_s]), self.count, axis=0)
         own = own_at_contact_s + clock(-self.contact, self.count - self.contact)
@@ -126,7 +127,7 @@ class Scene:
         return first
 
     def settle(self) -> None:
-        """Let everybody drive, and whatever touches push, until all stand; what was settled before is looked up."""
+        """Simulates all actors until they stand; results are cached by their causes."""
         cause = self._cause()
         if cause not in self._settled:
             wreck = self.wreck()
@@ -139,20 +140,19 @@ class Scene:
             track.poses, track.hit = found.poses[name], found.hits[name]
 
     def _cause(self) -> Hashable:
-        """All that the way to rest depends on."""
+        """All that determines the motion to rest."""
         movers = tuple((t.actor, id(t.driven), t.size, t.mass, t.motion.fixed) for t in self.tracks.values())
         chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
     def wreck(self) -> Wreck:
-        """The simulation of what follows from the first touch."""
+        """The simulation from the first touch on."""
         movers = tuple(self._mover(track) for track in self.tracks.values())
-        hitches = [self._hitch(*coupled) for coupled in self.hitches]
+        hitches = [
+            hitched((a, b), self.tracks[a].driven[self.contact], self.tracks[b].driven[self.contact], behind_m)
+            for a, b, behind_m in self.hitches
+        ]
         return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
-
-    def _hitch(self, tractor: str, trailer: str, behind_m: float) -> Hitch:
-        first, second = (self.tracks[name].driven[self.contact] for name in (tractor, trailer))
-        return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
         mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)
@@ -160,36 +160,28 @@ class Scene:
         return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
     def drag(self, track: Track) -> Drag:
-        """What slows an actor of whom nothing is chosen."""
-        grip = DRIVING.sliding_mps2(self.surface)
-        if track.kind in _TUMBLE:
-            return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
-        return Drag(min(ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2, grip), grip)
+        """Deceleration of an actor without a chosen run-out."""
+        along = ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2
+        return usual_drag(track.kind, DRIVING.sliding_mps2(self.surface), along)
 
     def first_contact(self) -> ObservedContact | None:
-        """The first overlap of any two actors, as any observer of the trajectories sees it."""
-        names = sorted(self.tracks)
+        """The first overlap of any two actors, as seen in the trajectories."""
         found: tuple[int, str, str] | None = None
-        for i, a in enumerate(names):
-            for b in names[i + 1 :]:
-                one, two = self.tracks[a], self.tracks[b]
-                hits = np.flatnonzero(gaps_where_near(one.poses, one.size, two.poses, two.size) <= 0)
-                if len(hits) and (found is None or hits[0] < found[0]):
-                    found = (int(hits[0]), a, b)
-        return None if found is None else self._observed(*found)
-
-    def _observed(self, k: int, a: str, b: str) -> ObservedContact:
-        p, q = self._box(a, k), self._box(b, k)
-        sides = _area(contact_area(p, q)), _area(contact_area(q, p))
-        return ObservedContact(actor=a, other=b, actor_area=sides[0], other_area=sides[1], t_s=round(k * STEP_S, 3))
-
-    def _box(self, name: str, k: int) -> Box:
-        track = self.tracks[name]
-        x, y, heading = (float(v) for v in track.poses[k])
-        return Box(x, y, heading, *track.size)
+        for a, b in combinations(sorted(self.tracks), 2):
+            one, two = self.tracks[a], self.tracks[b]
+            hit = first_overlap(one.poses, one.size, two.poses, two.size)
+            if hit is not None and (found is None or hit < found[0]):
+                found = (hit, a, b)
+        if found is None:
+            return None
+        k, a, b = found
+        p, q = (Box.at(self.tracks[name].poses[k], self.tracks[name].size) for name in (a, b))
+        t_s = round(k * STEP_S, 3)
+        return ObservedContact(actor=a, other=b, actor_area=contact_area(p, q), other_area=contact_area(q, p), t_s=t_s)
 
     def replay(self, name: str, from_s: float, to_s: float) -> Motion:
-        """An actor's track as a motion whose own time 0 is the first contact; to be met in a span of time."""
+        """The track of an actor as a motion whose own time 0 is the first contact, for an encounter within a time
+        span."""
         track = self.tracks[name]
         times = clock(-self.contact, self.count - self.contact)
         path = Path(track.poses[:, :2], times, track.poses[:, 2])
@@ -199,28 +191,35 @@ class Scene:
         return Motion(path, times, times, track.size, outside, 0.0)
 
     def trajectories(self, order: tuple[str, ...], told: Courses = NOTHING_TOLD) -> tuple[Trajectory, ...]:
-        """All tracks as records, in the given order; `told`: who rolls over."""
+        """All tracks as records, in the given order; `told`: stated courses, for rollovers."""
         return tuple(_trajectory(self.tracks[name], told.get(name)) for name in order)
 
 
-def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
-    """Speeds are those of the positions, taken apart before and behind an impact."""
-    poses = track.poses
+def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS2) -> Drag:
+    """Deceleration after a blow on a surface of some grip: vehicles slow along their wheels, people slide."""
+    if kind in _TUMBLE:
+        return Drag(min(THROWN_MPS2, grip_mps2), min(THROWN_MPS2, grip_mps2))
+    return Drag(min(along_mps2, grip_mps2), grip_mps2)
+
+
+def sample_speeds(poses: Floats) -> Floats:
+    """(n,) m/s at (n, 3) poses STEP_S apart: the mean of the steps before and behind each."""
     step = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
-    speed = np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
-    if track.hit is not None and 0 < track.hit < len(step):
-        speed[track.hit] = step[track.hit - 1]
+    return np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
+
+
+def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
+    """Speeds follow from the positions, separately before and after an impact."""
+    poses = track.poses
+    speed = sample_speeds(poses)
+    if track.hit is not None and 0 < track.hit < len(poses) - 1:
+        speed[track.hit] = np.hypot(*(poses[track.hit, :2] - poses[track.hit - 1, :2])) / STEP_S
     t = np.round(np.arange(len(poses)) * STEP_S, 3)
     return Trajectory(
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
-        roll_rad=rolled(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
+        roll_rad=roll_angles(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
     )  # fmt: skip
-
-
-def _area(name: str) -> Area:
-    names: tuple[Area, ...] = ("front", "left", "back", "right")
-    return names[SIDES.index(name)]
 
 
 def _braked(motion: Motion, own: Floats, start: int) -> Floats:

@@ -1,6 +1,6 @@
-"""How things and standing actors stand in the way of others: beside their lane, askew, turned to who comes.
+"""Poses of objects and standing actors: beside their lane, askew, or turned to the approaching actor.
 
-The choices of those who do not drive; costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
+Choices of actors that do not drive; costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def in_stall(role: Role) -> bool:
 
 
 def askew(role: Role) -> list[Twist]:
-    """Straight in its lane, a little turned, or turned to the other one; square to it in a stall."""
+    """Straight in its lane, slightly turned, or turned to the other actor; square to the aisle in a stall."""
     if in_stall(role):
         return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
@@ -38,17 +38,19 @@ def askew(role: Role) -> list[Twist]:
 
 
 def beside_the_way(role: Role) -> list[Drift]:
+    """Places of an object on the line of the other actor and beside it, as far as their boxes still overlap."""
     reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
     offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
     return [Drift(0.05 * i, left) for i, left in enumerate(offsets)]
 
 
 def any_angle(role: Role) -> list[Twist]:
-    """An object has no heading of its own: its wanted side is turned to the one that comes."""
+    """An object has no heading of its own: its wanted side is turned to the approaching actor."""
     side = facing(role.side) if role.side else 0.0
     bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
     return [Twist(cost, math.radians(degrees) - side) for degrees, cost in bearings]
 
 
 def steps_aside() -> list[Drift]:
+    """Parallel lines of a pedestrian."""
     return [Drift(abs(left) / 5, left, 1.0, -1e4) for left in (0.0, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0)]

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sgcad_core.geometry.plane import Size
-from sgcad_core.planner.lines.axle_to_box import rolled
+from sgcad_core.planner.lines.axle_to_box import box_path
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion
 from sgcad_core.records.specs import Actor, BehaviorSpec
@@ -19,7 +19,7 @@ HITCH_M = 1.3
 
 
 def tractors(behavior: BehaviorSpec) -> dict[str, str]:
-    """Trailer id -> id of the vehicle that tows it: of its number, else one on its road and lane."""
+    """Trailer id -> id of the vehicle that tows it: the one with its number, else one on its road."""
     vehicles = [a for a in behavior.actors if a.id.startswith("V")]
     found: dict[str, str] = {}
     for trailer in (a for a in behavior.actors if a.kind == "trailer" and not a.id.startswith("V")):
@@ -58,12 +58,12 @@ def _slid(motion: Motion, by_m: float) -> Path:
 def _rolling(motion: Motion, axle: Path, by_m: float, size: Size) -> Motion:
     """The other box with its own rear axle on the same line."""
     backing = math.cos(float(motion.path.heading_rad[0] - axle.heading_rad[0])) < 0
-    path = rolled(axle, size[0], backing=backing)
+    path = box_path(axle, size[0], backing=backing)
     own, other = (float(np.hypot(*(p.points[0] - axle.points[0]))) for p in (motion.path, path))
     shift = by_m + (own - other) * (-1.0 if backing else 1.0)
     return replace(motion, path=replace(path, s_m=axle.s_m), station_m=motion.station_m + shift, size=size)
 
 
 def coupling_m(size: Size) -> float:
-    """How far behind a tractor's center its trailer hangs."""
+    """Distance from the center of a tractor to its coupling, metres."""
     return size[0] / 2 + HITCH_M / 2

@@ -1,4 +1,4 @@
-"""The circle of a roundabout: where legs meet its rim, and the one-way roads between them, counterclockwise.
+"""The circle of a roundabout: its junctions with the legs, and the one-way roads between them, counterclockwise.
 
 Sizes are those of NCHRP 672: 41 m across for one lane, 61 m for two (inscribed circle), more where wide legs need
 room. Metres; x east, y north; the middle of the circle is the hub at (0, 0). Knows no legs but their names.
@@ -14,7 +14,7 @@ from typing import NamedTuple
 from sgcad_core.records.specs import Node, Point, Road
 
 RADIUS_M = {1: 18.0, 2: 26.0}
-"""Of the middle of the circulating lanes."""
+"""Radius of the middle of the circulating lanes."""
 SPLITTER_M = 8.0
 """Between entry and exit of a leg at the rim: the base of its splitter island."""
 BETWEEN_M = 13.0
@@ -38,7 +38,7 @@ class Rim(NamedTuple):
 
 
 class Mouth(NamedTuple):
-    """Where a leg opens into the circle: its name, its bearing (radians) and the width of its lanes, metres."""
+    """Junction of a leg with the circle: its name, its bearing (radians) and the width of its lanes, metres."""
 
     name: str
     angle_rad: float
@@ -47,7 +47,7 @@ class Mouth(NamedTuple):
 
 
 def rim_of(lanes: int, mouths: Sequence[Mouth]) -> Rim:
-    """The circle on which so many lanes and these legs have room."""
+    """The smallest circle with room for the lanes and the legs."""
     needed = [
         (BETWEEN_M + SPLITTER_M + (a.width_m + b.width_m) / 2) / max(_gap(a, b), 1e-3) for a, b in _around(mouths)
     ]
@@ -55,12 +55,12 @@ def rim_of(lanes: int, mouths: Sequence[Mouth]) -> Rim:
 
 
 def node_of(leg: str) -> str:
-    """The node in which a leg opens into the circle."""
+    """The node of a leg on the circle."""
     return f"hub_{leg}"
 
 
-def circle(rim: Rim, mouths: Sequence[Mouth]) -> tuple[list[Node], list[Road]]:
-    """Nodes where legs do not meet the rim (long pieces are cut), and all pieces of the rim."""
+def circle_roads(rim: Rim, mouths: Sequence[Mouth]) -> tuple[list[Node], list[Road]]:
+    """Nodes between the legs (long pieces are cut), and all pieces of the circle."""
     nodes: list[Node] = []
     roads: list[Road] = []
     for a, b in _around(mouths):

@@ -1,6 +1,6 @@
-"""Lanes that a work zone closes: where the tapers before them lie, and the cones along those.
+"""Lanes that a work zone closes: the tapers before them, and the cones.
 
-Taken from the lane graph, so that the .xodr, the player and the planner have the same ones. Metres; knows no crash.
+Computed from the lane graph, so that the .xodr, the player and the planner agree. Metres; knows no crash.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sgcad_core.units import MPS_PER_MPH
 _SLOW_MPH = 45.0
 _FOOT_M = 0.3048
 MOST_M = 75.0
-"""Longest taper: the legs of a layout are 240 m long, and one drives some seconds before it."""
+"""Longest taper: the legs of a layout are 240 m long, and the approach takes some seconds."""
 CONE_M = 0.35
 """Width of a cone of 28 in."""
 _ZONE_STEP_M = 12.0
@@ -25,18 +25,18 @@ _ZONE_STEP_M = 12.0
 
 
 class Taper(NamedTuple):
-    """The end of lanes that are closed behind the node: `lanes` of `edge` are those that one has to leave."""
+    """The end of lanes that are closed behind the node: `lanes` of `edge` have to be left."""
 
     edge: str
     lanes: tuple[Lane, ...]
     onward: str
     side: int
-    """The hand on which the closed lanes lie: 1 left, -1 right."""
+    """Side of the closed lanes: 1 left, -1 right."""
     length_m: float
 
 
 def tapers(graph: LaneGraph) -> tuple[Taper, ...]:
-    """All tapers of a network, found once."""
+    """All tapers of a network, cached."""
     if "tapers" not in graph.derived:
         graph.derived["tapers"] = tuple(taper for edge in graph.edges.values() for taper in _taper(graph, edge))
     found: tuple[Taper, ...] = graph.derived["tapers"]
@@ -62,14 +62,14 @@ def _taper(graph: LaneGraph, edge: Edge) -> Iterator[Taper]:
 
 
 def _length_m(shut: tuple[Lane, ...], room_m: float) -> float:
-    """MUTCD table 6C-4: L = W S2 / 60 up to 40 mph, W S beyond (feet, mph); a lane each where there is room."""
+    """MUTCD table 6C-4: L = W S2 / 60 up to 40 mph, W S beyond (feet, mph); one taper a lane where there is room."""
     mph = shut[0].speed_mps / MPS_PER_MPH
     feet = shut[0].width_m / _FOOT_M * (mph if mph >= _SLOW_MPH else mph * mph / 60)
     return min(feet * _FOOT_M, MOST_M) * (len(shut) if room_m > MOST_M * len(shut) else 1)
 
 
 def merging_line(shape: Floats, beside: Floats, taper_m: float) -> Floats:
-    """The line of one who comes in a lane and leaves it for that beside before the cones close it, (n, 2)."""
+    """(n, 2) line from a lane to the one beside it, ahead of the taper that closes the lane."""
     totals = [float(arc_lengths(line)[-1]) for line in (shape, beside)]
     share = np.linspace(0.0, 1.0, max(int(totals[0] / 4.0), 2) + 1)
     own, other = (resample(line, share * total) for line, total in zip((shape, beside), totals, strict=True))

@@ -1,4 +1,4 @@
-"""A compiled network as a reader of narratives sees it: roads with lanes each way, headings, limits, legs of junctions.
+"""Facts of a compiled network: roads with lanes each way, headings, limits, legs of junctions.
 
 Reads the lane graph; compass is north up. Knows no narrative.
 """
@@ -18,8 +18,8 @@ BEHIND_SPLITTER_M = 60.0
 
 
 @dataclass(frozen=True)
-class DrawnRoad:
-    """A road as drawn: passenger lanes each way and the headings that it covers (radians, of the forward edge)."""
+class CompiledRoad:
+    """A compiled road: passenger lanes each way and its headings (radians, of the forward edge)."""
 
     id: str
     forward: int
@@ -33,26 +33,26 @@ class DrawnRoad:
         return self.forward + self.backward
 
     def along(self, way: Compass, tolerance_deg: float, either: bool = False) -> bool:
-        """Whether the forward edge somewhere heads that way (or, with `either`, the other way)."""
-        return any(near(h, angle_of(way), tolerance_deg, either) for h in self.headings)
+        """Whether the forward edge has that heading somewhere (or, with `either`, the opposite one)."""
+        return any(headings_agree(h, angle_of(way), tolerance_deg, either) for h in self.headings)
 
     def lanes_towards(self, way: Compass, tolerance_deg: float) -> int:
-        """Lanes of traffic that heads that way; 0 where the road runs otherwise."""
+        """Lanes of traffic with that heading; 0 where the road runs otherwise."""
         if self.along(way, tolerance_deg):
             return self.forward
-        against = any(near(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
+        against = any(headings_agree(h + math.pi, angle_of(way), tolerance_deg, False) for h in self.headings)
         return self.backward if against else 0
 
 
-def near(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool = False) -> bool:
+def headings_agree(heading_rad: float, way_rad: float, tolerance_deg: float, either: bool = False) -> bool:
     """Whether a heading lies within the tolerance of another or, with `either`, of the opposite."""
     turn = abs((heading_rad - way_rad + math.pi) % (2 * math.pi) - math.pi)
     turn = min(turn, math.pi - turn) if either else turn
     return math.degrees(turn) <= tolerance_deg
 
 
-def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
-    """Roads with their directions at both ends and in between; the geometry of one edge stands for both."""
+def compiled_roads(graph: LaneGraph) -> list[CompiledRoad]:
+    """Roads with their headings at both ends and in between; the geometry of one edge represents both."""
     found = []
     for road in dict.fromkeys(road_of(edge.id)[0] for edge in graph.edges.values() if not graph.is_around(edge)):
         forward, backward = graph.edges.get(road), graph.edges.get(f"-{road}")
@@ -67,7 +67,7 @@ def drawn_roads(graph: LaneGraph) -> list[DrawnRoad]:
         headings.add(round(math.atan2(overall[1], overall[0]) + flip, 3))
         speeds = tuple(lane.speed_mps / MPS_PER_MPH for lane in edge.car_lanes[:1])
         lanes = [len(e.car_lanes) if e else 0 for e in (forward, backward)]
-        found.append(DrawnRoad(road, lanes[0], lanes[1], tuple(sorted(headings)), speeds))
+        found.append(CompiledRoad(road, lanes[0], lanes[1], tuple(sorted(headings)), speeds))
     return [d for d in found if d.total and d.speeds_mph]
 
 
@@ -89,7 +89,7 @@ def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
 
 
 def _leads(line: Floats, opens: bool) -> Floats:
-    """Where a leg leads from its junction; one that opens into a roundabout does so at an angle first."""
+    """Direction of a leg from its junction; at a roundabout it is taken behind the splitter island."""
     ahead: Floats = line[1] - line[0]
     if opens:
         ahead = resample(line, [min(BEHIND_SPLITTER_M, arc_lengths(line)[-1])])[0] - line[0]

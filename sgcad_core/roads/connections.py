@@ -1,4 +1,4 @@
-"""Which lane leads where at every node: the connections of a road spec.
+"""The connections of a road spec: the lanes that lead into each other at every node.
 
 Every exit of a node is reachable from every approach (a crash may need any of them): stated turns come
 first, the usual U.S. lane use fills the rest. Lanes are numbered from 0 at the right curb. Knows the spec
@@ -85,7 +85,7 @@ def _turning_round(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
 
 
 def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link]:
-    """Links with SUMO's indices: what lies beside the lanes comes first, and lanes that are closed count."""
+    """Links with SUMO's indices: lanes beside the roadway come first, and closed lanes count."""
     roads = {road.id: road for road in spec.roads}
 
     def counted(edge: str, lane: int) -> int:
@@ -100,7 +100,7 @@ def _outer_lanes_counted(found: Iterable[Link], spec: RoadSpec) -> Iterator[Link
 
 
 def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
-    """What lies beside the lanes goes on into its like: bicycle lanes straight across, all of it where two roads meet.
+    """Links of the lanes beside the roadway into equal ones: bicycle lanes straight across, all where two roads meet.
 
     Counted from -1, next to the lanes, outwards.
     """
@@ -114,7 +114,8 @@ def _going_on(approach: _Way, leaving: Sequence[_Way]) -> list[Link]:
 
 
 def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tuple[list[_Way], list[_Way]]:
-    arriving, leaving = [], []
+    arriving: list[_Way] = []
+    leaving: list[_Way] = []
     for road in spec.roads:
         if node in (road.from_node, road.to_node):
             line = roadways[road.id].center
@@ -123,13 +124,10 @@ def _ways_at(node: str, spec: RoadSpec, roadways: Mapping[str, Roadway]) -> tupl
             outward: Direction = "backward" if inward == "forward" else "forward"
             h_in, h_out = (ends[1], ends[1] + math.pi) if inward == "forward" else (ends[0] + math.pi, ends[0])
             turns = road.turns_forward if inward == "forward" else road.turns_backward
-            center, more = has_center_lane(road), (road.circle, beside(road))
-            if open_ := open_lanes(road, inward):
-                more_in = (*more, open_, lanes(road, inward))
-                arriving.append(_Way(road.id, inward, road.kind, len(open_), h_in, turns, center, *more_in))
-            if open_ := open_lanes(road, outward):
-                more_out = (*more, open_, lanes(road, outward))
-                leaving.append(_Way(road.id, outward, road.kind, len(open_), h_out, (), center, *more_out))
+            for way, heading, uses, found in ((inward, h_in, turns, arriving), (outward, h_out, (), leaving)):
+                if open_ := open_lanes(road, way):
+                    more = has_center_lane(road), road.circle, beside(road), open_, lanes(road, way)
+                    found.append(_Way(road.id, way, road.kind, len(open_), heading, uses, *more))
     return arriving, leaving
 
 
@@ -162,13 +160,13 @@ def _approach_links(approach: _Way, arriving: Sequence[_Way], leaving: Sequence[
 
 
 def _past_closure(approach: _Way, ahead: _Way) -> list[Link]:
-    """Where a work zone begins or ends every lane that is open on both sides goes on; out of the others one merges."""
+    """At the ends of a work zone every lane that is open on both sides goes on; the others merge."""
     both = [lane for lane in approach.open if lane in ahead.open]
     return [Link(approach.edge, approach.open.index(i), ahead.edge, ahead.open.index(i)) for i in both]
 
 
 def _around(approach: _Way, exits: Sequence[_Exit]) -> list[Link]:
-    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit opens behind it."""
+    """On in a roundabout, and out of it from as many outer lanes as the exit has; a wider exit widens behind it."""
     found = []
     for way, _ in exits:
         shared = min(approach.lanes, way.lanes)
@@ -194,7 +192,8 @@ def _movements(exits: list[_Exit]) -> dict[Movement, list[_Exit]]:
         straight = straight or (order[0] if abs(order[0].angle_deg) < 110 else None)
     elif straight and abs(order[1].angle_deg) - abs(straight.angle_deg) < 15 and abs(order[1].angle_deg) < THROUGH_DEG:
         straight = None
-    pivot = straight.angle_deg if straight else sum(e.angle_deg for e in order[:2]) / 2 if _fork(order) else 0.0
+    fork = len(order) > 1 and abs(order[1].angle_deg) < THROUGH_DEG
+    pivot = straight.angle_deg if straight else sum(e.angle_deg for e in order[:2]) / 2 if fork else 0.0
     found: dict[Movement, list[_Exit]] = {
         "right": [e for e in exits if e is not straight and e.angle_deg < pivot],
         "through": [straight] if straight else [],
@@ -203,12 +202,8 @@ def _movements(exits: list[_Exit]) -> dict[Movement, list[_Exit]]:
     return {movement: targets for movement, targets in found.items() if targets}
 
 
-def _fork(order: list[_Exit]) -> bool:
-    return len(order) > 1 and abs(order[1].angle_deg) < THROUGH_DEG
-
-
 def _lane_uses(approach: _Way, exits: Mapping[Movement, list[_Exit]]) -> list[set[Movement]]:
-    """What each lane is for: as stated, else as usual; no lane and no exit is left without."""
+    """Movements of each lane: as stated, else the usual ones; no lane and no exit is left without."""
     stated = approach.turns if len(approach.turns) == approach.lanes else ()
     usual = _usual_uses(approach.lanes, exits)
     uses = [set(_USES[turn]) & set(exits) for turn in stated] if stated else usual
@@ -275,7 +270,7 @@ def _widening(
 
 
 def _merges_from_right(approach: _Way, target: _Exit, arriving: Sequence[_Way]) -> bool:
-    """A straighter road leads into the same exit, and this one comes from its right."""
+    """Whether a straighter road leads into the same exit and this one comes from its right."""
     straighter = [
         w for w in arriving
         if w.road not in (approach.road, target.way.road)

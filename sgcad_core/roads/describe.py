@@ -61,7 +61,7 @@ def road_ids(source: RoadSpec | LaneGraph) -> list[str]:
 
 
 def compass(heading_rad: float) -> str:
-    """The nearest of eight winds in which a heading points."""
+    """The nearest of eight compass words of a heading."""
     return _COMPASS[round(heading_rad / (math.pi / 4)) % 8]
 
 

@@ -13,7 +13,7 @@ from sgcad_core.kinds import RAMP
 from sgcad_core.roads.lane_graph import Edge, Floats, LaneGraph
 
 WIDEST_M = 7.0
-"""Between the two roads where the paint ends; beyond lies grass."""
+"""Distance between the two roads at the end of the painted area; beyond lies grass."""
 _LONGEST_M = 40.0
 _ALONG_RAD = math.radians(60)
 _KIND = "kind"
@@ -26,12 +26,12 @@ class Gore(NamedTuple):
     road: str
     ramp: str
     leaves: bool
-    """Whether both begin there: the ramp leads off the road."""
+    """Whether the ramp leaves the road (both begin at the node)."""
     corners: Floats
 
 
 def gores(graph: LaneGraph) -> tuple[Gore, ...]:
-    """All gores of a network, found once."""
+    """All gores of a network, cached."""
     if "gores" not in graph.derived:
         graph.derived["gores"] = tuple(_gores(graph))
     found: tuple[Gore, ...] = graph.derived["gores"]

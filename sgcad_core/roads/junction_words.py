@@ -1,7 +1,7 @@
 """A junction in words: legs, lanes, shape and control, the same words for a real junction and for a layout.
 
-Full-text search compares words, so equal junctions must read alike: `describe` is what an index stores of a
-real junction and what a report's layout is looked up with. Knows no file format and no database.
+Full-text search compares words, so equal junctions must read alike: `describe` gives the indexed text of a real
+junction and the query for the layout of a report. Knows no file format and no database.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SQUARE = math.radians(25)
 
 
 class JunctionLeg(NamedTuple):
-    """A road at a junction: where it lies (radians counter-clockwise from east, seen from the hub) and its lanes."""
+    """A road at a junction: its direction (radians counter-clockwise from east, seen from the hub) and its lanes."""
 
     angle_rad: float
     lanes_in: int
@@ -39,13 +39,13 @@ def layout_legs(layout: RoadLayout) -> tuple[JunctionLeg, ...]:
 
 
 def describe_layout(layout: RoadLayout) -> str:
-    """What to search with for a real junction like a layout's hub: words, then `marks`."""
+    """The query for a real junction like the hub of a layout: words, then `marks`."""
     legs = layout_legs(layout)
     return f"{describe(legs, hub_control(layout.legs))}\n{marks(legs)}"
 
 
 def describe(legs: Sequence[JunctionLeg], control: str) -> str:
-    """A sentence on the junction and one on each kind of leg; where the legs point does not matter."""
+    """A sentence on the junction and one on each kind of leg, independent of the directions of the legs."""
     count = _COUNTS.get(len(legs), str(len(legs)))
     roads: dict[tuple[int, int], int] = {}
     for leg in sorted(legs, key=lambda leg: (-leg.lanes_in - leg.lanes_out, leg.lanes_in)):

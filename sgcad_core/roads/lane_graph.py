@@ -30,7 +30,7 @@ class NetNode(NamedTuple):
     y_m: float
     type: str
     parameters: Mapping[str, str] = NOTHING
-    """Parameters of the file: what was told of the node beyond its type (`plain_xml`)."""
+    """Parameters of the file beyond the type (`plain_xml`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Edge:
     lanes: tuple[Lane, ...]
     priority: int = -1
     parameters: Mapping[str, str] = field(default_factory=dict)
-    """Parameters of the file: what was told of the road beyond its lanes (`plain_xml`)."""
+    """Parameters of the file beyond the lanes (`plain_xml`)."""
 
     @property
     def car_lanes(self) -> tuple[Lane, ...]:
@@ -129,7 +129,7 @@ class LaneGraph:
 
     @cached_property
     def derived(self) -> dict[Hashable, Any]:
-        """What was made of this network, by what it was made for: whoever makes it keeps it here."""
+        """Results computed from this network, by their inputs."""
         return {}
 
     @cached_property
@@ -144,7 +144,7 @@ class LaneGraph:
 
     @cached_property
     def openings(self) -> tuple[str, ...]:
-        """Nodes at which one turns round from one direction of a road into the other."""
+        """Nodes with a connection back into the other direction of a road."""
         back = (c for c in self.connections if road_of(c.from_edge)[0] == road_of(c.to_edge)[0])
         return tuple({self.edges[c.from_edge].to_node: None for c in back if c.from_edge != c.to_edge})
 
@@ -217,7 +217,7 @@ def contracted(lanes: Mapping[tuple[str, str], int], center_of: Mapping[str, str
 
 
 def road_counts(lanes: Mapping[tuple[str, str], int]) -> RoadCounts:
-    """Everything that is counted in roads given as (from, to): lanes for passenger cars, both directions apart."""
+    """All counts of roads given as (from, to): lanes for passenger cars, both directions apart."""
     near = _neighbors(lanes)
     chains = tuple((_widest(lanes, path), _widest(lanes, path[::-1])) for path in _paths(near))
     counts = [n for both in chains for n in both if n]

@@ -1,6 +1,6 @@
-"""How many lanes a road may have that a narrative counts: the readings that its words allow.
+"""Possible lane totals of a road by the words of a narrative.
 
-Knows what was read of roads; no network.
+Knows the read road facts; no network.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from sgcad_core.reading.roads.road_facts import RoadFact
 
 
 def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
-    """Totals of both directions that agree with the text; empty where it does not state one for sure.
+    """Totals of both directions that agree with the text; empty where it does not state one clearly.
 
-    A divided or one-way road is passed over (one carriageway may be drawn); a center lane may be counted or
-    not, and turn lanes at the junction may stand beside the lanes named. Without a diagram nobody knows of turn lanes
-    but those that the text names, and lanes told way by way leave no center lane open.
+    A divided or one-way road is skipped (one carriageway may be drawn); a center lane may be counted or not, and turn
+    lanes at the junction may come in addition. Without a diagram only the turn lanes of the text are known, and lanes
+    stated for each direction leave no center lane open.
     """
     lanes = road.lanes
     if road.kind != "road" or lanes.one_way or lanes.divided or lanes.one_way_toward:
@@ -26,10 +26,10 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
     extra = (0 if whole else sum(len(turns) for turns in lanes.turns.values())) + pictured
     both = "each" in lanes.turns or len(lanes.turns) > 1  # turn lanes either way: no place of the road has all of them
     beyond = max(map(len, lanes.turns.values())) if both else 0
-    fewer = max(beyond, lanes.center_turn_lane or (vague(road, pictured) and named % 2))
+    fewer = max(beyond, lanes.center_turn_lane or (may_show_other_lanes(road, pictured) and named % 2))
     return set(range(max(1, named - fewer), named + extra + 1))
 
 
-def vague(road: RoadFact, pictured: bool) -> bool:
-    """Whether a diagram may show other lanes than the text counts; told way by way they are all there."""
+def may_show_other_lanes(road: RoadFact, pictured: bool) -> bool:
+    """Whether a diagram may show other lanes than the text counts; not where lanes are stated for each direction."""
     return pictured and len(road.lanes.toward) < 2

@@ -26,7 +26,7 @@ from sgcad_core.records.specs import (
     RoadSpec,
     is_aisle,
 )
-from sgcad_core.roads.circle import Mouth, Rim, circle, node_of, rim_of
+from sgcad_core.roads.circle import Mouth, Rim, circle_roads, node_of, rim_of
 from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m
 
 COMPASS: tuple[Compass, ...] = get_args(Compass)
@@ -37,7 +37,7 @@ LEG_M = 240.0
 ARC_M = 120.0
 """A curved leg bends over this length from the hub; beyond, it runs straight."""
 _LONGEST_M = {RAMP: ARC_M, "aisle": 80.0}
-"""Legs that are shorter than others: a long ramp would meet the road that it joins, and aisles are no longer."""
+"""Length of short legs: a long ramp would meet the road that it joins, and aisles are short."""
 ACCESS_M = 45.0
 ACCESS_ROAD_M = 80.0
 BEYOND_JOINT_M = 60.0
@@ -63,7 +63,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
     legs = tuple({leg.bearing: leg for leg in reversed(layout.legs)}.values())[::-1]
     mouths = [Mouth(leg.bearing, _angle(leg), _width(leg), "sidewalk" in leg.beside) for leg in legs]
     rim = rim_of(layout.circle_lanes, mouths) if layout.circle_lanes else None
-    nodes, roads = circle(rim, mouths) if rim else ([_hub(layout, legs)], [])
+    nodes, roads = circle_roads(rim, mouths) if rim else ([_hub(layout, legs)], [])
     for leg in legs:
         accesses = [a for a in layout.accesses if a.leg == leg.bearing]
         length_m = min(leg_m, _LONGEST_M.get("aisle" if is_aisle(leg) else leg.kind, leg_m))
@@ -80,9 +80,9 @@ def _hub(layout: RoadLayout, legs: Sequence[Leg]) -> Node:
 
 
 def hub_control(legs: Sequence[Leg]) -> NodeControl:
-    """What stands at the hub: signal before flashing before stop before yield; none on a plain road.
+    """The control of the hub: signal before flashing before stop before yield; none on a plain road.
 
-    Legs that nobody comes by are not asked.
+    Legs without incoming lanes do not count.
     """
     seen = [leg.control for leg in legs if leg.lanes_in]
     if len(legs) < 3 or not seen:
@@ -100,7 +100,7 @@ class _Path:
     angle_rad: float
     turn_per_m: float
     straight_m: float = 0.0
-    """It begins so far from the hub, and bends from there on."""
+    """It begins this far from the hub, and bends from there on."""
 
     def heading(self, s_m: float) -> float:
         """Outward direction, radians counter-clockwise from east."""
@@ -134,7 +134,7 @@ def _node(name: str, place: tuple[float, float], control: NodeControl = "none") 
 
 
 def _angle(leg: Leg) -> float:
-    """Where a leg lies, radians counter-clockwise from east."""
+    """Direction of a leg, radians counter-clockwise from east."""
     return math.radians(90 - 45 * COMPASS.index(leg.bearing) - leg.skew_deg)
 
 
@@ -173,7 +173,7 @@ def _width(leg: Leg) -> float:
 
 
 def _crowd(layout: RoadLayout, leg: Leg) -> float:
-    """The longest that an access of this leg may be without meeting another leg or its accesses, as a share."""
+    """The longest access of this leg that meets no other leg and no access of one, as a share."""
     index = COMPASS.index(leg.bearing)
     near = {COMPASS[(index + 1) % 8], COMPASS[index - 1]} & {o.bearing for o in layout.legs}
     others = any(a.leg != leg.bearing for a in layout.accesses)

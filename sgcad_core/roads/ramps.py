@@ -1,4 +1,4 @@
-"""Where a ramp meets its road: at the outer lane, not at the middle. Metres; plain geometry of a spec's nodes."""
+"""The place where a ramp meets its road: at the outer lane, not at the middle. Metres; geometry of a spec's nodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ALONG_RAD = math.radians(60)
 """A ramp runs along a road that it leaves or joins at less than this."""
 
 
-class Joined(NamedTuple):
+class JoinedRoad(NamedTuple):
     """The direction of a road along which a ramp runs: of travel there (unit vector), and its lanes."""
 
     travel: Floats
@@ -24,8 +24,8 @@ class Joined(NamedTuple):
     lanes: int
 
 
-def joined(ramp: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Joined | None:
-    """The way of a road that a one-way ramp leads into, or comes from; None where it meets none on its right side."""
+def joined_road(ramp: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> JoinedRoad | None:
+    """The direction of a road that a one-way ramp enters or leaves; None without one on its right side."""
     if ramp.kind != RAMP or (ramp.lanes_forward and ramp.lanes_backward):
         return None
     start, end = (ramp.from_node, ramp.to_node) if ramp.lanes_forward else (ramp.to_node, ramp.from_node)
@@ -40,12 +40,12 @@ def joined(ramp: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence
     return None
 
 
-def _way(road: Road, node: str, nodes: Mapping[str, Node], leaves: bool) -> Joined | None:
+def _way(road: Road, node: str, nodes: Mapping[str, Node], leaves: bool) -> JoinedRoad | None:
     """The direction of a road that leaves a node (or leads into it); None where it has no lanes."""
     outward = _unit(nodes[node], nodes[road.to_node if road.from_node == node else road.from_node])
     forward = (road.from_node == node) == leaves
     lanes = road.lanes_forward if forward else road.lanes_backward
-    return Joined(outward if leaves else -outward, road, lanes) if lanes else None
+    return JoinedRoad(outward if leaves else -outward, road, lanes) if lanes else None
 
 
 def _unit(a: Node, b: Node) -> Floats:

@@ -1,4 +1,4 @@
-"""Where the lanes of a road spec lie: smooth center lines, medians, and the left border of each direction.
+"""The geometry of the lanes of a road spec: smooth center lines, medians, and the left border of each direction.
 
 Metres; x east, y north. Traffic keeps to the right, so a direction's lanes lie to the right of its left
 border. Knows the spec and numpy; no SUMO, no OpenDRIVE.
@@ -16,7 +16,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resa
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.records.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.roads.ramps import joined
+from sgcad_core.roads.ramps import joined_road
 
 Direction = Literal["forward", "backward"]
 
@@ -32,7 +32,7 @@ MEDIAN_M = {"none": 0.0, "painted": 1.2, "raised": 2.4, "grass": 8.0, "barrier":
 BESIDE_M: Mapping[Beside, float] = {"bike_lane": 1.5, "parking": 2.4, "shoulder": 2.4, "sidewalk": 1.8}
 """Usual widths (AASHTO 2018: 5, 8, 8 and 6 ft)."""
 STALL_M = 5.5
-"""Depth of the stalls along an aisle of a parking lot (18 ft): one parks square to it."""
+"""Depth of the stalls along an aisle of a parking lot (18 ft), square to it."""
 AISLE_LANE_M = 3.6
 """Half of an aisle between square stalls (24 ft)."""
 ORDER: tuple[Beside, ...] = get_args(Beside)
@@ -67,10 +67,10 @@ class Roadway:
         return offset_polyline(line, left) if left.any() else line
 
     def _shift(self, direction: Direction) -> float:
-        """How far the left border lies left of the center line, medians aside.
+        """Distance of the left border to the left of the center line, without medians.
 
-        A two-way left-turn lane straddles the center line and belongs to the forward edge; a one-way road
-        lies on its line, unless another brings the traffic back beside it.
+        A two-way left-turn lane straddles the center line and belongs to the forward edge; a one-way road lies on its
+        line, unless another road beside it carries the opposite traffic.
         """
         width = lane_width_m(self.road)
         if two_way(self.road):
@@ -164,8 +164,8 @@ def _cut(line: Floats, at_start: bool, at_end: bool) -> Floats:
 
 
 def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
-    """How far a ramp lies to the right of a line through its nodes, so that it meets its road's outer lane: (2,)."""
-    way = joined(road, nodes, meeting)
+    """(2,) shift of a ramp to the right of the line through its nodes, so that it meets the outer lane of its road."""
+    way = joined_road(road, nodes, meeting)
     if way is None:
         return np.zeros(2)
     both, width = two_way(way.road), lane_width_m(way.road)

@@ -1,4 +1,4 @@
-"""What a road spec's own fields contradict, before anything is drawn. Knows no file format."""
+"""Contradictions within a road spec, before it is compiled. Knows no file format."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paved surface of a road network: how far a point lies off it, and in which direction from it.
+"""The paved surface of a road network: distance and direction of points from it.
 
 The surface is the union of all lanes that cars may use and of the ways across the junctions. Metres and radians in the
 network's frame. Knows no actor.
@@ -15,13 +15,13 @@ from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.roads.lane_graph import Floats, LaneGraph, road_of
 
 _LONGEST_M = 8.0
-"""Center lines are told by pieces no longer than this."""
+"""Longest piece of a center line."""
 _LEAST_WIDTH_M = 3.2
-"""Of a way across a junction, where the lanes that it joins are narrower."""
+"""Least width of a connection across a junction."""
 
 
 class Junction(NamedTuple):
-    """A place where three or more roads meet: its center, and how far its area reaches from there."""
+    """A junction of three or more roads: its center, and the radius of its area."""
 
     x_m: float
     y_m: float
@@ -37,7 +37,8 @@ class RoadSurface(NamedTuple):
     junctions: tuple[Junction, ...]
 
     def off(self, points: Floats) -> tuple[Floats, Floats]:
-        """How far (m, 2) points lie beyond the edge of the nearest lane (negative: on it), and the (m,) bearing thence.
+        """(m,) distance of (m, 2) points beyond the edge of the nearest lane (negative: on it), and the (m,) bearing
+        from it.
 
         Bearings are counter-clockwise from east, from the lane's center line to the point.
         """
@@ -50,11 +51,6 @@ class RoadSurface(NamedTuple):
         nearest = np.argmin(beyond, axis=1)
         rows = np.arange(len(points))
         return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest])
-
-    def junction_near(self, point: Floats) -> Junction | None:
-        """The junction whose area is nearest to a point."""
-        reach = lambda j: float(np.hypot(point[0] - j.x_m, point[1] - j.y_m)) - j.radius_m  # noqa: E731
-        return min(self.junctions, key=reach, default=None)
 
 
 def road_surface(graph: LaneGraph) -> RoadSurface:

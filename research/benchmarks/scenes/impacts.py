@@ -22,7 +22,7 @@ import yaml
 
 from sgcad_core.handover.severity import exchanged
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body
-from sgcad_core.planner.encounter.box_scalar import apart
+from sgcad_core.planner.aftermath.wreck_bodies import separation
 
 FILE = Path(__file__).with_name("staged_collisions.yaml")
 TOUCH_M = 0.01
@@ -86,7 +86,7 @@ def _touching(first: Body, second: Body, at: tuple[float, float]) -> tuple[Body,
     speed = math.hypot(vx, vy)
     for back in np.arange(_BACK_M, -_BACK_M, -_GRAIN_M):
         second.x, second.y = at[0] + back * vx / speed, at[1] + back * vy / speed
-        if apart(first, second).gap_m <= -TOUCH_M:
+        if separation(first, second).gap_m <= -TOUCH_M:
             return first, second
     raise ValueError("the two do not touch: mend the test's centers of impact")
 

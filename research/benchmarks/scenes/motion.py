@@ -24,7 +24,7 @@ import numpy as np
 from flows.case.case_folder import read_trajectories
 from sgcad_core.case.records import Trajectory
 from sgcad_core.geometry.plane import Size
-from sgcad_core.metrics.drivability import WHEELED, deepest, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import read
@@ -94,7 +94,7 @@ def _vehicle(
 ) -> None:
     touches, facts, lost = told
     until = touches.get(motion.actor)
-    seen = driven(motion, actor["length_m"], until, backing=actor["maneuver"] == "backing")
+    seen = driving_peaks(motion, actor["length_m"], until, backing=actor["maneuver"] == "backing")
     over = seen.excesses(facts.surface)
     excused = [word for word in over if lost and not word.startswith("lateral")]
     counted = [word for word in over if word not in excused]
@@ -118,8 +118,8 @@ def _speed(case: str, motion: Trajectory, until: int | None, told_mps: float, fi
 
 
 def _overlaps(case: str, motions: tuple[Trajectory, ...], sizes: dict[str, Size], figures: Figures) -> None:
-    rest, who = deepest(motions, sizes, at_rest=True)
-    deep, pair = deepest(motions, sizes)
+    rest, who = deepest_overlap(motions, sizes, at_rest=True)
+    deep, pair = deepest_overlap(motions, sizes)
     figures.rest += rest > 0
     figures.deep += deep > DEEP_M
     moving = [m.actor for m in motions if m.actor in first_touches(motions, sizes) and m.speed_mps[-1] > STILL_MPS]

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from sgcad_core.case.records import Finding
-from sgcad_core.metrics.generation import LAYERS, AttemptSeen, CaseSeen, Layer, Quality, quality
+from sgcad_core.metrics.generation import LAYERS, AttemptRecord, CaseRecord, Layer, Quality, quality
 
 HEAD = (
     "| config | cases | refused | GSR first | GSR | AER first | AER | scenarios with an error, first | last | "
@@ -23,20 +23,20 @@ HEAD = (
 )
 
 
-def cases_of(config: Path) -> Iterator[CaseSeen]:
+def cases_of(config: Path) -> Iterator[CaseRecord]:
     """The finished cases of one config's folder."""
     for file in sorted(config.glob("*/result.json")):
         result = json.loads(file.read_text(encoding="utf-8"))
         attempts = (_attempt(place) for place in sorted((file.parent / "attempts").glob("*-*")))
-        yield CaseSeen(result["status"], tuple(attempts))
+        yield CaseRecord(result["status"], tuple(attempts))
 
 
-def _attempt(place: Path) -> AttemptSeen:
+def _attempt(place: Path) -> AttemptRecord:
     stage = place.name.rsplit("-", 1)[0]
     if stage not in ("road", "scenario"):
         raise SystemExit(f"{place}: no attempt of a stage; expected road-NN or scenario-NN")
     findings = json.loads((place / "findings.json").read_text(encoding="utf-8"))
-    return AttemptSeen("road" if stage == "road" else "scenario", tuple(Finding(**f) for f in findings))
+    return AttemptRecord("road" if stage == "road" else "scenario", tuple(Finding(**f) for f in findings))
 
 
 def table(runs: Path, configs: list[str]) -> str:

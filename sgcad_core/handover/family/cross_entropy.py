@@ -1,10 +1,9 @@
 """The hardest members of a family for a driver, by cross-entropy, and a rate with importance weights.
 
 R. Y. Rubinstein, D. P. Kroese, The Cross-Entropy Method, 2004: in the space of latent standard normals a diagonal
-normal proposal is moved, round by round, to the elite of the samples, smoothed. Every sample of every round has the
-weight density of the family / density of its own proposal, so that the rate of an event under the family can be told
-from all of them (a mixture of the proposals would be tighter; this stays unbiased). Knows numpy; what is hard is asked
-of a function.
+normal proposal is moved, round by round, to the elite of the samples, smoothed. Every sample has the weight density of
+the family / density of its own proposal, so that all samples give an unbiased rate of an event under the family (a
+mixture of the proposals would be tighter). Knows numpy; the hardness is a function argument.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from sgcad_core.case.records import Floats
 ELITE = 0.2
 SMOOTHING = 0.7
 LEAST_SPREAD = 0.3
-"""Of the proposal: narrower ones give weights that nothing can be told from."""
+"""Least standard deviation of the proposal: narrower ones give useless weights."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,16 +47,17 @@ class Searched:
 
 
 def search(hardness: Callable[[Floats], float | None], dimensions: int, count: int, rounds: int, seed: int) -> Searched:
-    """Move a proposal towards hard samples. `hardness` of a latent vector; None: no member, counts as the least hard.
+    """Moves a proposal towards hard samples. `hardness` of a latent vector; None: no member, counts as the least hard.
 
     Each round draws count / rounds samples; the first one is the family itself (weights 1).
     """
     rng = np.random.default_rng(seed)
     mean, spread = np.zeros(dimensions), np.ones(dimensions)
     latents, values, weights = [], [], []
-    for drawn in _shares(count, rounds):
+    for drawn in batch_sizes(count, rounds):
         z = mean + spread * rng.standard_normal((drawn, dimensions))
-        found = np.array([_number(hardness(row)) for row in z])
+        judged = [hardness(row) for row in z]
+        found = np.array([-math.inf if value is None else value for value in judged])
         latents.append(z)
         values.append(found)
         weights.append(_weights(z, mean, spread))
@@ -67,12 +67,9 @@ def search(hardness: Callable[[Floats], float | None], dimensions: int, count: i
     return Searched(np.vstack(latents), np.concatenate(values), np.concatenate(weights), mean, spread)
 
 
-def _shares(count: int, rounds: int) -> list[int]:
-    return [count // rounds + (k < count % rounds) for k in range(rounds) if count // rounds + (k < count % rounds)]
-
-
-def _number(value: float | None) -> float:
-    return -math.inf if value is None else value
+def batch_sizes(count: int, batches: int) -> list[int]:
+    """A number of samples split as evenly as possible; empty batches are left out."""
+    return [n for k in range(batches) if (n := count // batches + (k < count % batches))]
 
 
 def _weights(z: Floats, mean: Floats, spread: Floats) -> Floats:
@@ -88,26 +85,15 @@ def _towards(z: Floats, values: Floats, mean: Floats, spread: Floats) -> tuple[F
     return (1 - a) * mean + a * elite.mean(axis=0), np.maximum((1 - a) * spread + a * elite.std(axis=0), LEAST_SPREAD)
 
 
-def decides(latents: Floats, outcome: Floats) -> Floats:
-    """(d,) rank correlation (Spearman) of each parameter with the outcome; 0 where one of both does not vary."""
+def rank_correlations(latents: Floats, outcome: Floats) -> Floats:
+    """(d,) Spearman rank correlation of each parameter with the outcome; 0 where one of the two does not vary."""
+    from scipy.stats import spearmanr
+
     known = np.isfinite(outcome)
-    if known.sum() < 3:
+    if known.sum() < 3 or np.ptp(outcome[known]) == 0:
         return np.zeros(latents.shape[1])
-    ranks = _ranks(outcome[known])
-    return np.array([_correlation(_ranks(column), ranks) for column in latents[known].T])
-
-
-def _ranks(values: Floats) -> Floats:
-    """Mean ranks, ties shared."""
-    order = np.argsort(values, kind="stable")
-    rank = np.empty(len(values))
-    rank[order] = np.arange(len(values), dtype=float)
-    same = np.unique(values, return_inverse=True)[1]
-    shared: Floats = (np.bincount(same, rank) / np.bincount(same))[same]
-    return shared
-
-
-def _correlation(a: Floats, b: Floats) -> float:
-    if a.std() == 0 or b.std() == 0:
-        return 0.0
-    return float(np.corrcoef(a, b)[0, 1])
+    varies = np.ptp(latents[known], axis=0) > 0
+    return np.array([
+        float(spearmanr(column, outcome[known]).statistic) if moves else 0.0
+        for column, moves in zip(latents[known].T, varies, strict=True)
+    ])  # fmt: skip

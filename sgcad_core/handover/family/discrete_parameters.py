@@ -1,8 +1,8 @@
-"""What a report leaves open and is one of a few: the lane, the light; and when a told evasion began.
+"""Open parameters with a few values (lane, light), and the beginning of a stated evasion.
 
-A lane is chosen where the road has several that run beside the script's all the way, and the report names none. Two
-that drive in one direction change it together. Light changes no motion; it stands in a scenario's environment. Knows
-scripts and facts; draws none.
+The lane varies where the road has several parallel to that of the script, and the report names none. Two actors in one
+direction change it together. Light changes no motion; it is part of the environment of a scenario. Knows scripts and
+facts; draws no samples.
 """
 
 from __future__ import annotations
@@ -15,15 +15,16 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.handover.family.parameter import Facts, Parameter, Told, field_at, told_of
 from sgcad_core.handover.family.shifted_evasion import Delay
-from sgcad_core.handover.lanes import beside
+from sgcad_core.handover.parallel_lanes import lane_offsets
 from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import Light
 
 PAIR = "pair"
-"""Whose lane it is where both change it together."""
+"""Name of the common lane parameter of a pair."""
 _SAME_WAY_RAD, _ACROSS_RAD = math.radians(30), math.radians(45)
 _SCRIPTS_SHARE = 0.5
-"""Of the script's own lane; the others share the rest (ours: the maneuver's usual lane is as likely as all others)."""
+"""Probability of the script's own lane; the others share the rest (our choice: the usual lane is as likely as all
+others)."""
 LIGHTS: tuple[Light, ...] = ("day", "dusk", "dawn", "dark", "dark_lit")
 _LIGHT_SHARES = (0.68, 0.03, 0.02, 0.1, 0.17)
 """About as in national crash records, where two of three crashes are by day and two of three dark ones under lamps."""
@@ -31,7 +32,7 @@ _LANE_FIELDS = ("lane", "lane_word", "start_lane")
 
 
 def lanes(script: Script, known: Facts, pair: Sequence[str]) -> list[Parameter]:
-    """In which lane the pair comes, as metres to the left of the script's."""
+    """The lane parameters of the pair, as metres to the left of the script's lane."""
     found = [] if len(pair) != 2 else _of_pair(script, pair)
     return [_lane(who, offsets) for who, of, offsets in found if offsets and not _stated(known, of)]
 
@@ -43,7 +44,7 @@ def _stated(known: Facts, actors: Sequence[str]) -> bool:
 def _of_pair(script: Script, pair: Sequence[str]) -> list[tuple[str, Sequence[str], list[float]]]:
     """(whose, of which actors, metres to the left) of every lane that may be another."""
     poses = [_until_contact(script, a) for a in pair]
-    aside = [beside(script.graph, p) for p in poses]
+    aside = [lane_offsets(script.graph, p) for p in poses]
     turned = abs(math.remainder(float(poses[0][-1, 2] - poses[1][-1, 2]), 2 * math.pi))
     if turned < _SAME_WAY_RAD:
         both = sorted(set(aside[0]) & set(aside[1]))
@@ -57,7 +58,7 @@ def _until_contact(script: Script, actor: str) -> Floats:
     track = next(t for t in script.trajectories if t.actor == actor)
     contact = script.contact_of(actor)
     last = len(track.t_s) if contact is None else max(int(np.searchsorted(track.t_s, contact.t_s - 1e-6)), 2)
-    return np.column_stack((track.x_m[:last], track.y_m[:last], track.heading_rad[:last]))
+    return track.pose[:last]
 
 
 def _lane(who: str, offsets: Sequence[float]) -> Parameter:
@@ -89,7 +90,7 @@ def _choice(
 
 # ------------------------------------------------------------------ reaction
 def reactions(script: Script, known: Facts, pair: Sequence[str], delays: Mapping[str, Delay]) -> list[Parameter]:
-    """How much later the responder's told braking begins, seconds."""
+    """Delay of the responder's stated braking, seconds."""
     found = []
     for actor in pair:
         field = field_at(actor, "evasion.brakes")
@@ -110,7 +111,7 @@ def _reaction(actor: str, delay: Delay, field: str) -> Parameter:
 
 # ------------------------------------------------------------------ light
 def light(known: Facts) -> list[Parameter]:
-    """The light, by its place in `LIGHTS`; nothing where it is told or follows from what is told."""
+    """The light, by its index in `LIGHTS`; empty where it is stated or inferred."""
     field = "conditions.light"
     if told_of(known, field) != "default":
         return []
@@ -120,13 +121,13 @@ def light(known: Facts) -> list[Parameter]:
 
 
 def light_of(values: Mapping[str, float]) -> Light | None:
-    """The light that a member's values say; None where light is no parameter."""
+    """The light of a member's values; None where light is no parameter."""
     return LIGHTS[round(values["light"])] if "light" in values else None
 
 
 # ------------------------------------------------------------------ what stays as it is
 def unvaried(script: Script, facts: Sequence[Mapping[str, object]], parameters: Sequence[Parameter]) -> dict[str, str]:
-    """Of lanes, reactions and light, those that are no parameter of a family, with the reason."""
+    """Lane, reaction and light where they are no parameters of a family, with the reason."""
     known: Facts = {str(f["field"]): f for f in facts}
     names = {p.name for p in parameters}
     pair = (script.declared.striker, script.declared.struck) if script.declared else ()

@@ -1,11 +1,11 @@
-"""The hardest members of a family in every way of being hard: MAP-Elites, with importance weights.
+"""The hardest members of a family for each kind of hardness: MAP-Elites, with importance weights.
 
-J.-B. Mouret, J. Clune, Illuminating search spaces by mapping elites, 2015: of every cell of a grid of descriptors the
-hardest sample is kept, and new samples are made of those that are kept by a normal step in latent space. Every batch is
-drawn from a mixture that is known: a share of the family itself, the rest steps from an elite chosen evenly. So each
-sample has the weight density of the family / density of its batch, at most 1 / FAMILY_SHARE, and rates under the
-family stay unbiased. Own code: the algorithm is short, and the library for it (ribs) knows no weights. Knows numpy;
-what is hard, and which cell it falls into, is asked of a function.
+J.-B. Mouret, J. Clune, Illuminating search spaces by mapping elites, 2015: the hardest sample of every cell of a grid
+of descriptors is kept, and new samples are normal steps from those in latent space. Every batch is drawn from a known
+mixture: a share of the family itself, the rest steps from an elite chosen evenly. So each sample has the weight density
+of the family / density of its batch, at most 1 / FAMILY_SHARE, and rates under the family stay unbiased. Own code: the
+algorithm is short, and the library for it (ribs) has no weights. Knows numpy; hardness and cell are a function
+argument.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sgcad_core.case.records import Floats
-from sgcad_core.handover.family.cross_entropy import Searched
+from sgcad_core.handover.family.cross_entropy import Searched, batch_sizes
 
 FAMILY_SHARE = 0.25
 """Of every batch, drawn from the family itself."""
@@ -63,22 +63,18 @@ class _Archive:
 
 
 def illuminate(judge: Callable[[Floats], Judged | None], dimensions: int, count: int, seed: int) -> Illuminated:
-    """So many samples. `judge` of a latent vector; None: no member, falls into no cell."""
+    """Draws `count` samples. `judge` of a latent vector; None: no member, in no cell."""
     rng = np.random.default_rng(seed)
     archive = _Archive(judge, dimensions)
     first = min(max(round(FIRST_SHARE * count), 1), count)
     archive.add(rng.standard_normal((first, dimensions)), np.ones(first))
-    for drawn in _shares(count - first, BATCHES):
+    for drawn in batch_sizes(count - first, BATCHES):
         kept = archive.kept
         batch = _drawn(rng, kept, drawn, dimensions)
         archive.add(batch, _weights(batch, kept))
     found = np.array(archive.hardness)
     latents = np.array(archive.latents).reshape(-1, dimensions)
     return Illuminated(Searched(latents, found, np.array(archive.weights)), archive.elites)
-
-
-def _shares(count: int, batches: int) -> list[int]:
-    return [n for k in range(batches) if (n := count // batches + (k < count % batches))]
 
 
 def _drawn(rng: np.random.Generator, kept: Floats, count: int, dimensions: int) -> Floats:

@@ -1,6 +1,6 @@
-"""One thing that varies in a family: its distribution, the fact that it rests on, and why it is so wide.
+"""One varying quantity of a family: its distribution, the fact that it rests on, and the reason of its width.
 
-Latent values are standard normal and independent; a parameter's value is its distribution's quantile there. Draws none.
+Latent values are standard normal and independent; a value is the quantile of its distribution there. Draws no samples.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Told = Literal["stated", "inferred", "default"]
 
 
 class Parameter(Record):
-    """One thing that varies. `normal`: cut to [low, high]; `uniform`: over it; `choice`: one of `values`."""
+    """One varying quantity. `normal`: cut to [low, high]; `uniform`: over it; `choice`: one of `values`."""
 
     name: str
     kind: Literal["normal", "uniform", "choice"]
@@ -31,10 +31,10 @@ class Parameter(Record):
     """The script's own value."""
     told: Told
     field: str
-    """The fact that it rests on; "" where the report is silent."""
+    """The fact that it rests on; "" where the report states none."""
     reason: str
     values: tuple[float, ...] = ()
-    """Of a choice, rising; `shares` are their probabilities, `words` what they stand for."""
+    """Values of a choice, rising; `shares` are their probabilities, `words` their meanings."""
     shares: tuple[float, ...] = ()
     words: tuple[str, ...] = ()
 
@@ -55,11 +55,11 @@ Facts = Mapping[str, Mapping[str, Any]]
 
 
 def field_at(actor: str, name: str) -> str:
-    """A fact's field of an actor."""
+    """The field name of a fact on an actor."""
     return f"{'vehicles' if actor.startswith('V') else 'others'}.{actor}.{name}"
 
 
 def told_of(known: Facts, field: str) -> Told:
-    """How a field is known."""
+    """The status of a field."""
     status = known.get(field, {}).get("status", "default")
     return status if status in ("stated", "inferred") else "default"

@@ -1,8 +1,8 @@
-"""What a report leaves open, as distributions: narrow where it states a value, wide where it is silent.
+"""Distributions of what a report leaves open: narrow where it states a value, wide where it does not.
 
 Each parameter has the fact that it rests on (or its lack) and the reason of its width. Values vary about those of the
-script; a stated fact is never left: its distribution ends where the report's rounding does. Knows scripts and facts;
-draws none.
+script and never leave a stated fact: the distribution ends at the rounding of reports. Knows scripts and facts; draws
+no samples.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from sgcad_core.handover.family.shifted_evasion import Delay
 from sgcad_core.handover.script import Script
 
 _WANDER_M = 0.375
-"""Vehicles wander so far within their lane (UN R157, Annex 4, Appendix 3): taken as two standard deviations."""
+"""Vehicles wander by this much within their lane (UN R157, Annex 4, Appendix 3): taken as two standard deviations."""
 _GRIP: Mapping[str | None, tuple[float, float]] = {
     "dry": (0.8, 0.9), "wet": (0.5, 0.7), "snow": (0.15, 0.25), "ice": (0.07, 0.15), None: (0.5, 0.9),
 }  # fmt: skip
 """Peak friction (J. Y. Wong, Theory of Ground Vehicles, table 1.3); of an untold surface dry to wet."""
 
 
-def spreads(
+def open_parameters(
     script: Script, facts: Sequence[Mapping[str, Any]], delays: Mapping[str, Delay] | None = None
 ) -> tuple[Parameter, ...]:
     """The parameters of a script whose first contact is declared, in a fixed order.
 
-    `delays`: by actor, how its braking before the contact can come later (`delay_of`).
+    `delays`: by actor, the possible delay of its braking before the contact (`delay_of`).
     """
     known = {f["field"]: f for f in facts}
     pair = (script.declared.striker, script.declared.struck) if script.declared else ()
     found: list[Parameter] = []
     for actor in pair:
         if _moves(script, actor):
-            found += [_pace(script, known, actor), _aside(known, actor)]
+            found += [_pace(known, actor), _aside(known, actor)]
         found += _size(script, known, actor)
     if len(pair) == 2 and all(_moves(script, a) for a in pair):
         found.append(_late(pair[1]))
@@ -50,7 +50,7 @@ def _moves(script: Script, actor: str) -> bool:
     return math.hypot(track.x_m[1] - track.x_m[0], track.y_m[1] - track.y_m[0]) > 1e-3 or track.speed_mps.max() > 0.5
 
 
-def _pace(script: Script, known: Facts, actor: str) -> Parameter:
+def _pace(known: Facts, actor: str) -> Parameter:
     """Speed over the script's."""
     field = field_at(actor, "speed_mph")
     told = told_of(known, field)
@@ -92,7 +92,7 @@ def _size(script: Script, known: Facts, actor: str) -> list[Parameter]:
 
 
 def _late(actor: str) -> Parameter:
-    """How much later the struck one comes, seconds."""
+    """Delay of the struck actor, seconds."""
     why = "reports tell no times; so much still meets, and what touches other sides is drawn again"
     return Parameter(name=f"{actor}_late_s", kind="uniform", mean=0.0, spread=0.0, low=-0.4, high=0.4, nominal=0.0,
                      told="default", field="", reason=why)  # fmt: skip

@@ -1,9 +1,9 @@
-"""A told evasion that begins earlier or later: until then the actor keeps its speed, then brakes as it did.
+"""A stated evasion that begins earlier or later: the actor keeps its speed until then, then brakes as before.
 
-The script's braking is moved along the way by the distance that the delay takes; the actor comes to the contact's place
-at the contact's time all the same, faster for having braked later. Between the ends of its range the time at which a
-sample of the line is passed is a cubic function of the delay, so that a scenario file can tell it in an expression; at
-four delays it is exact. Knows one line; no other actor. SI units.
+The scripted braking is moved along the way by the distance that the delay takes; the actor still reaches the place of
+the contact at its time, faster after later braking. Within its range the time at which a sample of the line is passed
+is a cubic function of the delay, so that an expression in a scenario file can state it; it is exact at four delays.
+Knows one line; no other actor. SI units.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ SOONER_S, LATER_S = 0.4, 0.8
 1.25 s where not, 1.5 s and more by surprise; about a script's usual reaction so much sooner and later."""
 _BRAKES_MPS2 = 1.5
 _LEAST_MPS = 1.0
-"""Slower at the contact nobody may become: he would stop before it."""
+"""Least speed at the contact; a slower actor would stop before it."""
 _LEAST_DROP_MPS = 0.5
 _ENDS_S = 1.0
-"""Braking that ends longer before the contact is no evasion of it."""
+"""Braking that ends earlier before the contact is no evasion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Delay:
 
 
 def delay_of(line: Way, contact_s: float) -> Delay | None:
-    """How a line's braking before the contact can be delayed; None where it does not brake there."""
+    """The possible delay of a line's braking before the contact; None without such braking."""
     contact = min(round(contact_s / STEP_S), len(line.t_s) - 1)
     onset = _onset(line, contact)
     if onset is None:
@@ -83,7 +83,7 @@ def _onset(line: Way, contact: int) -> int | None:
 
 
 def _range(line: Way, onset: int, contact: int) -> tuple[float, float]:
-    """Delays within which it brakes before the contact at all, and still comes to it."""
+    """Range of delays that leave some braking and still reach the contact."""
     before, at = float(line.speed_mps[onset]), float(line.speed_mps[contact])
     left = float(line.s_m[contact] - line.s_m[onset])
     braking = (before**2 - at**2) / (2 * max(left, 1e-6))
@@ -115,7 +115,7 @@ def _passed(line: Way, onset: int, contact: int, by_s: float) -> Floats:
 
 
 def _braking(line: Way, onset: int, contact: int) -> tuple[Floats, Floats]:
-    """(station, time) of the braking from its onset on, past the contact as hard as on the whole."""
+    """(station, time) of the braking from its onset on, continued past the contact with its mean deceleration."""
     s, t = line.s_m[onset : contact + 1], line.t_s[onset : contact + 1]
     before, at = float(line.speed_mps[onset]), float(line.speed_mps[contact])
     braking = max((before - at) / max(float(t[-1] - t[0]), STEP_S), 0.1)

@@ -1,10 +1,10 @@
 """One member of a family: the script with other speeds, times, offsets and sizes, and the same crash.
 
-Both of the declared pair keep their lines, run at another pace so that they come to the contact's place at its time
-(the struck one later or earlier, if so drawn), beside their lines, in other lanes and in other sizes; whose lane is
-crossed elsewhere comes as much sooner or later. A told evasion may begin later. A clock that begins earlier than the
-script goes back straight. What touches otherwise than declared is no member. Behind the contact everything is settled
-anew by the planner's wreck. Knows scripts and parameters; no file.
+The declared pair keeps its lines, at another pace so that both reach the place of the contact at its time (the struck
+one later or earlier, if so drawn), beside their lines, in other lanes and sizes; an actor that crosses a shifted lane
+comes sooner or later accordingly. A stated evasion may begin later. A clock that begins before the script continues it
+straight back. A sample with another first contact is no member. After the contact the planner simulates anew. Knows
+scripts and parameters; no file.
 """
 
 from __future__ import annotations
@@ -20,58 +20,56 @@ from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.handover.family.discrete_parameters import PAIR
 from sgcad_core.handover.family.shifted_evasion import Delay, delay_of
-from sgcad_core.handover.script import DRIVEN, Script, staged
+from sgcad_core.handover.script import DRIVEN, Script, staging_for
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.aftermath.ground_friction import Drag
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import body, mass_kg
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover
-from sgcad_core.planner.scene import AFTER_S, BRAKED_MPS2, THROWN_MPS2
+from sgcad_core.planner.scene import AFTER_S, sample_speeds, usual_drag
 from sgcad_core.planner.towing import coupling_m
-from sgcad_core.records.specs import ActorKind
 
 Values = Mapping[str, float]
 _CREEPS_MPS = 1.0
-_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 
 
 @dataclass(frozen=True, eq=False)
-class Basis:
-    """A script ready to be varied: everybody's undisturbed line, and when the declared pair meets."""
+class FamilyBasis:
+    """A script with the undisturbed line of every actor and the time of the declared contact."""
 
     script: Script
     lines: Mapping[str, Way]
     contact_s: float
     coupled: Mapping[str, frozenset[str]]
-    """By actor of the pair: what is coupled to it and moves with it."""
+    """By actor of the pair: actors that are coupled to it and move with it."""
     delays: Mapping[str, Delay] = field(default_factory=dict)
-    """By actor of the pair: how its braking before the contact can come later."""
+    """By actor of the pair: the possible delay of its braking before the contact."""
     crossed: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """By actor: whose line it crosses, and how much later on its own line it meets it, s a metre of that one's lane."""
+    """By actor: the one whose line it crosses, and the delay on its own line a metre of that one's lane, s/m."""
 
     def owner(self, actor: str) -> str:
-        """Whose parameters move an actor: its own, or those of what it is coupled to."""
+        """The actor whose parameters move an actor: itself, or the one that it is coupled to."""
         return next((n for n, with_it in self.coupled.items() if actor in with_it), actor)
 
     def lane_m(self, who: str, values: Values) -> float:
-        """How far to the left of the script's lane one of the pair comes."""
+        """Offset of an actor of the pair to the left of the script's lane, metres."""
         return values.get(f"{who}_lane_m", 0.0) + (values.get(f"{PAIR}_lane_m", 0.0) if who in self.coupled else 0.0)
 
     def further_s(self, who: str, values: Values) -> float:
-        """How much further on its own line's clock one is at the contact, since the other comes in another lane."""
+        """Advance of an actor on the clock of its own line at the contact, for another lane of the other one,
+        seconds."""
         other, per_m = self.crossed.get(who, ("", 0.0))
         return per_m * values.get(f"{other}_lane_m", 0.0)
 
 
-def basis_of(script: Script) -> Basis | None:
-    """The basis of a family; None where the script does not begin with its declared contact, or of nobody driven."""
+def basis_of(script: Script) -> FamilyBasis | None:
+    """The basis of a family; None where the first contact is not the declared one, or no driver can control either."""
     contact = first_contact(script.trajectories, script.sizes)
     if script.declared is None or contact is None or not realised(script.declared, contact):
         return None
     lines: dict[str, Way] = {}
     for name in (contact.actor, contact.other):
-        with_it = staged(script, name) if _drivable(script, name) else None
+        with_it = staging_for(script, name) if script.info(name).type in DRIVEN else None
         if with_it is not None:
             lines |= dict(with_it.lines) | {name: with_it.way}
     if len(lines) < len(script.trajectories):
@@ -80,7 +78,7 @@ def basis_of(script: Script) -> Basis | None:
     coupled = {n: script.coupled_to(n) for n in pair}
     delays = {n: d for n in pair if (d := delay_of(lines[n], contact.t_s)) is not None}
     crossed = {a: (b, _crossing(lines[a], lines[b], contact.t_s)) for a, b in (pair, pair[::-1])}
-    return Basis(script, lines, contact.t_s, coupled, delays, crossed)
+    return FamilyBasis(script, lines, contact.t_s, coupled, delays, crossed)
 
 
 def _crossing(line: Way, other: Way, contact_s: float) -> float:
@@ -95,20 +93,16 @@ def _crossing(line: Way, other: Way, contact_s: float) -> float:
     return float(-step[0] * np.sin(heading) + step[1] * np.cos(heading)) / length / speed
 
 
-def _drivable(script: Script, name: str) -> bool:
-    return script.info(name).type in DRIVEN
-
-
-def undisturbed(basis: Basis, values: Values) -> Script:
-    """The member's script before anything touches: motion on through whatever is there."""
+def undisturbed(basis: FamilyBasis, values: Values) -> Script:
+    """The script of a member without contacts: motion through all obstacles."""
     script = basis.script
     actors = tuple(_sized(a, values) for a in script.actors)
     tracks = tuple(_moved(basis, t.actor, values) for t in script.trajectories)
     return replace(script, actors=actors, trajectories=tracks, grip=values.get("friction"))
 
 
-def member(basis: Basis, values: Values) -> Script | None:
-    """The member with everything settled behind the contact; None where it is another crash."""
+def member(basis: FamilyBasis, values: Values) -> Script | None:
+    """The member simulated from the contact on; None where it is another crash."""
     made = undisturbed(basis, values)
     if not realised(made.declared, first_contact(made.trajectories, made.sizes)):
         return None
@@ -116,12 +110,12 @@ def member(basis: Basis, values: Values) -> Script | None:
     return settled if realised(made.declared, first_contact(settled.trajectories, made.sizes)) else None
 
 
-def prolonged(made: Script, back_s: float) -> tuple[Trajectory, ...]:
-    """A member's motion with so much straight run before it: its contact comes that much later on its clock."""
+def with_earlier_start(made: Script, back_s: float) -> tuple[Trajectory, ...]:
+    """The motion of a member with a straight run before it, so that the contact is later by `back_s`."""
     n = round(back_s / STEP_S)
     found = []
     for t in made.trajectories:
-        pose = np.column_stack((t.x_m, t.y_m, t.heading_rad))
+        pose = t.pose
         step = pose[1, :2] - pose[0, :2]
         run = np.repeat(pose[:1], n, axis=0)
         run[:, :2] += np.arange(-n, 0)[:, None] * step
@@ -136,7 +130,7 @@ def _sized(info: ActorInfo, values: Values) -> ActorInfo:
     return info.model_copy(update=size)
 
 
-def _moved(basis: Basis, actor: str, values: Values) -> Trajectory:
+def _moved(basis: FamilyBasis, actor: str, values: Values) -> Trajectory:
     """An actor's motion at its pace, through its line, past the place of the contact."""
     line = basis.lines[actor]
     who = basis.owner(actor)
@@ -154,7 +148,7 @@ def _moved(basis: Basis, actor: str, values: Values) -> Trajectory:
 
 def _poses(line: Way, own: Floats) -> Floats:
     """Poses at own times; before the line begins straight back at its first speed."""
-    pose = np.column_stack([np.interp(own, line.t_s, line.pose[:, i]) for i in range(3)])
+    pose = line.poses_when(own)
     before = own < 0
     if before.any() and len(line.t_s) > 1:
         step = (line.pose[1, :2] - line.pose[0, :2]) / STEP_S
@@ -163,17 +157,15 @@ def _poses(line: Way, own: Floats) -> Floats:
 
 
 def _trajectory(actor: str, t: Floats, pose: Floats) -> Trajectory:
-    step = np.hypot(*np.diff(pose[:, :2], axis=0).T) / STEP_S
-    speed = np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
     return Trajectory(actor=actor, t_s=t, x_m=pose[:, 0].copy(), y_m=pose[:, 1].copy(),
-                      heading_rad=np.unwrap(pose[:, 2]), speed_mps=speed)  # fmt: skip
+                      heading_rad=np.unwrap(pose[:, 2]), speed_mps=sample_speeds(pose))  # fmt: skip
 
 
 # ------------------------------------------------------------------ behind the contact
-def _settled(made: Script, basis: Basis) -> tuple[Trajectory, ...]:
+def _settled(made: Script, basis: FamilyBasis) -> tuple[Trajectory, ...]:
     movers = [_mover(made, t) for t in made.trajectories]
     count = len(made.trajectories[0].t_s)
-    table = {t.actor: np.column_stack((t.x_m, t.y_m, t.heading_rad)) for t in made.trajectories}
+    table = {t.actor: t.pose for t in made.trajectories}
     hitches = [
         hitched((tractor, trailer), table[tractor][0], table[trailer][0], coupling_m(made.sizes[tractor]))
         for tractor, with_it in basis.coupled.items()
@@ -187,13 +179,5 @@ def _mover(made: Script, track: Trajectory) -> Mover:
     info = made.info(track.actor)
     size: Size = (info.length_m, info.width_m)
     mass = None if info.type == "object" else mass_kg(info.type, size)
-    script = np.column_stack((track.x_m, track.y_m, track.heading_rad))
-    return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), script, _drag(made, info.type))
-
-
-def _drag(made: Script, kind: ActorKind) -> Drag:
-    """As the planner has it: struck vehicles brake along their wheels, people slide."""
     grip = min(DRIVING.sliding_mps2(made.surface), made.friction_mps2)
-    if kind in _TUMBLE:
-        return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
-    return Drag(min(BRAKED_MPS2, grip), grip)
+    return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), track.pose, usual_drag(info.type, grip))

@@ -1,7 +1,7 @@
 """The course of an executed crash against labels: maneuvers of every kind, lanes, speeds, evasion, rest, later impacts.
 
-Everything is told from the motion and the roads; what a run says about itself is not used. docs/metrics.md lists the
-fields with what counts as right. Only fields that a label states are there.
+All marks follow from the motion and the roads; statements of the run are not used. docs/metrics.md lists the fields and
+their rules. Only fields that a label states are marked.
 """
 
 from __future__ import annotations
@@ -14,22 +14,18 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
-from sgcad_core.metrics.labels.motion_label_match import STILL_M, shown
-from sgcad_core.metrics.labels.observed_crash import STEP_S, Crash, Driven
+from sgcad_core.metrics.labels.motion_label_match import STILL_M, maneuver_shown
+from sgcad_core.metrics.labels.observed_crash import STEP_S, Crash, VehicleMotion
 from sgcad_core.metrics.rest_error import SPINS_RAD
 from sgcad_core.records.course import RestTold, Steering
 from sgcad_core.units import MPS_PER_MPH
 
-COURSE_FIELDS = (
-    "maneuver_any", "lane_told", "speed_told", "evasion", "no_evasion", "lost_control", "rest", "rest_facing",
-    "rest_where", "rest_side", "spin", "later_impacts",
-)  # fmt: skip
 ASIDE_M = 0.8
-"""Sideways of one's lane from here on: a change of lane, a line that is crossed."""
+"""Lateral offset from the lane of a lane change or a crossed line."""
 BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
-"""Braking shows as so much deceleration over half a second, and as so much lost speed."""
+"""Least deceleration over half a second, and least loss of speed, of visible braking."""
 STEERS_M, STEERS_RAD = 0.25, math.radians(3.0)
-"""Steering aside shows as so much way sideways, or as such a heading against the lane."""
+"""Least lateral offset, or heading against the lane, of visible steering."""
 _SPIN_S = 2.5
 
 
@@ -48,7 +44,7 @@ def course_marks(label: CourseLabel, crash: Crash | None) -> dict[str, list[floa
 
 
 def vehicle_marks(label: CourseLabel, crash: Crash | None) -> dict[str, dict[str, float]]:
-    """The same vehicle by vehicle, for looking into a case."""
+    """The same marks by vehicle, to inspect a case."""
     return {actor: dict(_vehicle(actor, vehicle, crash)) for actor, vehicle in label.vehicles.items()}
 
 
@@ -56,12 +52,12 @@ def _vehicle(actor: str, label: VehicleLabel, crash: Crash | None) -> Iterator[t
     there = crash is not None and actor in crash.paths
     for name, judge in _JUDGES.items():
         if judge.stated(label):
-            mark = judge.right(label, Driven(crash, actor)) if there and crash is not None else 0.0
+            mark = judge.right(label, VehicleMotion(crash, actor)) if there and crash is not None else 0.0
             if mark is not None:
                 yield name, float(mark)
     told = _rest_told(label.rest)
     if told is not None:
-        marks = Driven(crash, actor).rest(told) if there and crash is not None else _all_wrong(told)
+        marks = VehicleMotion(crash, actor).rest(told) if there and crash is not None else _all_wrong(told)
         yield "rest", float(all(marks.values()))
         yield from ((f"rest_{name}", float(right)) for name, right in marks.items())
 
@@ -79,11 +75,11 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 
 
 # ------------------------------------------------------------------ fields
-def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
-    """Every kind, told from the path up to the first contact; None for `other`."""
+def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
+    """Whether the path up to the first contact shows the maneuver; None for `other`."""
     kind, moved = label.maneuver, one.moved_m()
     aside = float(one.aside[-1] - one.aside[0])
-    if (told := shown(kind, moved, one.turned_deg())) is not None:
+    if (told := maneuver_shown(kind, moved, one.turned_deg())) is not None:
         return told
     if kind == "negotiating_curve":
         return moved >= STILL_M
@@ -101,13 +97,13 @@ def _maneuver(label: VehicleLabel, one: Driven) -> bool | None:
     return None
 
 
-def _slows(one: Driven) -> bool:
-    """Whether it is slower at the contact than it was: by a fifth, and visibly."""
+def _slows(one: VehicleMotion) -> bool:
+    """Whether it is visibly slower at the contact than before: by a fifth and 1.2 m/s."""
     fastest = float(one.speed.max(initial=0.0))
     return fastest - float(one.speed[-1]) > max(BRAKES_MPS, 0.2 * fastest) if len(one.speed) else False
 
 
-def _lane(label: VehicleLabel, one: Driven) -> bool | None:
+def _lane(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """The lane on which it starts."""
     if one.home is None:
         return False
@@ -120,19 +116,19 @@ def _lane(label: VehicleLabel, one: Driven) -> bool | None:
     return place == (wanted[label.lane] if isinstance(label.lane, str) else label.lane)
 
 
-def _speed(label: VehicleLabel, one: Driven) -> bool:
-    """Driven at some time up to the contact, to 5 % or 0.5 m/s; a standing vehicle has none."""
+def _speed(label: VehicleLabel, one: VehicleMotion) -> bool:
+    """Whether the stated speed is driven at some time up to the contact, to 5 % or 0.5 m/s."""
     told = (label.speed_mph or 0.0) * MPS_PER_MPH
     return bool((np.abs(one.speed - told) <= max(0.05 * told, 0.5)).any())
 
 
-def _evades(label: VehicleLabel, one: Driven) -> float:
-    """The share of the told deeds that show."""
+def _evades(label: VehicleLabel, one: VehicleMotion) -> float:
+    """The share of the stated evasive actions that are visible."""
     deeds = label.evasion or ()
     return sum(_brakes(one) if deed == "brake" else _steers(deed, one) for deed in deeds) / len(deeds)
 
 
-def _brakes(one: Driven) -> bool:
+def _brakes(one: VehicleMotion) -> bool:
     return brakes(one.speed[one.recent().start : one.hit])
 
 
@@ -144,8 +140,8 @@ def brakes(speed_mps: Floats) -> bool:
     return float(rate.max()) >= BRAKES_MPS2 and float(speed_mps.max() - speed_mps[-1]) >= BRAKES_MPS
 
 
-def _steers(deed: str, one: Driven) -> bool:
-    """To the told hand, or to either where none is told."""
+def _steers(deed: str, one: VehicleMotion) -> bool:
+    """Steering to the stated side, or to either without one."""
     hand: Steering = "left" if deed == "steer_left" else "right" if deed == "steer_right" else "either"
     return steers(hand, one.aside[one.recent()], float(one.speed[-1]) * STEP_S if len(one.speed) else 0.0)
 
@@ -161,12 +157,8 @@ def steers(hand: Steering, aside_m: Floats, step_m: float) -> bool:
     return way * sign > STEERS_M or heading * sign > STEERS_RAD
 
 
-def _does_not_evade(label: VehicleLabel, one: Driven) -> bool:
-    return not _brakes(one)
-
-
-def _loses_control(label: VehicleLabel, one: Driven) -> bool | None:
-    """A lost control shows as a heading that leaves the way of travel, or as a way out of the lane."""
+def _loses_control(label: VehicleLabel, one: VehicleMotion) -> bool | None:
+    """A loss of control shows as slip, or as a path out of the lane."""
     if not label.lost_control or len(one.before) < 3:
         return None
     step = np.diff(one.before[:, :2], axis=0)
@@ -175,7 +167,7 @@ def _loses_control(label: VehicleLabel, one: Driven) -> bool | None:
     return bool(slip.max(initial=0.0) > math.radians(8.0) or np.abs(one.aside - one.aside[0]).max() > ASIDE_M)
 
 
-def _spins(label: VehicleLabel, one: Driven) -> bool:
+def _spins(label: VehicleLabel, one: VehicleMotion) -> bool:
     behind = one.path.pose[one.hit : one.hit + round(_SPIN_S / STEP_S) + 1, 2]
     turned = float(wrap_angle(np.diff(behind)).sum())
     return turned > SPINS_RAD if label.rest.spin == "counterclockwise" else turned < -SPINS_RAD
@@ -185,7 +177,7 @@ class _Judge(NamedTuple):
     """Whether a label states a field, and whether a motion has it right (None: cannot be judged)."""
 
     stated: Callable[[VehicleLabel], bool]
-    right: Callable[[VehicleLabel, Driven], float | bool | None]
+    right: Callable[[VehicleLabel, VehicleMotion], float | bool | None]
 
 
 _JUDGES: dict[str, _Judge] = {
@@ -193,14 +185,14 @@ _JUDGES: dict[str, _Judge] = {
     "lane_told": _Judge(lambda v: v.lane is not None, _lane),
     "speed_told": _Judge(lambda v: bool(v.speed_mph), _speed),
     "evasion": _Judge(lambda v: bool(v.evasion), _evades),
-    "no_evasion": _Judge(lambda v: v.evasion == (), _does_not_evade),
+    "no_evasion": _Judge(lambda v: v.evasion == (), lambda _, one: not _brakes(one)),
     "lost_control": _Judge(lambda v: bool(v.lost_control), _loses_control),
     "spin": _Judge(lambda v: v.rest.spin is not None, _spins),
 }
 
 
 def _in_order(impacts: Sequence[tuple[str, str]], crash: Crash) -> bool:
-    """Whether all told contacts come about in their order; others may lie between. Things are any object."""
+    """Whether all stated contacts happen in their order; others may lie between. Objects are not distinguished."""
     seen: Iterator[frozenset[str]] = iter([_pair(a, b) for _, a, b in crash.touches])
     return all(any(_pair(*told) == one for one in seen) for told in impacts)
 
@@ -210,5 +202,5 @@ def _pair(a: str, b: str) -> frozenset[str]:
 
 
 def _named(who: str) -> str:
-    """A vehicle, person or animal by its id; anything else is a thing."""
+    """The id of a vehicle, person or animal; "thing" for objects."""
     return who if who[:1] in "VPBAT" and who[1:].isdigit() else "thing"

@@ -1,12 +1,13 @@
-"""Labels of the whole course of a crash, as people read it off a report's text, and how far two readers agree.
+"""Labels of the whole course of a crash, read from the text by people, and the agreement of two readers.
 
 One JSON object a case, `<case>.json`; docs/metrics.md says what each field means. Reads dictionaries; knows no file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
 from sgcad_core.errors import BadInput
@@ -26,7 +27,7 @@ _FIELDS = ("maneuver", "lane", "speed_mph", "evasion", "lost_control", "rest")
 
 @dataclass(frozen=True)
 class RestLabel:
-    """Where and how a vehicle came to rest; None: the text does not say."""
+    """Rest of a vehicle; None where the text does not state it."""
 
     facing: str | None = None
     """A point of the 16-wind compass."""
@@ -35,7 +36,7 @@ class RestLabel:
     attitude: Attitude | None = None
     against: str | None = None
     turned: str | None = None
-    """cw or ccw: how it turned behind its first contact."""
+    """cw or ccw: rotation after its first contact."""
 
     @property
     def spin(self) -> Spin | None:
@@ -45,7 +46,8 @@ class RestLabel:
 
 @dataclass(frozen=True)
 class VehicleLabel:
-    """What the text tells of one vehicle; `evasion` () where it says that nothing was done, None where it is silent."""
+    """Statements of the text on one vehicle; `evasion` is () where it states that nothing was done, None where it is
+    silent."""
 
     maneuver: Maneuver | None = None
     lane: str | int | None = None
@@ -118,26 +120,13 @@ class Agreement(NamedTuple):
 
 
 def agreements(first: Mapping[str, CourseLabel], second: Mapping[str, CourseLabel]) -> list[Agreement]:
-    """How far two readings of the same cases agree, field by field (vehicles that both name)."""
+    """Agreement of two readings of the same cases, field by field (vehicles that both name)."""
     pairs = [(a, second[case].vehicles[v]) for case, label in first.items() if case in second
              for v, a in label.vehicles.items() if v in second[case].vehicles]  # fmt: skip
-    found = [_agreement(name, [(read(a), read(b)) for a, b in pairs]) for name, read in _READ.items()]
+    fields = [*_FIELDS[:-1], *(f"rest.{name}" for name in _REST)]
+    found = [_agreement(name, [(attrgetter(name)(a), attrgetter(name)(b)) for a, b in pairs]) for name in fields]
     impacts = [(label.impacts[1:], second[case].impacts[1:]) for case, label in first.items() if case in second]
     return [*found, _agreement("impacts", impacts)]
-
-
-def _of_vehicle(name: str) -> Callable[[VehicleLabel], Hashable]:
-    return lambda v: getattr(v, name)
-
-
-def _of_rest(name: str) -> Callable[[VehicleLabel], Hashable]:
-    return lambda v: getattr(v.rest, name)
-
-
-_READ: dict[str, Callable[[VehicleLabel], Hashable]] = {
-    **{name: _of_vehicle(name) for name in _FIELDS[:-1]},
-    **{f"rest.{name}": _of_rest(name) for name in _REST},
-}
 
 
 def _agreement(name: str, pairs: Sequence[tuple[Hashable, Hashable]]) -> Agreement:
@@ -153,7 +142,7 @@ def _agreement(name: str, pairs: Sequence[tuple[Hashable, Hashable]]) -> Agreeme
 
 
 def agreed(first: CourseLabel, second: CourseLabel) -> CourseLabel:
-    """What both readers say of a case; impacts only where both have the same ones in the same order."""
+    """The common statements of both readers; impacts only where both have the same ones in the same order."""
     vehicles = {v: _both(a, second.vehicles[v]) for v, a in first.vehicles.items() if v in second.vehicles}
     impacts = first.impacts if first.impacts == second.impacts else first.impacts[:1]
     return CourseLabel(first.case, vehicles, impacts)

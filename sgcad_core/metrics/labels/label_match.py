@@ -1,8 +1,9 @@
 """A result against the ground truth of its case: every field that the label states, as 1 right, 0 wrong or an error.
 
-Labels are the dictionaries of truth/<case>.json. What a run says about itself is not used: lanes and junctions are
-counted in its network, contacts found in its motion (`truth_motion`). A case without output counts as wrong. Knows
-no file.
+Labels are the dictionaries of truth/<case>.json. Statements of the run are not used: lanes and junctions are counted in
+its network, contacts found in its motion (`motion_label_match`). A case without output is wrong. Road errors follow the
+paper's formula (mean over reports) and count any error (share of reports; the published tables appear to be this one).
+Knows no file.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from typing import Any, NamedTuple
 
 from sgcad_core.kinds import FOUR_LEG
 from sgcad_core.metrics.labels.motion_label_match import Path, motion_marks
-from sgcad_core.metrics.road_network import any_error, relative_error
 from sgcad_core.roads.lane_graph import RoadCounts, road_counts
 
 NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
@@ -22,22 +22,22 @@ _LEGS = {"t": 3, FOUR_LEG: 4}
 Label = Mapping[str, Any]
 
 
-class Made(NamedTuple):
-    """What a generated case left behind: its roads in numbers, the paths of its actors (empty if none ran)."""
+class GeneratedCase(NamedTuple):
+    """Output of a generated case: road counts, and the paths of its actors (empty without an execution)."""
 
     roads: RoadCounts
     paths: Mapping[str, Path]
 
 
 class TruthFigures(NamedTuple):
-    """What a label states of the network; None where it cannot be read."""
+    """Network figures of a label; None where it states none."""
 
     intersections: int | None
     components: int | None
     mean_lanes: float | None
 
 
-def compare(label: Label, made: Made | None) -> dict[str, float]:
+def compare(label: Label, made: GeneratedCase | None) -> dict[str, float]:
     """field -> 1.0 right, 0.0 wrong, a share right, or an error in [0, 1]; fields left open are absent.
 
     `made` is None for a case that was refused, exhausted, failed or cannot be read.
@@ -67,6 +67,16 @@ def truth_lanes(label: Label) -> dict[tuple[str, str], int]:
             if lanes:
                 found[ends] = found.get(ends, 0) + lanes
     return found
+
+
+def relative_error(truth: float, made: float) -> float:
+    """1 - max(0, 1 - |truth - made| / truth), in [0, 1]; a truth of 0 is divided by 1 (the paper leaves 0/0 open)."""
+    return min(1.0, abs(truth - made) / (truth or 1.0))
+
+
+def any_error(error: float) -> float:
+    """1 if a report has any error, else 0: its mean over reports is the share with an error."""
+    return float(error > 1e-6)
 
 
 def _network_errors(truth: TruthFigures, roads: RoadCounts | None) -> dict[str, float]:

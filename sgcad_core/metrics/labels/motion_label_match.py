@@ -1,6 +1,6 @@
-"""Motion against a label: how many vehicles, whence they came, what they did, and who first touched whom where.
+"""Motion against a label: number of vehicles, headings, maneuvers, and the first contact with its areas.
 
-Only the report's own vehicles (V1, V2, ...) are looked at. Knows paths and labels, no network and no file.
+Only vehicles of the report (V1, V2, ...) count. Knows paths and labels, no network and no file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 TURNS = {"turn_left": 1.0, "turn_right": -1.0, "u_turn": 1.0}
 STILL = ("stopped", "parked")
 STILL_M, STRAIGHT_DEG, TURNED_DEG = 2.0, 30.0, 12.0
-"""Who moves less stands; who turns less goes straight; a turn that contact cuts short has begun at 12 degrees."""
+"""A smaller displacement is standing, a smaller turn is straight; a turn that a contact cuts short has begun at 12
+degrees."""
 _VEHICLE = re.compile(r"V\d+$")
 
 
@@ -33,7 +34,7 @@ class Path(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """The first contact of an execution: who, on which sides, when."""
+    """The first contact of an execution: time, and touched area by actor."""
 
     t_s: float
     areas: Mapping[str, str]
@@ -68,16 +69,12 @@ def first_touch(paths: Mapping[str, Path]) -> Touch | None:
             continue
         k = int(hits[0])
         if found is None or paths[a].t_s[i[k]] < found[0]:
-            one, two = _box(first[k], paths[a].size), _box(second[k], paths[b].size)
+            one, two = Box.at(first[k], paths[a].size), Box.at(second[k], paths[b].size)
             found = float(paths[a].t_s[i[k]]), a, b, one, two
     if found is None:
         return None
     t, a, b, one, two = found
     return Touch(t, {a: contact_area(one, two), b: contact_area(two, one)})
-
-
-def _box(pose: Floats, size: Size) -> Box:
-    return Box(float(pose[0]), float(pose[1]), float(pose[2]), *size)
 
 
 # ------------------------------------------------------------------ single fields
@@ -100,9 +97,9 @@ def _heading_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path]) -> flo
 
 
 def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch: Touch | None) -> float | None:
-    """Turning, standing and going straight, told from the path before first contact; other kinds are not judged."""
+    """Turning, standing and going straight, by the path before the first contact; other kinds are not judged."""
     kind = vehicle.get("manoeuvre_resolved") or vehicle.get("manoeuvre")
-    if shown(kind, 0.0, 0.0) is None:
+    if maneuver_shown(kind, 0.0, 0.0) is None:
         return None
     path = paths.get(vehicle["id"])
     if path is None:
@@ -110,11 +107,11 @@ def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch
     pose = path.pose[path.t_s <= touch.t_s] if touch else path.pose
     moved = float(np.hypot(*(pose[-1, :2] - pose[0, :2])))
     turned = math.degrees(float(wrap_angle(np.diff(pose[:, 2])).sum()))
-    return float(bool(shown(kind, moved, turned)))
+    return float(bool(maneuver_shown(kind, moved, turned)))
 
 
-def shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
-    """Whether a way from first to last place and a turn (counterclockwise) show a maneuver; None: they cannot tell."""
+def maneuver_shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:
+    """Whether a displacement and a turn (counterclockwise) show a maneuver; None: they cannot decide."""
     if kind in STILL:
         return moved_m < STILL_M
     if kind in TURNS:
@@ -142,7 +139,7 @@ def _contact_marks(label: Mapping[str, Any], touch: Touch | None) -> dict[str, f
 
 
 def _sides(hit: Mapping[str, Any], who: str) -> tuple[str, ...]:
-    """The side that a label names and, of a corner, the other one that is right too; empty where it names none."""
+    """The side of a label and, for a corner, the other one that is right too; empty without one."""
     told = _side(hit.get(f"{who}_area"))
     return tuple(filter(None, (told, _side(hit.get(f"{who}_area_also"))))) if told else ()
 

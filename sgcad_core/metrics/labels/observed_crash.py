@@ -1,6 +1,6 @@
-"""An executed crash as labels are held against it: who touched when, and one vehicle's way up to its own first contact.
+"""An executed crash for comparison with labels: its contacts, and one vehicle's motion up to its first contact.
 
-Told from the motion and the roads alone. Knows no label.
+Derived from the motion and the roads alone. Knows no label.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from itertools import combinations
 
 import numpy as np
 
+from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import Floats, box_gaps, prolonged, wrap_angle
 from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.rest_error import rest_errors
@@ -21,17 +22,17 @@ from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
 from sgcad_core.roads.surface import RoadSurface, road_surface
 
 BEFORE_S = 3.5
-"""Time before the own first contact in which an evasion is looked for."""
+"""Time before the first contact in which an evasion is searched."""
 STEP_S = 0.05
 _APART_S = 0.15
-"""Two that touched touch again after so long apart."""
+"""Time apart after which two actors touch again."""
 _FAR_M = 8.0
-"""Beyond a lane so far off nobody starts on it."""
+"""Distance from a lane beyond which no vehicle starts in it."""
 
 
 @dataclass(frozen=True)
 class Crash:
-    """An execution as these marks see it: all actors' motion, and the roads."""
+    """An execution: motion of all actors, and the roads."""
 
     paths: Mapping[str, Path]
     graph: LaneGraph
@@ -43,7 +44,7 @@ class Crash:
 
     @cached_property
     def touches(self) -> list[tuple[float, str, str]]:
-        """Every contact's begin in order: (time, actor, actor); again only after both were apart."""
+        """The beginnings of all contacts in order: (time, actor, actor); a second one only after both were apart."""
         return sorted(hit for a, b in combinations(sorted(self.paths), 2) for hit in _touches(self.paths, a, b))
 
     def first_of(self, actor: str) -> int:
@@ -67,7 +68,7 @@ def _touches(paths: Mapping[str, Path], a: str, b: str) -> Iterator[tuple[float,
 
 
 @dataclass(frozen=True)
-class Driven:
+class VehicleMotion:
     """One vehicle's motion, seen from its own first contact."""
 
     crash: Crash
@@ -94,29 +95,30 @@ class Driven:
 
     @cached_property
     def home(self) -> tuple[Edge, Lane] | None:
-        """The lane on which it starts: the nearest that leads its way."""
+        """The lane in which it starts: the nearest in its direction."""
         heading = self.before[0, 2]
         best: tuple[float, Edge, Lane] | None = None
         for edge in self.crash.graph.edges.values():
             for lane in edge.car_lanes:
-                off, way = beside(lane.shape, self.before[:1, :2])
-                turned = abs(float(wrap_angle(way[0] - heading)))
-                cost = abs(float(off[0])) + (_FAR_M if turned > math.pi / 2 else 0.0)
+                near = nearest_on(lane.shape, self.before[:1, :2])
+                way = np.diff(lane.shape, axis=0)[near.segment[0]]
+                turned = abs(float(wrap_angle(math.atan2(way[1], way[0]) - heading)))
+                cost = abs(float(near.left_m[0])) + (_FAR_M if turned > math.pi / 2 else 0.0)
                 best = (cost, edge, lane) if best is None or cost < best[0] else best
         return None if best is None or best[0] > _FAR_M else best[1:]
 
     @cached_property
     def aside(self) -> Floats:
-        """(n,) metres to the left of the lane on which it starts, and of what goes on from it, up to the contact."""
+        """(n,) metres to the left of its first lane and its continuation, up to the contact."""
         return self._aside_of(ahead_of(self.crash.graph, *self.home) if self.home else self.before[:2, :2])
 
     @cached_property
     def off_line(self) -> Floats:
-        """(n,) metres to the left of the straight line on which its first lane would go on."""
+        """(n,) metres to the left of the straight continuation of its first lane."""
         return self._aside_of(self.home[1].shape if self.home else self.before[:2, :2])
 
     def _aside_of(self, line: Floats) -> Floats:
-        return beside(prolonged(line, 200.0), self.before[:, :2])[0]
+        return nearest_on(prolonged(line, 200.0), self.before[:, :2]).left_m
 
     def recent(self) -> slice:
         """The samples of the last seconds before the contact."""
@@ -130,7 +132,7 @@ class Driven:
         return float(np.hypot(*(self.before[-1, :2] - self.before[0, :2])))
 
     def rest(self, told: RestTold) -> dict[str, bool]:
-        """Which parts of the told rest the last pose gets right."""
+        """By stated part of the rest whether the last pose is right."""
         return rest_errors(told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface).right()
 
 
@@ -145,18 +147,3 @@ def ahead_of(graph: LaneGraph, edge: Edge, lane: Lane) -> Floats:
         seen.add(edge.id)
         line += [on.via_shape, lane.shape]
     return np.vstack(line)
-
-
-def beside(line: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """(n,) metres to the left of a line and the line's (n,) heading there."""
-    along = np.diff(line, axis=0)
-    length = np.maximum(np.hypot(*along.T), 1e-9)
-    unit = along / length[:, None]
-    from_start = points[:, None] - line[None, :-1]
-    share = np.clip((from_start * unit[None]).sum(axis=2), 0.0, length[None])
-    away = from_start - share[:, :, None] * unit[None]
-    nearest = np.argmin((away**2).sum(axis=2), axis=1)
-    rows = np.arange(len(points))
-    left = unit[nearest, 0] * away[rows, nearest, 1] - unit[nearest, 1] * away[rows, nearest, 0]
-    signed = np.copysign(np.hypot(*away[rows, nearest].T), left)
-    return signed, np.arctan2(unit[nearest, 1], unit[nearest, 0])

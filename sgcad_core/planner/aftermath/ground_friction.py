@@ -1,7 +1,7 @@
-"""What the ground does to a body that slides or rolls on it: friction against its way and against its turning.
+"""Friction of the ground on a sliding or rolling body, against its motion and its rotation.
 
-Plain floats, one step of time after another; `run_out` does the same for many ways of running out at once. Knows one
-body; no touches, no clock but the time that is left. SI units.
+Plain floats, one time step after another; `run_out_paths` computes many run-outs at once. Knows one body; no touches,
+and of the clock only the time that is left. SI units.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from sgcad_core.planner.aftermath.impact import Body
 _SLIP_LEVER = 0.25
 """Mean lever of ground friction against turning, as a share of the box's diagonal."""
 _STIFF_RAD = 0.14
-"""Slip at which rolling tires give all their side force (R. Rajamani, Vehicle Dynamics and Control, ch. 2)."""
+"""Slip angle at which rolling tires give their full side force (R. Rajamani, Vehicle Dynamics and Control, ch. 2)."""
 _STEERED_SHARE = 0.7
-"""Of the side force, for a steered bend; the rest is for what it slides besides."""
+"""Share of the side force for a steered bend; the rest is for the slide."""
 _STEERS_MPS = 1.0
-"""Slower wheels steer nothing worth telling."""
+"""Slower wheels have no steering effect."""
 
 
 class Drag(NamedTuple):
@@ -33,7 +33,7 @@ class Drag(NamedTuple):
 
 
 class RunOut(NamedTuple):
-    """What wheels and driver do once a body runs out from a blow: all within what a damaged car can do."""
+    """Effect of wheels and driver during the run-out from an impact: all within the means of a damaged car."""
 
     from_s: float
     """World time from which on it counts; before that the body slides with its drag."""
@@ -43,7 +43,7 @@ class RunOut(NamedTuple):
     turning: float = 1.0
     """Resistance to turning, as a share of that of four locked wheels."""
     rolls_s: float = 0.0
-    """So long from `from_s` on its engine makes up for what its wheels lose, then it brakes."""
+    """Time from `from_s` on for which the engine makes up for the losses of the wheels; then it brakes."""
 
     def along_at(self, now_s: float) -> float:
         """Deceleration along the box at a time, m/s2."""
@@ -51,14 +51,16 @@ class RunOut(NamedTuple):
 
 
 class Released(NamedTuple):
-    """A body at the moment from which its ways of running out are told: place, heading, velocity, spin; its mass."""
+    """A body at the beginning of its run-out."""
 
     body: Body
     at_s: float
 
 
-def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0) -> None:
-    """Ground friction over a step; more of it where the body would not stand in the time that is left.
+def apply_friction(
+    one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None = None, now_s: float = 0.0
+) -> None:
+    """Applies ground friction over a step; more of it where the body would not stand in the time that is left.
 
     `now_s`: world time, which only a `run` asks for.
     """
@@ -93,7 +95,7 @@ def slow(one: Body, drag: Drag, step: float, left_s: float, run: RunOut | None =
 
 
 def _steered(bend: float, speed: float, across_mps2: float) -> float:
-    """The curvature that tires can give at a speed."""
+    """The curvature that tires allow at a speed."""
     most = _STEERED_SHARE * across_mps2 / max(speed, 1.0) ** 2
     return max(-most, min(most, bend))
 
@@ -103,7 +105,7 @@ def _turning_mps2(one: Body, drag: Drag) -> float:
     return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 
-def run_out(
+def run_out_paths(
     released: Sequence[Released],
     drags: Sequence[Drag],
     runs: Sequence[Sequence[RunOut]],
@@ -112,7 +114,7 @@ def run_out(
 ) -> list[Floats]:
     """(m, n, 3) poses of each body that runs out in n ways, a step apart, from its release to rest at `end_s`.
 
-    The bodies are released at one time and know nothing of each other: the ways of all are told in one row.
+    The bodies are released at one time and do not interact: the run-outs of all are computed in one array.
     """
     counts = [len(ways) for ways in runs]
     state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T

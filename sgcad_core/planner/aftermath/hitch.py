@@ -13,7 +13,7 @@ from sgcad_core.planner.aftermath.impact import Body, Point, compliance, solve
 
 _STILL_MPS = 1e-4
 _DRAWN = 0.2
-"""Share of what a hitch has come apart by that is taken out in one step."""
+"""Share of the gap of a hitch that is closed in one step."""
 
 
 class Hitch(NamedTuple):
@@ -32,8 +32,8 @@ def hitched(names: tuple[str, str], first: Floats, second: Floats, behind_m: flo
     return Hitch(*names, (-behind_m, 0.0), _local(second, at))
 
 
-def pull(hitch: Hitch, a: Body, b: Body) -> bool:
-    """An impulse after which both ends of a hitch move alike; whether it took one."""
+def equalize_velocities(hitch: Hitch, a: Body, b: Body) -> bool:
+    """Applies an impulse after which both ends of a hitch have one velocity; whether one was needed."""
     at = _place(a, hitch.on_first)
     (ax, ay), (bx, by) = a.velocity_at(*at), b.velocity_at(*at)
     if math.hypot(ax - bx, ay - by) < _STILL_MPS:
@@ -45,7 +45,7 @@ def pull(hitch: Hitch, a: Body, b: Body) -> bool:
 
 
 def draw_together(hitch: Hitch, a: Body, b: Body) -> bool:
-    """Take out what a hitch has come apart by, from its trailer's place."""
+    """Closes the gap of a hitch by moving the trailer."""
     (ax, ay), (bx, by) = _place(a, hitch.on_first), _place(b, hitch.on_second)
     b.x += _DRAWN * (ax - bx)
     b.y += _DRAWN * (ay - by)

@@ -1,4 +1,4 @@
-"""What two bodies exchange when they touch: planar momentum with restitution and friction.
+"""Momentum exchange of two bodies in contact: planar, with restitution and friction.
 
 Planar impact mechanics (R. M. Brach, R. M. Brach, Vehicle Accident Analysis and Reconstruction Methods, ch. 6): one
 point in common, a normal, a coefficient of restitution, Coulomb friction along the tangent. Plain floats, since a crash
@@ -18,13 +18,13 @@ MASS_KG: dict[ActorKind, float] = {
     "motorcycle": 280.0, "bicycle": 90.0, "pedestrian": 75.0, "trailer": 5000.0, "object": 1e9,
 }  # fmt: skip
 _TRAILER_KG_PER_M = {"truck": 900.0, "car": 150.0}
-"""Of a vehicle longer than its kind: the rest is what it tows (a car's trailer stands for all light ones)."""
+"""Mass of the length beyond that of the kind: a towed trailer (a car's trailer represents all light ones)."""
 FRICTION = 0.5
 """Between two bodies; Brach finds 0.3 to 0.6 for vehicles that lock into each other."""
 RESTITUTION = 0.1
 """Of vehicles that crush; Brach: near 0 at speed, up to 0.3 at walking pace."""
 _LEAST_LENGTH_M = 1.7
-"""A person is 0.5 m deep, but not so easily turned: the length over which the mass is spread."""
+"""Least length for the moment of inertia: a person is 0.5 m deep, but not so easily turned."""
 
 
 def mass_kg(kind: ActorKind, size: Size) -> float:
@@ -104,7 +104,7 @@ def compliance(first: Body, second: Body, at: Point) -> Matrix:
 
 
 def approach(first: Body, second: Body, at: Point, normal: Point) -> float:
-    """How fast the two come together at a point along the normal (from first to second), m/s."""
+    """Closing speed of the two at a point along the normal (from first to second), m/s."""
     x, y = at
     along = (first.vx - first.spin * (y - first.y)) - (second.vx - second.spin * (y - second.y))
     across = (first.vy + first.spin * (x - first.x)) - (second.vy + second.spin * (x - second.x))
@@ -133,8 +133,8 @@ def collide(
     return True
 
 
-def hold(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> None:
-    """Slow the parting of two at a point along a normal (from first to second) by so much: they are hooked together."""
+def slow_parting(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> None:
+    """Reduces the speed of separation at a point along a normal (from first to second): hooked bodies."""
     size = by_mps / _through(compliance(first, second, at), normal, normal)
     first.push(normal[0] * size, normal[1] * size, *at)
     second.push(-normal[0] * size, -normal[1] * size, *at)
@@ -143,7 +143,7 @@ def hold(first: Body, second: Body, at: Point, normal: Point, by_mps: float) -> 
 def _impulse(
     first: Body, second: Body, touch: tuple[Point, Point], give: Matrix, restitution: float, friction: float
 ) -> Point:
-    """On the second body: what stops all sliding, within the cone of friction. `touch`: the place and the normal."""
+    """The impulse on the second body that stops all sliding, within the friction cone. `touch`: place and normal."""
     at, normal = touch
     (ax, ay), (bx, by) = first.velocity_at(*at), second.velocity_at(*at)
     closing = (ax - bx) * normal[0] + (ay - by) * normal[1]
@@ -160,7 +160,7 @@ def _impulse(
 
 
 def _work(first: Body, second: Body, at: Point, give: Matrix, impulse: Point) -> float:
-    """What an impulse adds to the energy of both: mean relative velocity times impulse, J."""
+    """Energy that an impulse adds to both bodies: mean relative velocity times impulse, J."""
     (ax, ay), (bx, by) = first.velocity_at(*at), second.velocity_at(*at)
     slip = (bx - ax) * impulse[0] + (by - ay) * impulse[1]
     return slip + _through(give, impulse, impulse) / 2

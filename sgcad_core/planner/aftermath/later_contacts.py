@@ -1,6 +1,6 @@
-"""Behind the first contact: the things that wrecks strike, second contacts of the same two, rest as told.
+"""After the first contact: struck objects, second contacts of the same pair, rest as stated.
 
-Works on a scene in which everybody else is placed. Knows behaviors, scenes and roads.
+Works on a scene in which all other actors are placed. Knows behaviors, scenes and roads.
 """
 
 from __future__ import annotations
@@ -9,32 +9,43 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, Rests, leaving
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
 from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
-from sgcad_core.planner.encounter.contact_queries import pair_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import BehaviorSpec, Contact
+from sgcad_core.records.specs import Area, BehaviorSpec, Contact
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
 
 class Ended(NamedTuple):
-    """What of the course behind the first contact could not be had, in words and as a cost: 1 and more a told part."""
+    """Missed parts of the course after the first contact, in words and as a cost: 1 and more a stated part."""
 
     notes: tuple[str, ...]
     missed: float
 
 
 _ASIDE = 0.3
-"""Of a side's length: what a vehicle knocks over and pushes along is not between it and the next thing."""
+"""Share of the length of a side: what a vehicle knocks over and pushes along is not between it and the next object."""
 _THINGS = ("object", "pedestrian", "bicycle")
 
 
-def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
-    """The contacts behind the first that are with a thing, or with somebody who stands beside the road, in order.
+def pair_of(contact: Contact) -> frozenset[str]:
+    """The two actors of a contact, in no order."""
+    return frozenset((contact.striker, contact.struck))
 
-    A thing is struck once, by somebody who is on the road by then; who meets in the first contact is no thing.
+
+def other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
+    """The other actor of a contact, and the sides of the partner and of the other one."""
+    if partner == contact.striker:
+        return contact.struck, (contact.striker_area, contact.struck_area)
+    return contact.striker, (contact.struck_area, contact.striker_area)
+
+
+def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
+    """The contacts after the first with objects or with people beside the road, in order.
+
+    An object is struck once, by an actor on the road; the two of the first contact are no objects.
     """
     actors = {a.id: a for a in behavior.actors}
     found: list[Strike] = []
@@ -50,14 +61,14 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     return found
 
 
-def expect(scene: Scene, contacts: Sequence[Contact]) -> None:
-    """Tell a scene which pairs touch behind the first contact, and which of them once more."""
+def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
+    """Sets the pairs of a scene that touch after the first contact, and those that touch a second time."""
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
     scene.again, scene.told = further & first, further - first
 
 
-def run_out(
+def bring_to_rest(
     scene: Scene,
     behavior: BehaviorSpec,
     contacts: Sequence[Contact],
@@ -65,17 +76,17 @@ def run_out(
     graph: LaneGraph,
     impacts: Sequence[Impact] = IMPACTS,
 ) -> Ended:
-    """Bring the wrecks to rest as told, by way of the things that they strike.
+    """Brings the vehicles to rest as stated, by way of the objects that they strike.
 
-    `contacts`: those that can come about, the first one first. `impacts`: friction and restitution that are tried.
+    `contacts`: the possible ones, the first one first. `impacts`: friction and restitution to try.
     """
     strikes = strikes_of(behavior, contacts)
     told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
     if not told and not strikes and not scene.again:
         return Ended((), 0.0)
     for strike in strikes:
-        told[strike.by] = leaving(told.get(strike.by, CourseTold()))
-    rests = Rests(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
+        told[strike.by] = leaving_the_road(told.get(strike.by, CourseTold()))
+    rests = RestFit(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
     rests.fit()
     unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
     return Ended((*unreached, *rests.missed()), rests.cost() + MISSED * len(unreached))

@@ -1,7 +1,7 @@
-"""The ways in which wrecks may run out from one blow, and the choice among them.
+"""The possible run-outs of vehicles after one impact, and the choice among them.
 
-All ways of a vehicle are told at once (`ground.run_out`); whoever chooses learns from whole simulations how far they
-end elsewhere. Knows bodies and costs; no report and no roads.
+All run-outs of a vehicle are computed at once (`ground_friction.run_out_paths`); whole simulations then show how far
+they end elsewhere. Knows bodies and costs; no report and no roads.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from sgcad_core.planner.aftermath.ground_friction import RunOut
 Ints = NDArray[np.int_]
 
 _BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
-"""Of the friction: from rolling on with bent wheels to four locked ones."""
+"""Share of the friction: from rolling on with bent wheels to four locked ones."""
 _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
 """Down to a turning circle of 13 m."""
 _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
 _DRIVES_ON_S, _DRIVES_ON_PER_M = (1.5, 4.0), 0.06
-"""For so long a driver who is able to drives on before it brakes, on wheels that roll freely and in no tighter a bend:
-to the shoulder, out of the junction."""
+"""Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
+shoulder, out of the junction."""
 _BEFORE_IT_ROLLS_PER_M = 0.03
 _EACH_BEND = 3
-"""Of the ways of each of two that meet again so many are looked at, for each steering."""
+"""Number of run-outs per steering that are compared for two vehicles that meet again."""
 _PARTED_M = 0.06
 _SOON = 40
-"""Steps of the ways in which two are looked at: 4 s, later they are where they stay."""
+"""Steps of the run-outs that are compared: 4 s, later they hardly move."""
 _IN_EACH_OTHER_M = 0.25
-"""Ways on which two boxes would lie so deep in each other are none: they push each other elsewhere."""
+"""Run-outs on which two boxes would overlap so deep are excluded: they push each other elsewhere."""
 MISSED = 1.5
-"""Cost of a told second contact that does not come about."""
+"""Cost of a stated second contact that does not happen."""
 UNUSUAL = 0.02
 
 
@@ -51,16 +51,16 @@ class Choice(NamedTuple):
 
 @dataclass
 class VehicleWays:
-    """All ways in which one vehicle may run out from one blow, where each would end, and what that costs."""
+    """All run-outs of one vehicle after one impact, their end poses and costs."""
 
     runs: Sequence[RunOut]
     ways: Floats
-    """(m, n, 3) poses of each way, a coarse step apart."""
+    """(m, n, 3) poses of each run-out, a coarse step apart."""
     odd: Floats
     judge: Callable[[Floats], Floats]
     size: Size
     off: Floats = field(default_factory=lambda: np.zeros(3))
-    """How far the whole simulation ended from where the way alone would, at the last try."""
+    """Difference of the whole simulation from the run-out alone, at the last try."""
 
     @property
     def ends(self) -> Floats:
@@ -69,29 +69,29 @@ class VehicleWays:
         return last
 
     def costs(self) -> Floats:
-        """(n,) of each way, as far as is known from the last try."""
+        """(n,) costs of the run-outs, corrected by the last try."""
         return self.judge(self.ends + self.off) + self.odd
 
     def cost(self, number: int) -> float:
-        """Of one way."""
+        """Cost of one run-out."""
         return float(self.judge(self.ends[number : number + 1] + self.off)[0] + self.odd[number])
 
 
 @dataclass
 class BlowWays:
-    """One choice of friction and restitution with its vehicles' ways."""
+    """One choice of friction and restitution with the run-outs of its vehicles."""
 
     friction: float
     restitution: float
     again: bool = False
-    """Whether the two meet once more."""
+    """Whether the two touch a second time."""
     vehicles: dict[str, VehicleWays] = field(default_factory=dict)
     tried: set[tuple[int, ...]] = field(default_factory=set)
     known: tuple[int, ...] | None = None
-    """What `best` found, until more is learned."""
+    """Result of `best`, until the next `learn`."""
 
     def best(self) -> tuple[int, ...]:
-        """The most promising way of each vehicle that was not tried; () where none is left."""
+        """The most promising untried run-out of each vehicle; () where none is left."""
         if self.known is None:
             each = [v.costs() for v in self.vehicles.values()]
             self.known = tuple(int(np.argmin(costs)) for costs in each)
@@ -100,7 +100,7 @@ class BlowWays:
         return () if self.known in self.tried else self.known
 
     def _of_two(self, first: Floats, second: Floats) -> tuple[int, ...]:
-        """The cheapest pair of ways that keep clear of each other once parted, or that meet again, as told."""
+        """The cheapest pair of run-outs that keep clear of each other once parted, or that meet again, as stated."""
         a, b = self.vehicles.values()
         most = _EACH_BEND if self.again else 1
         mine, theirs = (_various(v.runs, costs, most) for v, costs in ((a, first), (b, second)))
@@ -118,36 +118,36 @@ class BlowWays:
         return pairs[best]
 
     def _in_each_other(self, known: tuple[int, ...]) -> bool:
-        """Whether two ways lead through each other."""
+        """Whether two run-outs lead through each other."""
         return bool(self._gaps(np.array(known[:1]), np.array(known[1:])).min() < -_IN_EACH_OTHER_M)
 
     def _gaps(self, first: Ints, second: Ints) -> Floats:
-        """(m, n) gaps of the two boxes on n pairs of ways, metres; inf of those far apart."""
+        """(m, n) gaps of the two boxes on n pairs of run-outs, metres; inf far apart."""
         a, b = self.vehicles.values()
         mine, theirs = a.ways[:_SOON, first], b.ways[:_SOON, second]
         found = gaps_where_near(mine.reshape(-1, 3), a.size, theirs.reshape(-1, 3), b.size, _PARTED_M)
         return found.reshape(len(mine), -1)
 
     def predicted(self) -> float:
-        """What the most promising ways cost."""
+        """Cost of the most promising run-outs."""
         return sum(v.cost(k) for v, k in zip(self.vehicles.values(), self.best(), strict=True))
 
     def choice(self) -> Choice:
-        """The most promising ways, noted as tried."""
+        """The most promising run-outs, noted as tried."""
         best = self.best()
         self.tried.add(best)
         runs = {name: v.runs[i] for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
         return Choice(self.friction, self.restitution, runs)
 
     def learn(self, choice: Choice, ends: Mapping[str, Floats]) -> None:
-        """Take in where the vehicles came to rest in the whole simulation of a choice."""
+        """Corrects the end poses by those of the whole simulation of a choice."""
         for name, v in self.vehicles.items():
             v.off = ends[name] - v.ends[v.runs.index(choice.runs[name])]
         self.known = None
 
 
 def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
-    """The cheapest ways of each steering."""
+    """The cheapest run-outs of each steering."""
     by_bend: dict[float, list[int]] = {}
     for i in np.argsort(costs, kind="stable"):
         by_bend.setdefault(runs[int(i)].bend_per_m, []).append(int(i))
@@ -155,7 +155,7 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
 
 
 def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list[RunOut]:
-    """All ways of running out; who does not stay `on_wheels` drives nowhere, and hardly steers before it rolls."""
+    """All run-outs; a vehicle not `on_wheels` does not drive on, and hardly steers before it rolls over."""
     bends = [bend for bend in _BENDS_PER_M if on_wheels or abs(bend) <= _BEFORE_IT_ROLLS_PER_M]
     ways = [
         RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)
@@ -165,7 +165,7 @@ def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list
 
 
 def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
-    """A little for every departure from braking straight: of two that do as well the plainer one is taken."""
+    """Small costs of departures from straight braking: of two equal run-outs the plainer one is taken."""
     return UNUSUAL * np.array(
         [
             abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 + r.rolls_s / 2

@@ -1,10 +1,10 @@
-"""Bringing wrecks to rest where and as the report tells: the impact's and the drivers' free choices are fitted.
+"""Fits the free parameters of impact and run-out so that vehicles come to rest as the report states.
 
-Free are, within physical bounds, friction and restitution between the bodies, and for every vehicle its braking, its
-steering and its resistance to turning once it runs out. The blow itself is simulated once for each choice of friction
-and restitution, the ways of running out all at once (`ground.run_out`); the best are then simulated whole, since wrecks
-meet again, and what that shows corrects the next choice. What cannot be reached is said, with by how much.
-Deterministic; a fixed number of simulations at most.
+Free within physical bounds are friction and restitution between the bodies, and for every vehicle its braking, steering
+and resistance to turning in the run-out. The impact is simulated once for each friction and restitution, all run-outs
+at once (`ground_friction.run_out_paths`); the best are simulated whole, since vehicles meet again, and the result
+corrects the next choice. What cannot be reached is noted with its error. Deterministic; a fixed number of simulations
+at most.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
-from sgcad_core.planner.aftermath.ground_friction import Released, run_out
+from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
 from sgcad_core.planner.aftermath.rollover import rolls_over
 from sgcad_core.planner.motion import STEP_S
@@ -28,41 +28,42 @@ from sgcad_core.roads.surface import RoadSurface
 
 Impact = tuple[float, float]
 IMPACTS: Sequence[Impact] = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
-"""Friction and restitution between bodies that are tried, within what Brach finds for vehicles: little of both where
-they graze each other, more friction where they lock."""
+"""Friction and restitution to try, within what Brach finds for vehicles: little of both for a graze, more friction
+where they lock."""
 _BLOW_S = 0.3
-"""After the first touch the bodies have parted or slide together; then drivers and wheels count."""
+"""Duration of the impact; then the bodies have parted or slide together, and drivers and wheels count."""
 _COARSE_S = 0.1
 _WHOLE = 3
-"""Choices that are simulated whole, at most, beyond one for each friction and restitution."""
+"""Whole simulations at most, beyond one for each friction and restitution."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
-"""Within the allowed by so much is as good as can be."""
+"""Margin inside the allowed error that counts as best."""
 _TOLD = 1.0
 _USUAL_SHARE = 0.6
-"""Of the friction: one brakes, some wheels drag."""
+"""Share of the friction: some braking, some dragging wheels."""
 _SPIN_RAD = math.radians(15.0)
 
 
-def leaving(course: CourseTold) -> CourseTold:
-    """The course of one who strikes something beside the road: where no place is told, it leaves the road."""
+def leaving_the_road(course: CourseTold) -> CourseTold:
+    """The stated course of a vehicle that strikes an object beside the road: without a stated place it leaves the
+    road."""
     where = course.rest.where or "off_road"
     return replace(course, rest=replace(course.rest, where=where))
 
 
 @dataclass(frozen=True)
-class Rests:
-    """What the vehicles of a scene are to come to."""
+class RestFit:
+    """The stated ends of the vehicles of a scene."""
 
     scene: Scene
     told: Courses
     surface: RoadSurface
     rolling: frozenset[str] = frozenset()
-    """Vehicles that are to reach something: of two ways the one that leads further is taken."""
+    """Vehicles with a further contact: of two run-outs the longer one is taken."""
     impacts: Sequence[Impact] = IMPACTS
     """Friction and restitution that are tried."""
 
     def fit(self) -> None:
-        """Choose, and settle the scene so."""
+        """Chooses the best parameters and settles the scene with them."""
         if not self.wanted:
             return
         best, least = self._choice(), self.cost()
@@ -88,12 +89,12 @@ class Rests:
 
     @property
     def _well(self) -> float:
-        """A cost below which nothing is gained by further tries."""
+        """A cost below which further tries are not worth it."""
         return 0.35 * len(self.wanted)
 
     @cached_property
     def wanted(self) -> dict[str, CourseTold]:
-        """Told courses of the vehicles that are struck and of whose end anything is told, or who meet again."""
+        """Stated courses of the struck vehicles with a stated end or a second contact."""
         again = {name for pair in self.scene.again for name in pair}
         struck = {name for touch in self.scene.touches for name in (touch.first, touch.second)}
         return {
@@ -106,7 +107,7 @@ class Rests:
 
     @cached_property
     def _makes_way(self) -> frozenset[str]:
-        """Who is struck first by one that is to reach something, and must not stand in its way."""
+        """Vehicles in the first contact with one that has a further contact, and must not stand in its way."""
         first = {name for touch in self.scene.touches[:1] for name in (touch.first, touch.second)}
         return frozenset(first if first & self.rolling else ())
 
@@ -120,7 +121,7 @@ class Rests:
         self.scene.settle()
 
     def _ways(self, friction: float, restitution: float) -> BlowWays:
-        """For one choice of the impact all ways of running out, each vehicle for itself."""
+        """All run-outs for one choice of the impact, each vehicle on its own."""
         scene = self.scene
         scene.friction, scene.restitution, scene.runs = friction, restitution, {}
         until = scene.contact + round(_BLOW_S / STEP_S)
@@ -135,7 +136,7 @@ class Rests:
         upright = [not rolls_over(self.wanted[name]) for name in free]
         runs = [all_runs(at_s, drag.across, on_wheels=on) for drag, on in zip(drags, upright, strict=True)]
         released = [Released(wreck.named[name].body, at_s) for name in free]
-        each = run_out(released, drags, runs, end_s, _COARSE_S)
+        each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
             odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
             judge = partial(self._costs, name, self.wanted[name])
@@ -144,7 +145,7 @@ class Rests:
 
     # -------------------------------------------------------------- how well
     def cost(self) -> float:
-        """How far the scene as it is settled is from what is told."""
+        """The cost of the settled scene: its distance from what is stated."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
         missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
@@ -154,7 +155,7 @@ class Rests:
         return sum({t.first, t.second} == pair for t in self.scene.touches) > 1
 
     def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
-        """(n,) costs of (n, 3) last poses: 1 and more for every told part that is missed."""
+        """(n,) costs of (n, 3) last poses: 1 and more for every missed part."""
         errors = rest_errors(course.rest, ends, self._came_rad(name), self.surface)
         total = np.zeros(len(ends))
         for error, well, scale in zip(
@@ -165,7 +166,7 @@ class Rests:
         return total + self._unspun(name, course, ends) if course.spin else total
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
-        """(n,) costs of turning otherwise than told: by other degrees, or to the other hand."""
+        """(n,) costs of rotation otherwise than stated: by other degrees, or in the other sense."""
         turned = ends[:, 2] - self._came_rad(name)
         way = 1.0 if course.spin == "counterclockwise" else -1.0
         wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
@@ -178,7 +179,7 @@ class Rests:
         return float(self.scene.tracks[name].driven[self.scene.contact, 2])
 
     def missed(self) -> list[str]:
-        """What of the told rests is not reached, and by how much."""
+        """Notes on the stated rests that are not reached, with the errors."""
         apart = [" and ".join(sorted(pair)) for pair in self.scene.again if not self._meet_again(pair)]
         notes = [f"{pair} do not touch a second time, as is told" for pair in apart]
         return notes + [note for name, course in self.wanted.items() for note in self._missed(name, course.rest)]

@@ -1,7 +1,7 @@
-"""How a vehicle of which a rollover is told turns about its long axis: onto its side, its roof, or over and over.
+"""The roll angle of vehicles with a stated rollover: onto the side, the roof, or over and over.
 
-A plane simulation has no roll. Here it is told beside it, once the way to rest is known: the vehicle rolls as it moves,
-from shortly after its first contact on, towards where it slides, and lies as told when it stands. Knows poses only.
+A plane simulation has no roll. It is added once the motion to rest is known: the vehicle rolls while it moves, from
+shortly after its first contact, in the direction of its slide, and lies as stated at the end. Knows poses only.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from sgcad_core.planner.motion import STEP_S
 from sgcad_core.records.course import Attitude, CourseTold
 
 TRIPPED_S = 0.3
-"""From the contact on until it begins: it first slides, or leaves the road."""
+"""Time from the contact to the beginning of the roll: it first slides, or leaves the road."""
 _ROLLS_RADPS = math.radians(400.0)
 """At most; measured are 300 to 500 degrees a second (NHTSA, dolly and curb-trip tests)."""
 _SLIDES_MPS = 0.5
-"""Slower sideways it rolls to the nearer side."""
+"""Lateral speed below which it rolls to the nearer side."""
 _TO_THE_RIGHT: dict[Attitude, float] = {"right": 0.5, "roof": 1.0, "left": 1.5, "wheels": 2.0}
-"""Half turns to the right until it lies so."""
+"""Half turns to the right until it lies like this."""
 
 
 def rolls_over(told: CourseTold) -> bool:
-    """Whether a rollover is told of a vehicle."""
+    """Whether the report states a rollover of a vehicle."""
     return told.rolls or told.rest.attitude not in (None, "wheels")
 
 
-def rolled(poses: Floats, hit: int, told: CourseTold) -> Floats:
+def roll_angles(poses: Floats, hit: int, told: CourseTold) -> Floats:
     """(n,) roll of (n, 3) poses whose first contact is sample `hit`, radians, positive to the right (about x, z up)."""
     first = min(hit + round(TRIPPED_S / STEP_S), len(poses) - 1)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))
@@ -43,7 +43,7 @@ def rolled(poses: Floats, hit: int, told: CourseTold) -> Floats:
 
 
 def _eased(share: Floats) -> Floats:
-    """A roll is fastest in its middle."""
+    """Smooth step: a roll is fastest in its middle."""
     eased: Floats = share * share * (3 - 2 * share)
     return eased
 
@@ -56,7 +56,7 @@ def _sideways_mps(poses: Floats, at: int) -> float:
 
 
 def _total(left_mps: float, attitude: Attitude | None) -> float:
-    """Radians in all: by the way it slides where it does, else the shorter way. Where no end is told, onto its side."""
+    """Total roll, radians: in the direction of its slide, else the shorter one. Without a stated end, onto its side."""
     to_left = left_mps > 0.0
     wanted = attitude or ("left" if to_left else "right")
     right = _TO_THE_RIGHT[wanted] * math.pi

@@ -1,8 +1,8 @@
-"""What a wreck strikes on its way to rest: poles, trees, fences, walls, people at the roadside, placed on that way.
+"""Objects that a vehicle strikes on its way to rest (poles, trees, fences, walls, people at the roadside).
 
-The way is that of the settled scene. A thing stands where one side of the box comes by, off the road if the way leads
-there, as late as the blow still shows, and nowhere where anybody has been before. What a vehicle goes on from gives
-way; what it does not go on from is fixed. Knows scenes and their tracks.
+They are placed along the motion of the settled scene: in front of a side of the box, off the road if the motion leads
+there, as late as the impact is still visible, and where no actor has been before. An object gives way if the vehicle
+goes on to another one, else it is fixed. Knows scenes and their tracks.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from sgcad_core.records.specs import Actor, Area, size_m
 from sgcad_core.roads.surface import RoadSurface
 
 _AFTER_S = 0.45
-"""The first blow is over by then."""
+"""Duration of the first impact."""
 _LEAST_MPS = 2.6
-"""A slower blow is hardly one, and a file whose vertices lie 0.11 m apart cannot show it."""
+"""A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
 _DEPTH_M = 0.05
-"""How deep the way of the box leads into the thing at the sample of the blow."""
+"""Overlap of the undisturbed box with the object at the sample of the impact."""
 _GIVES_WAY_KG = 60.0
-"""Of what a vehicle goes on from: a breakaway post, a sign, a piece of fence."""
+"""Mass of objects that give way: a breakaway post, a sign, a piece of fence."""
 _ALL_TOLD = 1.0
-"""A rest that costs less misses nothing that is told."""
+"""A rest with a lower cost misses no stated part."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
 _OFF_ROAD_M = 0.3
 _OUTWARD_MPS = 0.5
-"""So fast a side of the box must move outward to strike anything."""
+"""Outward speed of a side of the box that can strike an object."""
 _LATE, _EARLY = (0.95, 0.7, 0.45, 0.2), (0.1, 0.25, 0.4, 0.6)
-"""Places along the way that are tried, as shares of those where a blow would still show: who goes on strikes early."""
+"""Places to try, as shares of those with a visible impact: early where the vehicle goes on."""
 
 
 @dataclass(frozen=True)
 class Strike:
-    """One thing and who strikes it."""
+    """One object and the vehicle that strikes it."""
 
     thing: Actor
     by: str
@@ -48,13 +48,13 @@ class Strike:
     goes_on: bool
     """Whether the same vehicle strikes something else later."""
     aside: float = 0.0
-    """How far left of the middle of the side, as a share of it: what is struck in a row stands to both hands."""
+    """Offset to the left of the middle of the side, as a share of it: objects struck in a row stand on both sides."""
 
 
 def strike_things(
     scene: Scene, strikes: Sequence[Strike], surface: RoadSurface, cost: Callable[[], float]
 ) -> Iterator[str]:
-    """Place every thing in order; notes on those that the wreck cannot reach. `cost`: of the rest as it is settled."""
+    """Places every object in order; notes on those that are not reached. `cost`: of the rest as settled."""
     for strike in strikes:
         if not _placed(scene, strike, surface, cost):
             _stand(scene, strike, _out_of_reach(scene, strike))
@@ -63,7 +63,7 @@ def strike_things(
 
 
 def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
-    """A place ahead of where its vehicle comes to rest, further and further on until nobody ever is there."""
+    """A place ahead of the rest of the vehicle, at the first distance where no actor ever is."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     x, y, heading = (float(v) for v in track.poses[-1])
     for away in (*_PAST_M, 500.0):
@@ -74,7 +74,7 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
 
 
 def _placed(scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float]) -> bool:
-    """The place of those tried after which the rest is best; False where none is struck."""
+    """Places the object where the rest is best; False where no place is struck."""
     best: tuple[float, Track] | None = None
     base, before = {name: track.poses for name, track in scene.tracks.items()}, list(scene.touches)
     for pose in _places(scene, strike, surface):
@@ -97,7 +97,7 @@ def _placed(scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[
 
 
 def _is_struck(scene: Scene, strike: Strike) -> bool:
-    """Whether the thing is struck by its vehicle first, behind the first contact of all."""
+    """Whether the object is struck by its vehicle first, after the first contact of all."""
     hits = [t for t in scene.touches if strike.thing.id in (t.first, t.second)]
     return bool(hits) and strike.by in (hits[0].first, hits[0].second) and hits[0] is not scene.touches[0]
 
@@ -115,7 +115,7 @@ def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
 
 # ------------------------------------------------------------------ where
 def _places(scene: Scene, strike: Strike, surface: RoadSurface) -> list[Floats]:
-    """(3,) poses on the wreck's way, best first: off the road before on it, the told side before others."""
+    """(3,) poses on the way of the vehicle, best first: off the road before on it, the stated side before others."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track)
     found = [(rank, pose) for k in samples for rank, pose in _beside(track, int(k), strike, size)
@@ -131,22 +131,18 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface) -> list[Floats]:
 
 
 def _samples(scene: Scene, strike: Strike, track: Track) -> Floats:
-    """Samples behind the last blow at which the vehicle still moves."""
+    """Samples after the last impact at which the vehicle still moves."""
     blows = [t.t_s for t in scene.touches if strike.by in (t.first, t.second)]
     if not blows:
         return np.zeros(0)
-    begins = round((_last_begun(blows) + _AFTER_S) / STEP_S)
+    begins = round((max(blows) + _AFTER_S) / STEP_S)
     speed = np.hypot(*np.diff(track.poses[:, :2], axis=0).T) / STEP_S
     moving = np.flatnonzero(speed > _LEAST_MPS)
     return moving[moving >= begins].astype(float) + 1
 
 
-def _last_begun(blows: Sequence[float]) -> float:
-    return max(blows)
-
-
 def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[int, Floats]]:
-    """(rank, pose) of the thing before each side of the box that goes outward at a sample; the told one ranks first."""
+    """(rank, pose) of the object before each side of the box that moves outward; the stated side ranks first."""
     x, y, heading = track.poses[k]
     by = track.poses[k] - track.poses[k - 1]
     for number, side in enumerate(SIDES):
@@ -164,7 +160,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
 
 
 def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int) -> bool:
-    """Whether nobody has been there before the blow, and nobody else ever is."""
+    """Whether the vehicle has not been there before the impact, and no other actor ever is."""
     for name, track in scene.tracks.items():
         last = until - 1 if name == strike.by else len(track.poses)
         there = np.repeat(pose[None], last, axis=0)

@@ -1,9 +1,9 @@
-"""What follows a first touch: bodies that push, turn, drag and stop each other until all stand.
+"""The simulation after a first touch: bodies push, turn, drag and stop each other until all stand.
 
-Time-stepped rigid bodies in the plane: impulses at every touch, over all pairs again and again until nobody approaches
-anybody (sequential impulses; E. Catto, Iterative Dynamics with Temporal Coherence, 2005), friction on the ground in
-between, steps short enough that boxes never sink into each other by more than centimetres (conservative advancement;
-B. Mirtich, Impulse-based Dynamic Simulation, 1996). Whoever is not touched goes on as its script says. SI units.
+Time-stepped rigid bodies in the plane: impulses at every touch, over all pairs until none approaches (sequential
+impulses; E. Catto, Iterative Dynamics with Temporal Coherence, 2005), friction on the ground in between, steps short
+enough that boxes sink into each other by centimetres only (conservative advancement; B. Mirtich, Impulse-based Dynamic
+Simulation, 1996). Bodies without a touch follow their scripts. SI units.
 """
 
 from __future__ import annotations
@@ -12,53 +12,54 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-import numpy as np
-
-from sgcad_core.geometry.plane import Floats, box_gaps, gaps_where_near
-from sgcad_core.planner.aftermath.ground_friction import slow
-from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, pull
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, hold
+from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
+from sgcad_core.planner.aftermath.ground_friction import apply_friction
+from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
 from sgcad_core.planner.aftermath.wreck_bodies import (
     Mover,
     Pair,
+    Separation,
     Touch,
-    all_apart,
-    follow,
+    center_of,
     key_of,
     last_move,
     may_meet,
+    separation,
+    separations,
+    set_on_script,
     shift,
     state_of,
+    touch_points,
 )
-from sgcad_core.planner.encounter.box_scalar import Apart, apart, mean, touch_points
 from sgcad_core.planner.motion import STEP_S
 
 SEEN_M = 0.022
-"""Depth at which a new touch takes effect: so much overlap shows at the next sample of the clock."""
+"""Depth at which a new touch takes effect: this much overlap is visible at the next sample."""
 APART_M = 0.008
 """Gap that is left between bodies that touched."""
 _PARTED_M = 0.05
-"""Two that are so far apart touch anew when they meet again."""
+"""Gap beyond which two bodies that meet again touch anew."""
 _SHOWN_M = 0.008
 """Overlap that is left for the sample behind a touch."""
 _SHORTEST_S, _LONGEST_S = 0.0005, 0.01
 _NEAR_M = 0.15
-"""Bodies that are further apart move in steps of the clock, as long as these cannot bring them together."""
+"""Bodies further apart move in steps of the clock, as long as these cannot bring them together."""
 _PARTING_MPS = 0.3
-"""How fast bodies that sank into each other are moved apart."""
+"""Speed at which overlapping bodies are moved apart."""
 _HELD_S = 0.11
-"""A touch stays as it is for two samples: who reads samples, or a file with fewer vertices, must see it."""
+"""A touch is kept for two samples, so that samples, and files with fewer vertices, show it."""
 _TOLD_S, _TOLD_HELD_S = 0.2, 0.25
-"""For so long two hold, and stay as they are, whose touch is told: where a body is set rolling from a standstill, the
-next vertex of a file is only 0.11 m further."""
+"""Time for which the bodies of a stated touch hold, and for which the touch is kept: from a standstill the next vertex
+of a file is only 0.11 m further."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
-"""Of impulses over all touching pairs in one step: who is caught between two a hundred times as heavy gives way to both
-only after many; after six a man between two trucks lay 0.17 m in one of them."""
+"""Rounds of impulses over all touching pairs in one step: a body between two that are a hundred times as heavy gives
+way to both only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
 _LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
 _FASTER_MPS = 4.0
-"""Two that both get so much faster within a sample stay within the room that `may_meet` leaves (0.5 m)."""
+"""Gain in speed within a sample for which the room of `may_meet` (0.5 m) suffices."""
 
 
 @dataclass
@@ -71,9 +72,9 @@ class Wreck:
     friction: float = FRICTION
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch a second time as told: the new touch is seen as the first was."""
+    """Pairs with a stated second touch: it is kept visible like the first."""
     told: frozenset[frozenset[str]] = frozenset()
-    """Pairs that touch later on as told, however gently."""
+    """Pairs with a stated later touch, however gentle."""
     past: list[tuple[float, tuple[str, str]]] = field(default_factory=list)
     """Touches of these pairs that are over."""
     touches: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -108,7 +109,7 @@ class Wreck:
         return poses, [Touch(t, *pair) for t, pair in seen]
 
     def _rests(self) -> bool:
-        """Whether nothing moves and no touch is so new that time alone would change what it does."""
+        """Whether nothing moves and no touch is so new that time alone would change its effect."""
         latest = max(self.touches.values(), default=0.0)
         return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
 
@@ -125,20 +126,20 @@ class Wreck:
         """The sample before the first overlap of any two scripts; the last one where there is none."""
         first = self.count
         for a, b in pairs:
-            hits = np.flatnonzero(gaps_where_near(a.script, a.body.size, b.script, b.body.size) <= 0)
-            first = min(first, int(hits[0])) if len(hits) else first
+            hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
+            first = first if hit is None else min(first, hit)
         return max(first - 1, 0)
 
     # -------------------------------------------------------------- one sample of the clock
     def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
         for m in self.movers:
             if not m.free:
-                follow(m, k)
+                set_on_script(m, k)
         near, fastest = self._near(pairs)
         self.now, end = k * STEP_S, (k + 1) * STEP_S
         seen = None
         while self.now < end - 1e-9:
-            step = min(self._step(near, seen or all_apart(near)), end - self.now)
+            step = min(self._step(near, seen or separations(near)), end - self.now)
             self._advance(step)
             self.now += step
             seen = self._resolve(near, k)
@@ -148,20 +149,20 @@ class Wreck:
         self._show(near, k)
 
     def _near(self, pairs: Sequence[Pair]) -> tuple[list[Pair], list[float]]:
-        """Pairs that can meet within a sample, and up to which speeds of the movable ones that is so.
+        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds.
 
-        A light body that a heavy one strikes gets faster than both were: it may reach who was out of its reach.
+        A light body gets faster than both when a heavy one strikes it, and may reach bodies that were out of reach.
         """
         return [pair for pair in pairs if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
 
     def _show(self, near: Sequence[Pair], sample: int) -> None:
-        """Leave what touched within this sample overlapping at its end, however it turned meanwhile."""
+        """Leaves the touches of this sample overlapping at its end, after any rotation."""
         for a, b in near:
             if self.touches.get(key_of(a, b), -1.0) > sample * STEP_S:
-                seen = apart(a.body, b.body)
+                seen = separation(a.body, b.body)
                 shift(a, b, seen, min(-_SHOWN_M - seen.gap_m, 0.0))
 
-    def _step(self, near: Sequence[Pair], gaps: Sequence[Apart]) -> float:
+    def _step(self, near: Sequence[Pair], gaps: Sequence[Separation]) -> float:
         """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if self.hitches else STEP_S
         for (a, b), (gap, normal) in zip(near, gaps, strict=True):
@@ -183,18 +184,18 @@ class Wreck:
             one.y += one.vy * step
             one.heading += one.spin * step
             if m.free:
-                slow(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
+                apply_friction(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
 
     # -------------------------------------------------------------- touches
-    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Apart] | None:
-        """What all touches do at a moment. How far each pair is apart; None where that was changed."""
-        gaps = all_apart(near)
+    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
+        """Applies all touches at one time. Returns the separation of each pair; None where bodies were moved."""
+        gaps = separations(near)
         touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
         if not touching and not self.hitches:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         for (a, b, seen), points in zip(touching, corners, strict=True):
-            at = mean(points)
+            at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
         for _ in range(_ROUNDS if len(touching) < 2 else _ROUNDS_OF_MANY):
             moved = False
@@ -202,7 +203,7 @@ class Wreck:
                 for at in points:
                     moved |= collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
             for hitch in self.hitches:
-                moved |= self._joined(hitch, pull)
+                moved |= self._joined(hitch, equalize_velocities)
             if not moved:
                 break
         parted = False
@@ -214,11 +215,11 @@ class Wreck:
         return None if parted or self.hitches else gaps
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
-        """What a hitch does to its two bodies, once both are free."""
+        """Applies a hitch to its two bodies, once both are free."""
         a, b = self.named[hitch.first], self.named[hitch.second]
         return a.free and b.free and act(hitch, a.body, b.body)
 
-    def _touches(self, a: Mover, b: Mover, seen: Apart, sample: int) -> bool:
+    def _touches(self, a: Mover, b: Mover, seen: Separation, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
         key = key_of(a, b)
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
@@ -227,7 +228,7 @@ class Wreck:
             return seen.gap_m < APART_M
         if seen.gap_m > 0:
             return False
-        coming = approach(a.body, b.body, mean(touch_points(a.body, b.body)), seen.normal) > 0
+        coming = approach(a.body, b.body, center_of(touch_points(a.body, b.body)), seen.normal) > 0
         if coming and seen.gap_m > -SEEN_M:
             return False
         self.touches[key] = self.now
@@ -236,7 +237,7 @@ class Wreck:
         return True
 
     def _release(self, m: Mover, sample: int) -> None:
-        """Free a mover and what hangs on it."""
+        """Frees a body and what is coupled to it."""
         if m.fixed or m.free:
             return
         m.free, m.hit = True, sample
@@ -245,34 +246,34 @@ class Wreck:
                 if one == m.name:
                     self._release(self.named[other], sample)
 
-    def _bounce(self, a: Mover, b: Mover, seen: Apart, at: Point, sample: int) -> float:
-        """Restitution of a new touch: no more than leaves the overlap to be seen at the next sample."""
+    def _bounce(self, a: Mover, b: Mover, seen: Separation, at: Point, sample: int) -> float:
+        """Restitution of a new touch: no more than leaves the overlap visible at the next sample."""
         if self.now - self.touches[key_of(a, b)] > 1e-9:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
         left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
         return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
-    def _keep_seen(self, a: Mover, b: Mover, seen: Apart, points: list[Point], sample: int) -> None:
-        """Let nobody part from a new touch before the next sample shows it: bodies that crush hold for 0.1 s."""
+    def _keep_seen(self, a: Mover, b: Mover, seen: Separation, points: list[Point], sample: int) -> None:
+        """Keeps the bodies of a new touch together until the next sample: crushing bodies hold for 0.1 s."""
         left = self._held_s(a, b, sample)
         if left <= 0.0:
             return
-        at = mean(points)
+        at = center_of(points)
         allowed = 0.5 * max(-seen.gap_m, 0.0) / max(left, _SHORTEST_LEFT_S)
         parting = -approach(a.body, b.body, at, seen.normal)
         if parting > allowed:
-            hold(a.body, b.body, at, seen.normal, parting - allowed)
+            slow_parting(a.body, b.body, at, seen.normal, parting - allowed)
 
     def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
-        """How much longer two hold that touched; 0 or less where they may part."""
+        """Time for which two touching bodies still hold; 0 or less where they may part."""
         since = self.touches[key_of(a, b)]
         if frozenset((a.name, b.name)) in self.told:
             return since + _TOLD_S - self.now
         return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
 
-    def _part(self, a: Mover, b: Mover, seen: Apart) -> bool:
-        """Move two apart that sank into each other: places only, no motion comes of it. Whether they were moved."""
+    def _part(self, a: Mover, b: Mover, seen: Separation) -> bool:
+        """Moves two overlapping bodies apart, places only, without velocity. Whether they were moved."""
         for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self.told else _HELD_S
         held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:

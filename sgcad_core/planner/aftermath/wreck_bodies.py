@@ -1,6 +1,7 @@
-"""Who takes part in a wreck: bodies with the ways that they would go undisturbed, and what two are to each other.
+"""The bodies of the simulation after a contact: their scripts, and the separation of two.
 
-Knows one sample of the clock at most; no touches and no time. SI units.
+Knows one sample of the clock at most; no touches and no time. Two boxes in plain floats are the scalar twin of
+`geometry.plane.box_gaps`, since arrays of one row cost more than they save in small time steps. SI units.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
-from sgcad_core.planner.aftermath.impact import Body
-from sgcad_core.planner.encounter.box_scalar import Apart, apart
+from sgcad_core.planner.aftermath.impact import Body, Point
 from sgcad_core.planner.motion import STEP_S
 
 Pair = tuple["Mover", "Mover"]
+_NEAR_M = 0.03
+"""Corners this close to the other box take part in a touch."""
 
 
 @dataclass
@@ -30,7 +32,7 @@ class Mover:
     script: Floats
     drag: Drag
     run: RunOut | None = None
-    """How it runs out; None: it slides with its drag."""
+    """The run-out; None: it slides with its drag."""
     free: bool = False
     hit: int | None = None
     """The last sample before its first touch takes effect."""
@@ -41,6 +43,13 @@ class Mover:
         return self.body.inverse_mass == 0.0
 
 
+class Separation(NamedTuple):
+    """Separation along the best axis (negative: overlap) and that axis, a unit vector from the first to the second."""
+
+    gap_m: float
+    normal: Point
+
+
 class Touch(NamedTuple):
     """Two movers touch."""
 
@@ -49,8 +58,8 @@ class Touch(NamedTuple):
     second: str
 
 
-def shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
-    """Move two apart along their axis (together where negative): places only, no motion comes of it."""
+def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
+    """Moves two bodies apart along their axis (together where negative), places only, without velocity."""
     total = a.body.inverse_mass + b.body.inverse_mass
     for one, sign in ((a.body, -1), (b.body, 1)):
         share = sign * by_m * one.inverse_mass / total
@@ -58,9 +67,9 @@ def shift(a: Mover, b: Mover, seen: Apart, by_m: float) -> None:
         one.y += share * seen.normal[1]
 
 
-def all_apart(near: Sequence[Pair]) -> list[Apart]:
-    """How far each pair is apart."""
-    return [apart(a.body, b.body) for a, b in near]
+def separations(near: Sequence[Pair]) -> list[Separation]:
+    """The separation of each pair."""
+    return [separation(a.body, b.body) for a, b in near]
 
 
 def state_of(one: Body) -> tuple[float, float, float, float, float, float]:
@@ -79,8 +88,8 @@ def key_of(a: Mover, b: Mover) -> tuple[str, str]:
     return a.name, b.name
 
 
-def follow(m: Mover, k: int) -> None:
-    """Put a mover where its script has it at sample k, on the way to the next."""
+def set_on_script(m: Mover, k: int) -> None:
+    """Puts a body on its script at sample k, moving to the next."""
     here, there = m.script[k], m.script[k + 1]
     m.body.x, m.body.y, m.body.heading = (float(v) for v in here)
     m.body.vx, m.body.vy, m.body.spin = (float(v) for v in (there - here) / STEP_S)
@@ -96,3 +105,61 @@ def may_meet(a: Mover, b: Mover) -> bool:
 
 def _moves(m: Mover) -> bool:
     return bool(m.body.vx or m.body.vy or m.body.spin)
+
+
+# ------------------------------------------------------------------ two boxes, in plain floats
+def separation(a: Body, b: Body) -> Separation:
+    """The separating-axis test: exact in sign, a lower bound of the distance where positive."""
+    dx, dy = b.x - a.x, b.y - a.y
+    ca, sa, cb, sb = math.cos(a.heading), math.sin(a.heading), math.cos(b.heading), math.sin(b.heading)
+    along, across = abs(ca * cb + sa * sb), abs(ca * sb - sa * cb)
+    al, aw, bl, bw = a.size[0] / 2, a.size[1] / 2, b.size[0] / 2, b.size[1] / 2
+    rows = (
+        (dx * ca + dy * sa, al + bl * along + bw * across, ca, sa),
+        (dy * ca - dx * sa, aw + bl * across + bw * along, -sa, ca),
+        (dx * cb + dy * sb, bl + al * along + aw * across, cb, sb),
+        (dy * cb - dx * sb, bw + al * across + aw * along, -sb, cb),
+    )
+    gap, best = -math.inf, rows[0]
+    for row in rows:  # the first of the widest; max() with a key takes three times as long
+        if (wide := abs(row[0]) - row[1]) > gap:
+            gap, best = wide, row
+    way, _, x, y = best
+    return Separation(gap, (x, y) if way >= 0 else (-x, -y))
+
+
+def touch_points(a: Body, b: Body) -> list[Point]:
+    """The corners of either box in (or within centimetres of) the other; the point midway where there are none."""
+    one, two = _frame(a), _frame(b)
+    points = [*_held(one, two), *_held(two, one)]
+    return points or [((a.x + b.x) / 2, (a.y + b.y) / 2)]
+
+
+def center_of(points: list[Point]) -> Point:
+    """The center of some points."""
+    if len(points) == 1:
+        return points[0]
+    return sum([p[0] for p in points]) / len(points), sum([p[1] for p in points]) / len(points)
+
+
+_Frame = tuple[float, float, float, float, float, float]
+"""Center, cosine and sine of the heading, half length and half width of a box."""
+
+
+def _frame(a: Body) -> _Frame:
+    return a.x, a.y, math.cos(a.heading), math.sin(a.heading), a.size[0] / 2, a.size[1] / 2
+
+
+def _held(one: _Frame, other: _Frame) -> list[Point]:
+    """The corners of a box in (or within centimetres of) another, counter-clockwise from front left."""
+    x, y, c, s, length, width = one
+    lc, ls, wc, ws = length * c, length * s, width * c, width * s
+    corners = (
+        (x + lc - ws, y + ls + wc), (x - lc - ws, y - ls + wc), (x - lc + ws, y - ls - wc), (x + lc + ws, y + ls - wc)
+    )  # fmt: skip
+    x, y, c, s, length, width = other
+    length, width = length + _NEAR_M, width + _NEAR_M
+    return [
+        p for p in corners
+        if abs((p[0] - x) * c + (p[1] - y) * s) <= length and abs((p[1] - y) * c - (p[0] - x) * s) <= width
+    ]  # fmt: skip

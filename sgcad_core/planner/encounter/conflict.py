@@ -1,7 +1,7 @@
-"""How the declared pair comes to touch: its roles, where their ways meet, and the stages of the search.
+"""How the declared pair comes into contact: its roles, its meeting place, and the stages of the search.
 
-Ordinary driving first, then with the wanted sides turned to each other, then one of both, then by force. Knows the
-behavior and the courses; no scene.
+Ordinary driving first, then with the wanted sides turned to each other, then only one of the two, then odd driving.
+Knows the behavior and the courses; no scene.
 """
 
 from __future__ import annotations
@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.encounter.contact_queries import facing_other
+from sgcad_core.planner.actor_plan import Role, speed_there
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
 from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
@@ -22,17 +21,17 @@ from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
 _TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
 _LAST_TRIES = 90
-"""Where boxes slide against their way, since nothing that can be driven brings the sides together."""
+"""Combinations tried with boxes that slide against their direction, since no driving brings the sides together."""
 _ONE_TURNS = 24
-"""Combinations tried in which one of both comes as usual and the other one turns its side to it."""
+"""Combinations tried in which only one of the two turns its side to the other."""
 _TURNING = 40
-"""Combinations tried in which a turn is driven on another line."""
+"""Combinations tried with other lines of a turn."""
 _LANELESS = ("pedestrian", "object")
 
 
 @dataclass
 class Conflicts:
-    """The actors of a behavior on their courses; `notes`: what their stated behavior lacked."""
+    """The actors of a behavior on their courses; `notes`: gaps in their stated behavior."""
 
     behavior: BehaviorSpec
     courses: dict[str, Course]
@@ -41,20 +40,20 @@ class Conflicts:
     told: Courses = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     pushed: set[str] = field(default_factory=set)
-    """Who stands and is set rolling."""
+    """Standing actors that are set rolling."""
 
     def __post_init__(self) -> None:
         self.actors = {a.id: a for a in self.behavior.actors}
 
     def as_they_drive(self, conflict: Contact) -> Encounter | None:
-        """How a pair comes into conflict as it drives, whatever its sides; by other means only where it never does."""
+        """A conflict of a pair in ordinary driving, on any sides; other driving only where they never meet."""
         a, b = self._roles(conflict)
         ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
         sides = (conflict.striker_area, conflict.struck_area)
         return search(ordinary, sides) or search(ordinary, None) or self.of(conflict)
 
     def of(self, contact: Contact) -> Encounter | None:
-        """How the declared pair comes to touch; None where they cannot be brought together."""
+        """The encounter of the declared pair; None where the two cannot be brought together."""
         a, b = self._roles(contact)
         wanted = (contact.striker_area, contact.struck_area)
         found = search(self._stages(a, b), wanted)
@@ -66,7 +65,8 @@ class Conflicts:
         return found
 
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, turns on other lines, then the wanted sides turned to each other, one of both, by force."""
+        """Ordinary driving, other lines of turns, the wanted sides turned to each other, one of the two, odd
+        driving."""
         yield (self._options(a, b, options), self._options(b, a, options)), _TRIES[0]
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
             yield (self._options(a, b, turned), self._options(b, a, turned)), _TURNING
@@ -90,7 +90,7 @@ class Conflicts:
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
-        return facing_other(first, second), facing_other(second, first)
+        return _facing_other(first, second), _facing_other(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.kind == "object" else a
@@ -108,7 +108,7 @@ class Conflicts:
         return meeting_places(pair[0], pair[1])
 
     def _station_for(self, one: Actor, driver: Actor) -> float:
-        """Where on a driver's course a pedestrian or an object is met."""
+        """The station of a driver's course at which a pedestrian or an object is met."""
         course, length = self.courses[driver.id], size_m(driver)[0]
         if one.kind == "pedestrian":
             return crosswalk_station(driver, course, length, one)
@@ -122,3 +122,15 @@ class Conflicts:
             walk = replace(role, course=course, place=place)
             found += [replace(option, extra_cost=cost) for option in ways(walk)]
         return sorted(found, key=lambda option: option.cost)
+
+
+def _facing_other(role: Role, other: Role) -> Role:
+    """A role with the data on the other actor that it depends on."""
+    return replace(
+        role,
+        other_mps=speed_there(other),
+        other_width_m=other.size[1],
+        other_side=other.side,
+        other_road=other.actor.road,
+        other_spins=bool(other.spins),
+    )

@@ -1,8 +1,7 @@
 """When and where two motions first touch, over all shifts of their clocks.
 
-Both motions are sampled on one time grid; a shift of the clocks is a diagonal of the matrix of their pairs
-of poses (a column where one of them only enumerates places to stand at). Pure search on arrays; knows
-neither roads nor maneuvers.
+Both motions are sampled on one time grid; a shift of the clocks is a diagonal of the matrix of their pose pairs (a
+column where one of them only enumerates places to stand at). Pure search on arrays; knows neither roads nor maneuvers.
 """
 
 from __future__ import annotations
@@ -22,15 +21,15 @@ from sgcad_core.records.specs import Area
 Ints = NDArray[np.int_]
 
 DEPTH_M = 0.016
-"""How deep the boxes overlap at the first common sample: enough to be seen, less than `wreck.SEEN_M`, so that what
-follows from the touch begins behind that sample."""
+"""Overlap of the boxes at the first common sample: enough to be seen, and less than `wreck.SEEN_M`, so that the
+consequences of the touch begin after that sample."""
 _SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
-"""A blow with so much lever the told way costs nothing; with as much the other way all of it."""
+"""Lever at which an impact in the stated sense of rotation costs nothing, and in the opposite sense the full cost."""
 _SECANTS = 6
-"""Until the time of that overlap is told to some microseconds."""
+"""Iterations; the time of the overlap is then known to some microseconds."""
 _MOST_SHIFTS = 64
 _LEAST_MARGIN = 0.003
-"""Nearer to a diagonal of the box a side is a matter of tenths of a millimetre."""
+"""Nearer to a diagonal of the box the side depends on tenths of a millimetre."""
 
 
 class Meeting(NamedTuple):
@@ -43,7 +42,7 @@ class Meeting(NamedTuple):
     second_s: float
     sides: tuple[Area, Area]
     margin: float
-    """How clearly both sides are told, 0 to 1."""
+    """How clear both sides are, 0 to 1."""
 
 
 class _Touches(NamedTuple):
@@ -65,10 +64,10 @@ class _Judged(NamedTuple):
 
 _KEPT = 2_000
 _known: dict[tuple[bytes, bytes], tuple[_Judged | None]] = {}
-"""Touches of pairs of motions, some 4 KB each: other readings of a report, and other sides, try many pairs again."""
+"""Touches of pairs of motions, some 4 KB each: other readings of a report, and other sides, test many pairs again."""
 
 
-def meet(
+def find_meeting(
     first: Motion,
     second: Motion,
     wanted: tuple[Area, Area] | None,
@@ -78,7 +77,8 @@ def meet(
 ) -> Meeting | None:
     """The best contact of two motions on the wanted sides (any sides where None), or None.
 
-    `spins`: how each is to turn behind it: 1 counter-clockwise, -1 clockwise, 0 as it comes. `glances`: off center.
+    `spins`: stated rotation of each after the contact: 1 counter-clockwise, -1 clockwise, 0 open. `glances`: off
+    center.
     """
     found = _fitting(first, second, wanted)
     if found is None:
@@ -107,7 +107,7 @@ def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count:
 def _fitting(
     first: Motion, second: Motion, wanted: tuple[Area, Area] | None
 ) -> tuple[_Judged, NDArray[np.bool_]] | None:
-    """All touches, and which of them are clear and on the wanted sides; None where none is."""
+    """All touches, and which of them are clear and on the wanted sides; None without one."""
     judged = _judged(first, second)
     if judged is None:
         return None
@@ -121,18 +121,13 @@ def _fitting(
 def _meeting(first: Motion, second: Motion, judged: _Judged, number: int, cost: Floats) -> Meeting:
     """One of the touches as a record."""
     touches, sides, margins, _ = judged
-    named = (_side(sides[0][number]), _side(sides[1][number]))
+    named = (SIDES[sides[0][number]], SIDES[sides[1][number]])
     first_s, second_s = (float(_own_s(k[number])) for k in (touches.first, touches.second))
     return Meeting(float(cost[number]), first, second, first_s, second_s, named, float(margins[number]))
 
 
-def _side(code: int) -> Area:
-    names: tuple[Area, ...] = ("front", "left", "back", "right")
-    return names[int(code)]
-
-
 def _judged(first: Motion, second: Motion) -> _Judged | None:
-    """Where two motions touch, told once for all who ask; None where they do not."""
+    """Touches of two motions, cached; None without one."""
     key = first.digest, second.digest
     if known := _known.get(key):
         return known[0]
@@ -191,7 +186,7 @@ def _about(points: Floats, others: Floats, reach_m: float) -> NDArray[np.bool_]:
 
 
 def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> _Touches:
-    """Where the overlap is DEPTH_M deep, from overlaps told to a grid step."""
+    """Times at which the overlap is DEPTH_M deep, from overlaps known to a grid step."""
     move_i, move_j = float(not first.standing), float(not second.standing)
 
     standing = [m.poses(_own_s(k)) if m.standing else None for m, k in ((first, i), (second, j))]
@@ -209,7 +204,7 @@ def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> 
 def _root(over: Callable[[Floats], Floats], count: int) -> Floats:
     """(count,) zeros of a function that rises from below 0 to above it between -1 and 1, by false position.
 
-    Where one end stays, its value is halved (Illinois algorithm; M. Dowell, P. Jarratt, BIT 11, 1971).
+    The value at an end that stays is halved (Illinois algorithm; M. Dowell, P. Jarratt, BIT 11, 1971).
     """
     here = over(np.zeros(count))
     there = over(np.where(here >= 0.0, -1.0, 1.0))
@@ -240,14 +235,14 @@ def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[I
 
 
 def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
-    """Unclear sides and places that fit ill; small ones decide between shifts only."""
-    ill = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
+    """Cost of unclear sides and unsuitable places; small differences only decide between shifts."""
+    unfit = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
     unclear: Floats = 30.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
-    return ill + unclear
+    return unfit + unclear
 
 
 def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], glances: bool) -> Floats:
-    """The cost of blows that turn a body otherwise than told, by their lever about its center."""
+    """Cost of impacts that turn a body in another sense than stated, by their lever about its center."""
     found = np.zeros(len(levers[0]))
     for lever, spin in zip(levers, spins, strict=True):
         found += abs(spin) * _SPIN_COST * np.clip((_CLEAR_LEVER_M - spin * lever) / (2 * _CLEAR_LEVER_M), 0.0, 1.0)
@@ -257,7 +252,7 @@ def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], gla
 
 
 def _levers(first: Motion, second: Motion, touches: _Touches, sides: tuple[Ints, Ints]) -> tuple[Floats, Floats]:
-    """Levers of the blow about both centers, metres, counter-clockwise positive: friction bounds its direction."""
+    """Levers of the impact about both centers, metres, counter-clockwise positive: friction bounds its direction."""
     i, j = _own_s(touches.first), _own_s(touches.second)
     p, q = first.poses(i), second.poses(j)
     center = overlap_centers(p, first.size, q, second.size)
@@ -281,7 +276,7 @@ def _velocity(motion: Motion, own_s: Floats) -> Floats:
 
 
 def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:
-    """Contacts near the end of their good interval: a little change of timing would spoil them."""
+    """Cost of contacts near the end of their interval of good shifts: a small change of timing would spoil them."""
     rank, bad = np.arange(len(key)), ~good
     before = np.maximum.accumulate(np.where(bad, rank, -1))
     after = np.minimum.accumulate(np.where(bad, rank, len(key))[::-1])[::-1]

@@ -1,7 +1,7 @@
-"""How a driver who sees a conflict coming changes his motion: brakes, accelerates, steers aside.
+"""Evasive changes of a motion: braking, accelerating, steering aside.
 
-A reaction begins at an own time of the motion and is told by its share of the most that a driver does; before it the
-motion is as planned. Knows one actor; not what he avoids. SI units.
+A reaction begins at an own time of the motion; its strength is a share of the most that a driver does. The motion
+before it is unchanged. Knows one actor and not the conflict. SI units.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from sgcad_core.planner.motion import STEP_S, Motion
 MOST_STEER_M = 4.2
 """Sideways at most: a lane and a little."""
 SLIGHT_STEER_M = 1.2
-"""Sideways at most where he brakes as well: within the lane and its edge."""
+"""Sideways at most while braking: within the lane and its edge."""
 _FIRM, _ACCELERATES = 0.6, 0.35
 """Shares of the friction for braking (dry: 5 m/s2) and for accelerating; steering takes what `Pace` plans with."""
 _MOST_ACCELERATION_MPS2 = 3.0
 """More than most cars can do at the speeds of traffic."""
 _EASE = 1.15
-"""Length of the way over which one steers aside, over the shortest for a usual swerve's 6 m/s2."""
+"""Length of the lane change over the shortest for a usual swerve of 6 m/s2."""
 _SWERVE_MPS2 = 6.0
 _OVER_CRUISE = 1.35
-"""Who accelerates goes so much faster than he would have at most."""
+"""Highest speed when accelerating, over the planned one."""
 _LASTS_S = 14.0
 
 
 class Reaction(NamedTuple):
-    """What a driver does from an own time on; shares 0 (nothing) to 1 of the most that he would do."""
+    """The reaction of a driver from an own time on; shares 0 (nothing) to 1 of the most that a driver does."""
 
     from_s: float
     braking: float = 0.0
@@ -47,7 +47,7 @@ class Reaction(NamedTuple):
     """Factor on the usual share of the friction that braking takes."""
 
     def scaled(self, share: float) -> Reaction:
-        """A share of it, from the same moment on."""
+        """A share of this reaction, from the same time on."""
         return self._replace(
             braking=share * self.braking, accelerating=share * self.accelerating, left_m=share * self.left_m
         )
@@ -62,7 +62,7 @@ class Reaction(NamedTuple):
 
 
 def reacted(option: Option, motion: Motion, reaction: Reaction) -> Motion:
-    """A way's motion with a reaction. The motion before it, and its own clock, stay as they are."""
+    """The motion of an option with a reaction; the part before it and the clock are unchanged."""
     if reaction.left_m:
         motion = _steered(option, motion, reaction)
     grip = option.role.grip_mps2
@@ -74,7 +74,7 @@ def reacted(option: Option, motion: Motion, reaction: Reaction) -> Motion:
 
 
 def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
-    """The way with a swerve on top, as long as friction asks; its clock agrees with the motion's where it begins."""
+    """The option with a swerve added, as long as friction asks; its clock agrees with the motion at the beginning."""
     station, ahead = (float(s) for s in motion.stations([reaction.from_s, reaction.from_s + STEP_S]))
     speed = (ahead - station) / STEP_S
     left = abs(reaction.left_m)
@@ -86,9 +86,10 @@ def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
 
 
 def _paced(motion: Motion, reaction: Reaction, gain_mps2: float) -> Motion:
-    """The same way at another pace from the reaction on: never faster in a bend than it would have been, or a third."""
+    """The same line at another pace from the reaction on, in bends never faster than planned (when accelerating: a
+    third)."""
     line = motion.axle or motion.path
-    along = line.lengths()
+    along = line.lengths
     before = motion.time_s < reaction.from_s
     station = float(motion.stations([reaction.from_s])[0])
     at = _integrated(motion, reaction, gain_mps2, float(np.interp(station, line.s_m, along)))
@@ -104,10 +105,10 @@ def _paced(motion: Motion, reaction: Reaction, gain_mps2: float) -> Motion:
 
 
 def _integrated(motion: Motion, reaction: Reaction, gain_mps2: float, start_m: float) -> Floats:
-    """Way along the line of the wheels at each step from the reaction on, metres."""
+    """Distance along the line of the rear axle at each step from the reaction on, metres."""
     own = reaction.from_s + STEP_S * np.arange(round(_LASTS_S / STEP_S) + 1)
     line = motion.axle or motion.path
-    usual_m = np.interp(motion.stations(own), line.s_m, line.lengths())
+    usual_m = np.interp(motion.stations(own), line.s_m, line.lengths)
     usual_mps = np.gradient(usual_m, own)
     most = usual_mps * (_OVER_CRUISE if gain_mps2 > 0 else 1.0)
     speed, at = float(usual_mps[0]), start_m

@@ -1,7 +1,7 @@
 """The choices that an actor has within its maneuver: line, speed, angle of the box, each with a cost.
 
-Costs only order the search: 0 is ordinary driving as stated, 0.1 to 0.3 nobody would notice, 0.3 to 1 an
-evasive or careless driver, above that a loss of control.
+Costs only order the search: 0 is ordinary driving as stated, 0.1 to 0.3 unnoticeable, 0.3 to 1 an evasive or careless
+driver, above that a loss of control.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from sgcad_core.planner.lines.axle_to_box import tightest
 from sgcad_core.planner.lines.turning import corner_lines
 
 SWERVE_MPS2 = 6.0
-"""Lateral acceleration of which the length of a swerve is told; the speed follows from friction all the same."""
+"""Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
 _TOLD_SPEED = 0.25
-"""More for another speed than told where a told spin could be had by it."""
+"""Cost of another speed than stated where it could give the stated rotation."""
 _NOT_EVADING = 0.3
-"""Cost of the own line for one of whom it is told that he steered aside."""
+"""Cost of the own line where steering aside is stated."""
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 0.45
@@ -39,12 +39,12 @@ SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 _THROUGH_BEND = 0.35
-"""Who joins from another road comes around a bend: of his usual speed little more is left there."""
+"""Share of the usual speed when joining from another road, behind the bend."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
 
 
 def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
-    """Changes of line: what the maneuver asks for, else the lane, a little beside it, and swerves.
+    """Changes of line: those of the maneuver, else the lane, lines slightly beside it, and swerves.
 
     Not `fine`: without those that differ by less than a metre.
     """
@@ -73,7 +73,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
 
 
 def _evading(role: Role) -> list[Drift]:
-    """Swerves to the told hand; none where no steering is told, or where the maneuver is a way of its own."""
+    """Swerves to the stated side; none where no steering is stated, or where the maneuver has its own line."""
     if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
         return []
     hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
@@ -88,7 +88,7 @@ def _evading(role: Role) -> list[Drift]:
 
 
 def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
-    """Into the lane on the stated side; where the other one drives along, from beside it into its lane."""
+    """Into the lane on the stated side; where both drive in one direction, from beside the other one into its lane."""
     way = _change_way(role)
     lane = way * role.course.lane_width_m
     target = role.place.aside_m if along_with(role) and abs(role.place.aside_m) < 16 else lane
@@ -105,28 +105,28 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
 
 
 def _joins(role: Role) -> bool:
-    """Whether its way itself leads beside the other one: out of another road, at a junction."""
+    """Whether its course leads beside the other one: out of another road, at a junction."""
     return _from_another_road(role) and any(p.is_junction for p in role.course.passages)
 
 
 def _from_another_road(role: Role) -> bool:
-    """Whether it starts on another road than the one that it meets."""
+    """Whether it starts on another road than the other actor."""
     return role.other_road not in (None, role.actor.road)
 
 
 def _beside_the_road(role: Role, left_m: float) -> float:
-    """The cost of driving so far beside the own lane all the way: none on the road, much off it."""
+    """The cost of a constant offset from the own lane: none on the road, much off it."""
     half = role.size[1] / 2 - 0.3
     return 0.6 if left_m + half > role.course.left_edge_m or half - left_m > role.course.right_edge_m else 0.0
 
 
 def _halfway(drift: Drift) -> Drift:
-    """A change of lane is under way, not over, when the other one beside is met."""
+    """A lane change that is under way, not over, when the actor beside is met."""
     return drift._replace(end_m=drift.end_m + 0.4 * drift.length_m)
 
 
 def _change_way(role: Role) -> float:
-    """1: to the left, -1: to the right; one who merges moves towards the other one."""
+    """1: to the left, -1: to the right; a merge moves towards the other actor."""
     if role.actor.maneuver in ("lane_change_left", "lane_change_right"):
         return 1.0 if role.actor.maneuver == "lane_change_left" else -1.0
     if is_beside(role.side) or is_beside(role.other_side):
@@ -137,7 +137,7 @@ def _change_way(role: Role) -> float:
 
 
 def _maneuver_shift(role: Role) -> float | None:
-    """Where a drifting maneuver leads, metres to the left; None for the others."""
+    """The lateral shift of the maneuver, metres to the left; None without one."""
     course, lane = role.course, role.course.lane_width_m
     return {
         "crossing_centerline": course.opposite_m,
@@ -182,7 +182,7 @@ def _swerves(role: Role) -> list[Drift]:
 
 
 def _from_beside(role: Role) -> list[Drift]:
-    """From the lane beside the other one, on the side that is to be touched, over into its lane."""
+    """From the lane beside the other actor, on the side of the contact, into its lane."""
     sides = {("left", None): -1, ("right", None): 1, (None, "left"): 1, (None, "right"): -1}
     ways = [w for (own, other), w in sides.items() if own == role.side or (other and other == role.other_side)]
     if not along_with(role) or not ways:
@@ -196,6 +196,7 @@ def _from_beside(role: Role) -> list[Drift]:
 
 
 def pacings(role: Role) -> list[Pacing]:
+    """Speeds: the usual one, catching up or falling behind, slower, faster, and from a stop."""
     if role.actor.kind == "pedestrian":
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
     if role.course.stalls and role.actor.maneuver == "backing":
@@ -211,7 +212,7 @@ def pacings(role: Role) -> list[Pacing]:
 
 
 def _following(role: Role) -> list[Pacing]:
-    """Speeds at which the one behind catches up with the one ahead, both driving the same way."""
+    """Speeds at which the rear one of two in one direction catches up."""
     if not along_with(role) or "back" not in (role.side, role.other_side):
         return []
     own, other = usual_speed(role), role.other_mps
@@ -226,7 +227,7 @@ def _following(role: Role) -> list[Pacing]:
 
 
 def aiming(role: Role) -> list[Twist]:
-    """Angles by which the box turns until its wanted side faces the other's approach; none where it does."""
+    """Angles by which the box turns its wanted side to the approaching actor; none where it already faces there."""
     off = mismatch(role)
     if abs(off) < math.radians(30):
         return []
@@ -235,7 +236,7 @@ def aiming(role: Role) -> list[Twist]:
 
 
 def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
-    """The ways to come to an angle: standing so, steering there, and in a skid where the report tells one."""
+    """The ways to reach an angle: standing, by steering, and in a skid where the report states one."""
     if is_standing(role):
         return [Twist(cost, angle_rad, ASKEW)]
     found = [Twist(cost, angle_rad, _STEERS)]
@@ -251,12 +252,13 @@ def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
 
 
 def _unlike(role: Role, angle_rad: float) -> float:
-    """Who goes straight is not seen turned by more than 30 degrees where somebody else could be."""
+    """Cost of a straight maneuver that is visibly turned (by more than 28 degrees), so that the other actor turns
+    instead."""
     return 0.4 if role.actor.maneuver == "straight" and abs(angle_rad) > math.radians(28) else 0.0
 
 
 def skids(role: Role) -> list[Twist]:
-    """Straight on, steering aside a little, and what brings the wanted side about."""
+    """Straight on, slight steering, and the angles that bring the wanted side about."""
     small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
     return [Twist(0.0), *small, *aiming(role)]
 
@@ -268,7 +270,7 @@ def spins(role: Role) -> list[Twist]:
 
 
 def slides(role: Role) -> list[Twist]:
-    """The box at any angle to its way, though the report tells no loss of control: dearer than all driving."""
+    """The box at any angle to its direction without a stated loss of control: dearer than all driving."""
     angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
     off = mismatch(role)
     facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []

@@ -1,4 +1,4 @@
-"""Where two actors are to meet: one station on each of two courses.
+"""The meeting place of two actors: one station on each of two courses.
 
 A first guess only: shifting the clocks moves the contact along the courses.
 """
@@ -23,7 +23,7 @@ _MID_BLOCK: frozenset[Maneuver] = frozenset({
 })  # fmt: skip
 _BEFORE_JUNCTION_M = 22.0
 _ALONG_TAPER = 0.55
-"""Share of a taper that lies ahead where one leaves the lane that it closes."""
+"""Share of a taper that is left at the lane change before the closed lane."""
 _GRID_M = 2.0
 _REACH_M = 25.0
 STOP_LINE_M = 1.5
@@ -45,7 +45,7 @@ class Place(NamedTuple):
 
 
 def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
-    """Where an actor's own part of the crash plausibly happens, whoever the other one is."""
+    """The likely station of an actor in the crash, for any other actor."""
     waits = actor.maneuver in STANDING or actor.maneuver == "slowing"
     taper = next((p for p in course.passages if p.taper_m and p.entry_m > course.start_m), None)
     if taper is not None:
@@ -96,7 +96,7 @@ def _stations(course: Course) -> Floats:
 
 
 def _pull(actor: Actor) -> float:
-    """How strongly an actor insists on its own place, per metre."""
+    """Weight of the preferred station of an actor, per metre."""
     if actor.gore:
         return 1.0
     if actor.maneuver in TURNING:
@@ -113,7 +113,7 @@ def _queue(a: Actor, b: Actor, course_a: Course, course_b: Course) -> bool:
 
 
 def _goes_around(actor: Actor, course: Course) -> bool:
-    """Whether an actor does in a roundabout what others do between junctions."""
+    """Whether an actor performs a mid-block maneuver in a roundabout."""
     return actor.maneuver in _MID_BLOCK and any(p.around for p in course.passages)
 
 

@@ -1,7 +1,7 @@
-"""The ways in which an actor may carry out its maneuver, the most ordinary first.
+"""The options of an actor for its maneuver, the most ordinary first.
 
-An option is a motion with the cost of its oddity: lines within the lane, stated speeds and usual turns cost
-nothing, swerves, other speeds and skids cost more. Knows one actor, its course and its meeting place.
+An option is a motion with a cost (its oddity): lines within the lane, stated speeds and usual turns cost nothing,
+swerves, other speeds and skids cost more. Knows one actor, its course and its meeting place.
 """
 
 from __future__ import annotations
@@ -41,33 +41,32 @@ from sgcad_core.planner.encounter.maneuver_choices import (
     spins,
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
-from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, misfit, outside, waiting_zone
-from sgcad_core.planner.lines.axle_to_box import easiest, offset, offsets, rolled, swung, tightest
-from sgcad_core.planner.lines.line_shift import line_of, profile
-from sgcad_core.planner.lines.path import Path, ramp, tamed
-from sgcad_core.planner.lines.turning import turning_lines
+from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, misfit, waiting_zone
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, offsets, tightest
+from sgcad_core.planner.lines.path import Path, ramp, widened_bends
+from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
 from sgcad_core.records.specs import Area
 
 _SWING_ASIDE_M = 5.0
-"""Who steers aside does so within this much of its line, if need be slowly."""
+"""Lateral room for steering aside; beyond it the speed is reduced."""
 _VERGE_M = 3.0
-"""Beside the road a vehicle may start (a shoulder, a driveway's mouth); further off its start is no lane's."""
+"""Distance from the road at which a vehicle may start (a shoulder, the mouth of a driveway)."""
 _STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
-"""Own times at which the shortest approach may begin: the contact comes a little before or behind the place."""
+"""Own times at which the shortest approach may begin: the contact lies slightly before or behind the place."""
 _PLAIN = 4
 _LEAST_SWING = 1.2
-"""Radius of who steers aside, over the tightest that the vehicle can do."""
+"""Radius when steering aside, over the tightest of the vehicle."""
 _UNBRAKED = 0.3
-"""Cost of a contact before a told braking shows."""
+"""Cost of a contact before the stated braking is visible."""
 _UNDER_WAY_M = 2.5
-"""Who starts from a stop is moving only this far on."""
+"""Distance after a standing start from which the vehicle counts as moving."""
 
 
 @dataclass(frozen=True, eq=False)
 class Option:
-    """One way to drive; its motion is made when it is asked for."""
+    """One option of driving; its motion is computed on demand."""
 
     role: Role
     drift: Drift
@@ -79,18 +78,18 @@ class Option:
 
     @property
     def cost(self) -> float:
-        """The oddity of this way."""
+        """The oddity of this option."""
         return self.drift.cost + self.pacing.cost + self.twist.cost + self.extra_cost
 
     @property
     def oddity(self) -> float:
-        """The cost without that of another lane: lanes are often told otherwise than they were driven."""
+        """The cost without that of another lane, since reports often state lanes wrongly."""
         elsewhere = self.drift.note in (OTHER_LANE, FROM_OTHER_LANE)
         return self.cost - (min(self.drift.cost, OTHER_LANE_COST) if elsewhere else 0.0)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was changed about the stated maneuver, in words."""
+        """The changes of the stated maneuver, in words."""
         said = (self.drift.note, self.pacing.note, self.twist.note)
         return tuple(f"{self.role.actor.id} {words}" for words in said if words)
 
@@ -100,12 +99,12 @@ class Option:
         return standing(self) if is_standing(self.role) else driving(self)
 
     def motion_with(self, other: Option) -> Motion:
-        """The motion in an encounter with another option: an object stands in the other's way."""
+        """The motion in an encounter with another option: an object is placed in its path."""
         return in_the_way(self, other) if self.role.actor.kind == "object" else self.motion
 
 
 def options(role: Role) -> list[Option]:
-    """All ways of an actor, cheapest first; the same ones whenever a role is asked: their motions are made once."""
+    """All options of an actor, cheapest first; cached by role, so that motions are computed once."""
     known: list[Option] | None = role.kept.get("options")
     if known is None:
         known = role.kept["options"] = _sorted(role, _parts(role))
@@ -123,7 +122,7 @@ def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
 
 
 def aimed(role: Role) -> list[Option]:
-    """The ways that turn the wanted side to where the other one comes from; all ways where it faces there."""
+    """The options that turn the wanted side to the approaching actor; all options where it already faces there."""
     angles = [] if in_stall(role) else aiming(role)
     if not angles:
         return options(role)
@@ -133,25 +132,29 @@ def aimed(role: Role) -> list[Option]:
 
 
 def plainly(role: Role) -> list[Option]:
-    """The few most ordinary ways: as stated, a little slower or faster, in the next lane."""
+    """The few most ordinary options: as stated, slightly slower or faster, in the next lane."""
     return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
 
 
 def turned(role: Role) -> list[Option]:
-    """Who turns on any line of the turn and at any usual speed; others plainly."""
+    """All lines and usual speeds of a turn; the plain options of other maneuvers."""
     turns = role.course.turn is not None and role.actor.maneuver in TURNING
-    return _sorted(role, product(turning_lines(role), pacings(role), (Twist(0.0),))) if turns else plainly(role)
+    return (
+        _sorted(role, product([Drift(0.0), *corner_lines(role)], pacings(role), (Twist(0.0),)))
+        if turns
+        else plainly(role)
+    )
 
 
 def forced(role: Role) -> list[Option]:
-    """A few ways that lead through the very meeting place with the wanted side ahead, however odd."""
+    """A few options through the meeting place with the wanted side ahead, however odd."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
         return aimed(role)
     return _sorted(role, product(homing(role), pacings(role)[:2], aiming(role)[-1:] or [Twist(0.0)]))
 
 
 def spun(role: Role) -> list[Option]:
-    """Its line with the box at any angle: what remains where no driving explains the sides."""
+    """Its line with the box at any angle, where no driving explains the sides."""
     if role.actor.kind in ("object", "pedestrian"):
         return options(role)
     lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
@@ -159,7 +162,7 @@ def spun(role: Role) -> list[Option]:
 
 
 def slid(role: Role) -> list[Option]:
-    """Its line with the box sliding at any angle to it, which no driver does: what remains where no steering helps."""
+    """Its line with the box sliding at any angle, where no steering brings the sides together."""
     if role.actor.kind in ("object", "pedestrian") or is_standing(role):
         return spun(role)
     return _sorted(role, product(homing(role)[::2], pacings(role)[:1], slides(role)))
@@ -188,12 +191,13 @@ def driving(option: Option) -> Motion:
 
 
 def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
-    """As `_boxed`. Where no speed bends the line, all ways to drive it share one: it is what a motion costs most."""
+    """As `_boxed`. Options whose line does not depend on the speed share it, since it is the dearest part of a
+    motion."""
     role, base, place = option.role, option.role.course.path, option.role.place.station_m
     of = option.drift, option.dodge, place, role.size, role.actor.kind, role.actor.maneuver
     if (bends := bool(option.twist.angle_rad) and not option.twist.skids) or of not in base.derived:
-        line = _steered(line_of(base, option.drift, place), option, pace)
-        made = _boxed(role, line if option.dodge is None else line.moved(profile(line.s_m, option.dodge)))
+        line = _steered(option.drift.on(base, place), option, pace)
+        made = _boxed(role, line if option.dodge is None else line.moved(option.dodge.profile(line.s_m)))
         if bends:
             return made
         base.derived[of] = made
@@ -201,31 +205,32 @@ def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
 
 
 def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
-    """The line of the axle and the path of the center, with the center's stations, and whether it can be driven."""
+    """The line of the rear axle, the path of the center, with the stations of the center, and whether it can be
+    driven."""
     if role.actor.kind == "pedestrian":
         return line, line, True
     length, backing = role.size[0], role.actor.maneuver == "backing"
-    line = tamed(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
-    path = rolled(line, length, backing=backing)
-    drivable = bool(np.abs(line.curvature()).max() < 1.1 * tightest(length))
+    line = widened_bends(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
+    path = box_path(line, length, backing=backing)
+    drivable = bool(np.abs(line.curvature).max() < 1.1 * tightest(length))
     return replace(line, s_m=path.s_m), path, drivable
 
 
 def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
-    """Whether a line is far off the road at places from which the shortest approach may begin."""
+    """Whether a line is far off the road where the shortest approach may begin."""
     left = offsets(role.course.path, line, stations_m)[1]
     return bool(left.max() > role.course.left_edge_m + _VERGE_M or -left.min() > role.course.right_edge_m + _VERGE_M)
 
 
 def _steered(line: Path, option: Option, pace: Pace) -> Path:
-    """The line turned before the meeting place, as far as the box is not meant to skid."""
+    """The line turned before the meeting place, unless the box skids."""
     twist, role, place = option.twist, option.role, option.role.place
     if not twist.angle_rad or twist.skids:
         return line
     least = _LEAST_SWING / tightest(role.size[0])
     near = _SWING_ASIDE_M / max(1 - math.cos(twist.angle_rad), 1e-6)
     radius = twist.radius_m or max(min(pace.cruise_mps**2 / pace.lateral_mps2, near), least)
-    turned = swung(line, twist.angle_rad, place.station_m, radius)
+    turned = bent_before(line, twist.angle_rad, place.station_m, radius)
     if not twist.through:
         return turned
     ahead, left = offset(line, turned, place.station_m)
@@ -233,7 +238,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
     length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
     end = place.station_m - ahead + place.ahead_m
     begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
-    return swung(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
+    return bent_before(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)
 
 
 def standing(option: Option) -> Motion:
@@ -241,14 +246,13 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
+    penalty = cost_outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
 
 
 def in_the_way(option: Option, other: Option) -> Motion:
     """Places for an object along the line that another actor takes, `left_m` beside it."""
-    base = other.motion.path
-    return _object_on(option, base, *stand(base, other.role.place.station_m))
+    return _object_on(option, other.motion.path, *stand(other.motion.path, other.role.place.station_m))
 
 
 def in_path_of(option: Option, other: Motion, side: Area) -> Motion:

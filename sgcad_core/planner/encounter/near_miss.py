@@ -1,8 +1,8 @@
-"""How two on a conflict course are parted: the told evasion, as late and as strong as leaves the declared clearance.
+"""Near crashes: the stated evasion, as late and as strong as leaves the declared clearance.
 
-The encounter that would be a contact is given; its motions are changed from some time before it on, all evasions by one
-share of the most that a driver does, and the share is solved (bisection) so that the least distance of the boxes is the
-declared one. Where nobody evades, one of both comes earlier or later instead. Knows the pair, nobody else.
+The encounter that would be a contact is given; its motions are changed from some time before it, all evasions by one
+share of the most that a driver does. The share is solved by bisection so that the least distance of the boxes is the
+declared one. Without an evasion one of the two comes earlier or later instead. Knows only this pair.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, clock
 from sgcad_core.records.specs import Evasion, EvasiveManeuver, NearCrash
 
 ONSETS_S = (0.8, 1.1, 1.4, 1.7, 2.0, 2.4, 2.8, 3.3, 3.9, 4.6, 5.4)
-"""Times before the contact at which an evasion may begin; the latest that is enough is taken."""
+"""Times before the contact at which an evasion may begin; the latest sufficient one is taken."""
 _HARD = 1.4
 """Factor on usual braking where that is not enough: emergency braking, 7 m/s2 on dry roads."""
 _GENTLE = 0.5
-"""Share of usual braking with which one slows for traffic: 2.5 m/s2 on dry roads."""
+"""Share of usual braking when slowing for traffic: 2.5 m/s2 on dry roads."""
 _HALVINGS = 22
 _EXACT_M = 0.02
 _SHIFT_S, _MOST_SHIFT_S = 0.1, 4.0
 _ALONG_RAD = 0.6
 _KEEPS = 0.85
-"""Who brakes behind a moving one goes on a little slower than that one."""
+"""Speed after braking behind a moving vehicle, over that of the vehicle."""
 _AFTER_S = 5.0
 _BRAKING_TOO: dict[EvasiveManeuver, EvasiveManeuver] = {
     "steering": "braking_and_steering", "steering_left": "braking_and_steering_left",
@@ -47,15 +47,15 @@ _WORDS: dict[EvasiveManeuver, str] = {
 }  # fmt: skip
 
 
-class Parted(NamedTuple):
-    """The encounter with the motions that part the two (None where nothing does), and what was done, in words."""
+class NearMiss(NamedTuple):
+    """The encounter with the motions that avoid it (None where nothing does), and notes on what was done."""
 
     encounter: Encounter | None
     notes: tuple[str, ...]
 
 
 class _Side(NamedTuple):
-    """One of both: its way, the motion of the conflict, and its own time at the contact that is avoided."""
+    """One of the two: its option, the motion in the conflict, and its own time at the avoided contact."""
 
     option: Option
     motion: Motion
@@ -70,7 +70,7 @@ class _Side(NamedTuple):
         return not self.motion.standing and self.option.role.actor.kind != "object"
 
     def velocity(self, after_s: float = 0.0) -> tuple[float, float]:
-        """So long after the contact, m/s."""
+        """Velocity at a time after the contact, m/s."""
         if self.motion.standing:
             return 0.0, 0.0
         at_s = self.own_s + after_s
@@ -78,10 +78,10 @@ class _Side(NamedTuple):
         return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
 
 
-def parted(found: Encounter | None, near: NearCrash) -> Parted:
-    """An encounter as a near crash with the declared clearance, if there are an encounter and a way to evade it."""
+def as_near_miss(found: Encounter | None, near: NearCrash) -> NearMiss:
+    """An encounter as a near crash with the declared clearance, if there is an encounter and a way to avoid it."""
     if found is None:
-        return Parted(None, ())
+        return NearMiss(None, ())
     meeting = found.meeting
     found = found._replace(meeting=meeting._replace(
         first=_stopping(found.first, meeting.first, meeting.first_s),
@@ -91,12 +91,12 @@ def parted(found: Encounter | None, near: NearCrash) -> Parted:
         _Side(found.first, meeting.first, meeting.first_s),
         _Side(found.second, meeting.second, meeting.second_s),
     )
-    none = Parted(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
+    none = NearMiss(None, (f"no evasion keeps {near.conflict.striker} and {near.conflict.struck} apart",))
     return _Parting(found, sides, near.closest_m).best(near) or none
 
 
 def _stopping(option: Option, motion: Motion, own_s: float) -> Motion:
-    """Who slows goes on to slow behind the conflict until it stands, as gently as it is usual."""
+    """A `slowing` actor brakes on to a stop after the conflict, gently."""
     if option.role.actor.maneuver != "slowing" or motion.standing:
         return motion
     return reacted(option, motion, Reaction(own_s - STEP_S, braking=_GENTLE))
@@ -110,8 +110,8 @@ class _Parting:
     sides: tuple[_Side, _Side]
     closest_m: float
 
-    def best(self, near: NearCrash) -> Parted | None:
-        """As told; else with the other means that there are, and a note that says so."""
+    def best(self, near: NearCrash) -> NearMiss | None:
+        """As stated; else by other means, with a note."""
         told = [e for e in near.evasions if e.maneuver != "none"]
         follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
         as_told = self._evaded(told) if told else None if follows else self._shifted()
@@ -124,7 +124,7 @@ class _Parting:
         return self._shifted() if told or follows else None
 
     def _instead(self, near: NearCrash) -> Iterator[Evasion]:
-        """Other evasions: of who was told to evade, then of who would have struck, then of the other one."""
+        """Other evasions: of the actor with a stated one, then of the striker, then of the struck one."""
         maneuvers: tuple[EvasiveManeuver, ...] = ("braking", "braking_and_steering", "steering")
         for told in near.evasions:
             if told.maneuver.startswith("steering"):
@@ -134,7 +134,7 @@ class _Parting:
             yield Evasion(actor=name, maneuver=maneuver)
 
     # -------------------------------------------------------------- evasions
-    def _evaded(self, evasions: list[Evasion]) -> Parted | None:
+    def _evaded(self, evasions: list[Evasion]) -> NearMiss | None:
         """The latest start and the least share that leave the clearance; usual braking before emergency braking."""
         acting = [(side, e.maneuver) for e in evasions for side in self.sides if side.id == e.actor and side.may_evade]
         if not acting:
@@ -147,7 +147,8 @@ class _Parting:
         return None
 
     def _most(self, side: _Side, maneuver: EvasiveManeuver, onset_s: float, left: float) -> Reaction:
-        """The most that one does in a maneuver from so long before the contact on; `left`: to where it is open."""
+        """The strongest reaction of a maneuver that begins `onset_s` before the contact; `left`: the side where it is
+        open."""
         if maneuver.endswith(("left", "right")):
             left = 1.0 if maneuver.endswith("left") else -1.0
         brakes, steers = maneuver.startswith("braking"), "steering" in maneuver
@@ -157,7 +158,7 @@ class _Parting:
         return Reaction(side.own_s - onset_s, float(brakes), speeds_up, aside, down_to)
 
     def _down_to(self, side: _Side) -> float:
-        """The speed at which one who follows need brake no more; 0 where the other one crosses or stands."""
+        """The speed at which a follower need not brake further; 0 where the other one crosses or stands."""
         other = self.sides[1] if side is self.sides[0] else self.sides[0]
         (ax, ay), (bx, by) = side.velocity(), other.velocity()
         if abs(math.remainder(math.atan2(ay, ax) - math.atan2(by, bx), 2 * math.pi)) > _ALONG_RAD:
@@ -182,16 +183,13 @@ class _Parting:
         return self._least(motions, shift_s, LEAD_S[0]) > self.closest_m + _EXACT_M
 
     def _motions(self, most: dict[str, Reaction], share: float) -> tuple[Motion, Motion]:
-        first, second = (self._motion(side, most.get(side.id), share) for side in self.sides)
+        first, second = (
+            reacted(s.option, s.motion, most[s.id].scaled(share)) if s.id in most else s.motion for s in self.sides
+        )
         return first, second
 
-    def _motion(self, side: _Side, most: Reaction | None, share: float) -> Motion:
-        if most is None:
-            return side.motion
-        return reacted(side.option, side.motion, most.scaled(share))
-
     def _least(self, motions: tuple[Motion, Motion], shift_s: float = 0.0, lead_s: float = LEAD_S[1]) -> float:
-        """The least distance of the boxes in a scenario with that lead, metres; the first comes `shift_s` later."""
+        """The least distance of the boxes in a scenario with that lead, metres; the first is `shift_s` later."""
         times = clock(-round(lead_s / STEP_S), round(_AFTER_S / STEP_S) + 1)
         first, second = (
             np.repeat(m.poses([s.own_s]), len(times), axis=0) if m.standing else m.poses(s.own_s + times - by)
@@ -201,19 +199,19 @@ class _Parting:
 
     def _told(
         self, acting: list[tuple[_Side, EvasiveManeuver]], most: dict[str, Reaction], share: float, onset_s: float
-    ) -> Parted:
+    ) -> NearMiss:
         motions = self._motions(most, share)
         notes = tuple(_note(side, maneuver, most[side.id], share, onset_s) for side, maneuver in acting)
-        return Parted(self._replaced(motions), notes)
+        return NearMiss(self._replaced(motions), notes)
 
     def _replaced(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> Encounter:
         meeting = self.found.meeting
         return self.found._replace(meeting=meeting._replace(
             first=motions[0], second=motions[1], first_s=meeting.first_s - shift_s))  # fmt: skip
 
-    # -------------------------------------------------------------- nobody evades
-    def _shifted(self) -> Parted | None:
-        """One of both a little earlier or later, where that alone leaves the clearance."""
+    # -------------------------------------------------------------- without an evasion
+    def _shifted(self) -> NearMiss | None:
+        """One of the two slightly earlier or later, where that alone leaves the clearance."""
         motions = self.sides[0].motion, self.sides[1].motion
         if motions[0].standing or motions[1].standing:
             return None
@@ -223,7 +221,7 @@ class _Parting:
         by = min(found, key=abs)
         late = self.sides[0].id if by > 0 else self.sides[1].id
         words = f"nobody evades: {late} comes {abs(by):.1f} s too late to touch"
-        return Parted(self._replaced(motions, by), (words,))
+        return NearMiss(self._replaced(motions, by), (words,))
 
     def _shift(self, motions: tuple[Motion, Motion], sign: float) -> float | None:
         steps = np.arange(1, round(_MOST_SHIFT_S / _SHIFT_S) + 1) * _SHIFT_S
@@ -244,7 +242,7 @@ def _least_enough(enough: Callable[[float], bool], most: float, halvings: int) -
 
 
 def _note(side: _Side, maneuver: EvasiveManeuver, most: Reaction, share: float, onset_s: float) -> str:
-    """What one does, how strongly and when."""
+    """The evasion of one actor, its strength and its beginning."""
     grip = side.option.role.grip_mps2
     done = most.scaled(share)
     how = [f"{a:.1f} m/s2" for a in (done.braking_mps2(grip), done.accelerating_mps2(grip)) if a > 0.05]

@@ -1,7 +1,7 @@
-"""The search for the encounter that realises a declared contact, over two actors' options.
+"""The search for the encounter of a declared contact, over the options of two actors.
 
-Cheapest combinations first, until no untried one can beat the best found. Knows options and encounters, no
-other actors and no world clock.
+Cheapest combinations first, until no remaining one can beat the best. Knows options and encounters, no other actors and
+no world clock.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from heapq import nsmallest
 from typing import NamedTuple
 
-from sgcad_core.planner.encounter.encounter_search import Meeting, meet
+from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.records.specs import Area, Contact
 
 _GOOD = 1.95
-"""What an encounter may cost in all before other kinds of driving are tried: less than a maneuver not shown."""
+"""Total cost below which no further stages are tried: less than a maneuver that is not visible."""
 _CONTENT = 0.35
-"""A contact whose own cost (place, clarity) is below this is taken for what it is worth."""
+"""A contact is accepted at once where its own cost (place, clarity) is below this."""
 
 
 class Encounter(NamedTuple):
@@ -35,7 +35,7 @@ class Encounter(NamedTuple):
 
 Ways = tuple[Sequence[Option], Sequence[Option]]
 Known = dict[tuple[Option, Option], Meeting | None]
-"""How combinations meet that were tried: later stages have many of the earlier ones again."""
+"""Meetings of the combinations tried so far: later stages contain many of them again."""
 
 
 def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None) -> Encounter | None:
@@ -55,7 +55,7 @@ def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None)
 def _best(
     pairs: Iterable[tuple[Option, Option]], wanted: tuple[Area, Area] | None, best: Encounter | None, known: Known
 ) -> Encounter | None:
-    """The better of the encounter known so far and those among some combinations."""
+    """The better of the encounter so far and those among some combinations."""
     for a, b in pairs:
         if best is not None and a.cost + b.cost >= best.cost:
             continue
@@ -73,18 +73,18 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
     one, two = a.motion_with(b), b.motion_with(a)
     if not one.drivable or not two.drivable:
         return None
-    return meet(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
+    return find_meeting(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
 
 
 def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:
-    """Combinations in the order of the product of their ranks: far down either list with the other's first."""
+    """Combinations in the order of the product of their ranks: far entries of one list with the first of the other."""
     ranks = ((i, j) for i in range(min(len(first), most)) for j in range(min(len(second), most)))
     for i, j in nsmallest(most, ranks, key=lambda pair: ((pair[0] + 1) * (pair[1] + 1), pair)):
         yield first[i], second[j]
 
 
 def cannot(contact: Contact, found: Encounter | None) -> str:
-    """That a pair cannot touch as declared, and what would come of it as both drive."""
+    """The note that a pair cannot touch as declared, and on which sides it meets in ordinary driving."""
     said = f"{contact.striker} and {contact.struck} cannot touch as declared in any driving"
     if found is None:
         return f"{said}: their ways never meet"

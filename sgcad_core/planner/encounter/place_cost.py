@@ -1,4 +1,4 @@
-"""How ill a place on a path fits an actor's maneuver: what the search for an encounter pays for it.
+"""The cost of a place on a path for an encounter, by the maneuver of an actor.
 
 Knows one actor, its path and its drift; no time and no other actor.
 """
@@ -12,31 +12,30 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
-from sgcad_core.planner.lines.line_shift import profile
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
 _DRIFTING = ACROSS_LANES | {"crossing_centerline", "departing_road_left", "departing_road_right"}
 _NOT_SHOWN = 2.0
-"""What a turn costs that has hardly begun, and a straight way that has turned."""
+"""Cost of a turn that has hardly begun, and of a straight maneuver that has turned."""
 _UNMOVED, _MOVED_SHARE = 1.2, 0.7
-"""Cost of a change of lane that has not begun; none from so much of a body's width to the side on, where the bodies
-still overlap by a third."""
+"""Cost of a lane change that has not begun; none from this share of a body width to the side on, where the bodies still
+overlap by a third."""
 OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
-"""Cost of each metre between the encounter and the gore that one of both is in, and how far it is then across it."""
+"""Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
-"""So long before a turn begins the box still points along the road: it starts to turn before the junction."""
+"""Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
-"""Cost of a told evasion of which less is seen before they touch."""
+"""Cost of a stated evasion of which less is visible before the contact."""
 
 
 def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
-    """(n,) how ill an encounter at each point of a path shows the maneuver and fits the meeting place."""
+    """(n,) the cost of an encounter at each point of a path, by the visible maneuver and the meeting place."""
     place = role.place.station_m
-    penalty = outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
+    penalty = cost_outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
     if role.actor.gore and role.course.passages:
         crossed = role.course.passages[0]
-        penalty = penalty + outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
+        penalty = penalty + cost_outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
     turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
     maneuver = role.actor.maneuver
     if maneuver in TURNING:
@@ -49,19 +48,19 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     if drift.evades:
-        penalty = penalty + _UNSTEERED * (np.abs(profile(path.s_m, drift) - drift.before_m) < _STEERED_M)
+        penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)
     return penalty
 
 
 def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
-    """(n,) how much of a change of lane that is seen as one is still to come: 1 all of it, 0 none."""
+    """(n,) the share of a visible lane change that is still to come: 1 all of it, 0 none."""
     wanted = min(_MOVED_SHARE * (role.size[1] + role.other_width_m) / 2, abs(drift.left_m))
-    moved = np.abs(profile(path.s_m, drift) - drift.before_m)
+    moved = np.abs(drift.profile(path.s_m) - drift.before_m)
     left: Floats = np.clip(1.0 - moved / wanted, 0.0, 1.0)
     return left
 
 
-def outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
+def cost_outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
     """(n,) a cost per metre outside a span of stations."""
     return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
 

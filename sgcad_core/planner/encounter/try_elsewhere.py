@@ -1,7 +1,7 @@
-"""The same encounter a little otherwise, where what follows from it is not what the report tells.
+"""Variations of an encounter, where its consequences are not those that the report states.
 
-Free are, within what the report leaves open, the place at which the two touch on the sides that are told, and speeds
-that nobody tells. Knows encounters and what a cost of the course is; no scene's inside.
+Free are the place of the contact along the stated sides and speeds that are not stated. Knows encounters and the cost
+of a course; not the inside of scenes.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
 
 
-class Unfolded(NamedTuple):
-    """All that follows from an encounter, with notes, the oddity of the approach, and how much told is missed."""
+class WholeCourse(NamedTuple):
+    """All consequences of an encounter, with notes, the oddity of the approach, and the cost of missed statements."""
 
     scene: Scene
     notes: tuple[str, ...]
@@ -27,24 +27,24 @@ class Unfolded(NamedTuple):
     missed: float
 
 
-Unfold = Callable[[Encounter | None, Sequence[Impact]], Unfolded]
-"""Of an encounter, with the frictions and restitutions of the blow that are tried."""
+Unfold = Callable[[Encounter | None, Sequence[Impact]], WholeCourse]
+"""From an encounter and the frictions and restitutions to try."""
 
 _TOLD_PART = 1.0
-"""What a missed part of the told course costs at least."""
+"""Least cost of a missed part of the stated course."""
 _SPEEDS = ((1.0, 1.0), (1.3, 0.75), (0.75, 1.3), (1.2, 1.2), (0.8, 0.8))
-"""Factors on speeds that nobody tells. Two that are equally fast come to rest where they met, head on."""
+"""Factors on speeds that are not stated. Two equally fast vehicles would come to rest where they met, head on."""
 _PLACES = 5
-"""Along the told sides, at each of the speeds."""
+"""Places along the stated sides, at each of the speeds."""
 _MOST, _MOST_AGAIN = 5, 10
-"""Of such encounters are tried: each costs about as much as the first. More where the two are to meet a second time:
-whether a tail swings into the other hangs on where the blow falls."""
+"""Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
+the other only for some places of the impact."""
 _BETTER = 0.25
-"""What another encounter must gain."""
+"""Gain that another encounter must bring."""
 
 
-def least_missed(found: Encounter | None, unfold: Unfold) -> Unfolded:
-    """What follows from an encounter, or from one like it that leads nearer to what is told."""
+def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
+    """The consequences of an encounter, or of a similar one that is nearer to the stated course."""
     best = unfold(found, IMPACTS)
     if found is None:
         return best
@@ -59,8 +59,8 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> Unfolded:
 
 
 def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
-    """Elsewhere along the told sides, at the given speeds and at others, the speeds in turn; for two that are to meet
-    `again` at the given ones first."""
+    """Other places along the stated sides, at the given speeds and at others in turn; for a second contact (`again`) at
+    the given ones first."""
     at_speeds = [_along(found, speeds) for speeds in _SPEEDS]
     if again:
         yield from at_speeds.pop(0)
@@ -69,7 +69,7 @@ def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:
-    """All along the told sides, at speeds that nobody tells."""
+    """Places all along the stated sides, at other speeds."""
     first, second = (_paced(o, k) for o, k in zip((found.first, found.second), factors, strict=True))
     if not (first and second):
         return
@@ -80,7 +80,7 @@ def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter
 
 
 def _paced(option: Option, factor: float) -> Option | None:
-    """An option at another speed; None where its speed is told, or it has none."""
+    """An option at another speed; None where its speed is stated or it stands."""
     if factor == 1.0:
         return option
     told = option.role.actor.speed_mph is not None or option.motion.standing

@@ -1,4 +1,4 @@
-"""The line that an actor follows over its route, and what a driver would see from it.
+"""The line of an actor along its route, with the landmarks on it.
 
 Chooses lanes, joins them through the junctions and measures the room to either side. Knows no time and no
 other actor.
@@ -15,7 +15,7 @@ import numpy as np
 
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.distances import distance_to
-from sgcad_core.geometry.plane import Floats, arc_lengths, resample
+from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, resample
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.planner.lines.lane_chain import from_right, lane_chain, merged
 from sgcad_core.planner.lines.path import Path, bezier, draw, end_heading
@@ -30,7 +30,7 @@ _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
 _SMOOTH_MPS = 26.0
 _OVER_M = 1.0
-"""A way that comes nearer to a crosswalk's center line leads over it."""
+"""A line that comes nearer to the center line of a crosswalk crosses it."""
 
 
 class Passage(NamedTuple):
@@ -53,12 +53,12 @@ class Course:
 
     path: Path
     start_m: float
-    """Where the actor's own road begins."""
+    """Station at which the road of the actor begins."""
     end_m: float
-    """Where the last road of the route ends."""
+    """Station at which the last road of the route ends."""
     passages: tuple[Passage, ...]
     turn: Passage | None
-    """Where it turns off, if it does."""
+    """The junction of its turn; None without one."""
     lane_width_m: float
     opposite_m: float
     """To the center of the nearest lane of the other direction (left of the own lane)."""
@@ -69,25 +69,25 @@ class Course:
     """Road ids with the stations between which they are driven."""
     notes: tuple[str, ...] = ()
     crosswalks: tuple[float, ...] = ()
-    """Stations at which crosswalks lead over the way."""
+    """Stations of crosswalks."""
     beside_m: Mapping[str, float] = field(default_factory=dict)
-    """To the middle of what lies beside the road (biking, parking, shoulder, sidewalk), right of the own lane."""
+    """To the middle of what lies beside the lanes (biking, parking, shoulder, sidewalk), right of the own lane."""
     stalls: bool = False
-    """Whether one parks square to the way: an aisle of a parking lot."""
+    """Whether vehicles park square to the line: an aisle of a parking lot."""
     astray: bool = False
-    """Whether the way that was asked for does not exist: another was taken, or one off the road."""
+    """Whether the requested route does not exist: another one was taken, or one off the road."""
 
     @property
     def first_m(self) -> float:
-        """Where the first road of the route begins; before it no road supports it (a walker's has none)."""
+        """Station at which the first road of the route begins; a pedestrian has none."""
         return min((a for _, a, _ in self.roads), default=float(self.path.s_m[0]))
 
     def on_road(self, road: str) -> tuple[float, float] | None:
-        """Stations between which a road is driven."""
+        """Stations between which a road is driven; None for other roads."""
         return next(((a, b) for name, a, b in self.roads if name == road), None)
 
     def reversed(self) -> Course:
-        """The course of one who backs along his own lane: against its direction, from its end."""
+        """The course of backing along the same lane: against its direction, from its end."""
         passages = tuple(Passage(p.node, -p.exit_m, -p.entry_m, p.is_junction) for p in reversed(self.passages))
         roads = tuple((road, -b, -a) for road, a, b in reversed(self.roads))
         return replace(
@@ -111,7 +111,7 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
     route = find_route(graph, actor)
     notes = list(route.notes)
     lanes, links = lane_chain(graph, route, actor, notes)
-    pieces = _pieces(route, *merged(graph, route, lanes, links, actor))
+    pieces = _pieces(*merged(graph, route, lanes, links, actor))
     if route.made_up_turn_rad:
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
@@ -122,18 +122,18 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
 
 
 # ------------------------------------------------------------------ line
-def _pieces(route: Route, lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
+def _pieces(lanes: list[Lane], links: list[Connection | None]) -> list[_Piece]:
     pieces = []
     for i, lane in enumerate(lanes):
         pieces.append(_Piece(lane.shape, i, False))
         if i < len(links):
             link = links[i]
-            across = link.via_shape if link is not None else _bridge(lane.shape, lanes[i + 1].shape)
+            across = link.via_shape if link is not None else _made_up_link(lane.shape, lanes[i + 1].shape)
             pieces.append(_Piece(across, i, True))
     return pieces
 
 
-def _bridge(first: Floats, second: Floats) -> Floats:
+def _made_up_link(first: Floats, second: Floats) -> Floats:
     """A made-up way from the end of one lane to the start of the next."""
     return bezier(first[-1], end_heading(first, at_end=True), second[0], end_heading(second, at_end=False))
 
@@ -155,7 +155,7 @@ def _measured(
     """`more`: notes, and the speed for which the line is smooth."""
     notes, speed_mps = more
     stations = np.concatenate(([0.0], np.cumsum([arc_lengths(p.points)[-1] for p in pieces])))
-    path = draw(_joined([p.points for p in pieces]), speed_mps=speed_mps)
+    path = draw(distinct(np.vstack([p.points for p in pieces])), speed_mps=speed_mps)
     passages, turn, roads = [], None, []
     for piece, a, b in zip(pieces, stations, stations[1:], strict=False):
         way = route.ways[min(piece.way, len(route.ways) - 1)]
@@ -201,13 +201,6 @@ def _beside(graph: LaneGraph, way: Way, right_m: float) -> dict[str, float]:
             found[lane.type] = right_m + lane.width_m / 2
             right_m += lane.width_m
     return found
-
-
-def _joined(parts: list[Floats]) -> Floats:
-    points = np.vstack(parts)
-    keep = np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-3)
-    kept: Floats = points[keep]
-    return kept
 
 
 def _degree(graph: LaneGraph, node: str) -> int:

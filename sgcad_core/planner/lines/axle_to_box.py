@@ -16,46 +16,46 @@ from sgcad_core.metrics.drivability import REAR_AXLE
 from sgcad_core.planner.lines.path import Path
 
 _SLIP_RAD = math.radians(9.3)
-"""Slip that is left to the center of the box, and at most to the rear axle: under the 10 degrees that count."""
+"""Slip allowed at the center of the box, and at most at the rear axle: under the 10 degrees that count as slip."""
 _TIGHTEST_M = 5.0
 """Radius of the rear axle's line in the tightest turn of a short vehicle."""
 _EASY_M = 9.0
-"""A wider turn is not sought."""
+"""Radius beyond which turns are not widened."""
 _RISE = 0.25
 """Share of a bend over which it grows, and over which it ends."""
 
 
 def tightest(length_m: float) -> float:
-    """The tightest bend (1/m) of the rear axle's line of a box: long boxes need room.
+    """The tightest bend (1/m) of the rear axle's line: long boxes need room.
 
-    A rigid box stands for vehicles that bend in the middle or have several rear axles: up to `_SLIP_RAD` at its rear
-    axle is taken for those.
+    A rigid box represents vehicles that bend in the middle or have several rear axles: slip up to `_SLIP_RAD` at its
+    rear axle is allowed for those.
     """
     return min(1 / _TIGHTEST_M, 2 * math.tan(_SLIP_RAD) / (REAR_AXLE * length_m))
 
 
 def easiest(length_m: float) -> float:
-    """The bend (1/m) in which nothing slips and the center of the box does not seem to either; no wider than needed."""
+    """The tightest bend (1/m) without visible slip at rear axle and center; no wider than needed."""
     return min(max(math.tan(_SLIP_RAD) / (REAR_AXLE * length_m), 1 / _EASY_M), tightest(length_m))
 
 
-def rolled(line: Path, length_m: float, *, backing: bool = False) -> Path:
+def box_path(line: Path, length_m: float, *, backing: bool = False) -> Path:
     """The path of the box's center where its rear axle follows a line; stations are those of the center.
 
     On a bend that is too tight for the box the point that does not slip lies between center and rear axle.
     """
-    bend = float(np.abs(line.curvature()).max())
+    bend = float(np.abs(line.curvature).max())
     behind = min(REAR_AXLE * length_m, math.tan(_SLIP_RAD) / max(bend, 1e-6))
     way = -1.0 if backing else 1.0
-    angle = line.tangents()
+    angle = line.tangents
     ahead = np.column_stack((np.cos(angle), np.sin(angle)))
     center = line.points + way * behind * ahead
     return Path(center, line.s_m + way * behind, angle + (math.pi if backing else 0.0))
 
 
-def swung(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path:
-    """The line steered to another direction: it bends by an angle before a place and goes on so behind it."""
-    at = line.lengths()
+def bent_before(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path:
+    """The line bent by an angle before a place, and straight on from there in the new direction."""
+    at = line.lengths
     long = abs(angle_rad) * radius_m / (1 - _RISE)
     end = float(np.interp(place_m, line.s_m, at)) - 1.5
     x = np.clip((at - end + long) / max(long, 1e-6), 0.0, 1.0)
@@ -69,7 +69,7 @@ def swung(line: Path, angle_rad: float, place_m: float, radius_m: float) -> Path
 
 
 def offset(line: Path, other: Path, place_m: float) -> tuple[float, float]:
-    """How far ahead and to the left of a line another one is at the same station, metres."""
+    """Offset of another line ahead and to the left at the same station, metres."""
     ahead, left = offsets(line, other, np.array([place_m]))
     return float(ahead[0]), float(left[0])
 

@@ -1,4 +1,4 @@
-"""Courses through the gore of a ramp: of who or what stands in it, and of who crosses it late.
+"""Courses through the gore of a ramp: for standing actors and objects, and for vehicles that cross it late.
 
 Knows the lane graph and the courses of ordinary driving; no time, no other actor.
 """
@@ -20,12 +20,12 @@ from sgcad_core.roads.lane_graph import LaneGraph, road_of
 
 NO_GORE = "the road has no gore that it could be in"
 _BEFORE_M, _CROSSED_M = 3.0, 26.0
-"""From the node along the way that one leaves, and how long it takes to cross over to the other."""
+"""From the node along the road that is left, and the length of the crossing to the other one."""
 _LED_M = 60.0
 
 
 def through_gore(graph: LaneGraph, actor: Actor, course: Course, find: Callable[[Actor], Course]) -> Course:
-    """The course of an actor that is in a gore; as it was, with a note, where its road has none.
+    """The course of an actor in a gore; unchanged with a note where its road has none.
 
     `find`: the course of ordinary driving of an actor.
     """
@@ -48,7 +48,7 @@ def through_gore(graph: LaneGraph, actor: Actor, course: Course, find: Callable[
 
 
 def into_gores(behavior: BehaviorSpec) -> BehaviorSpec:
-    """The behavior in which who strikes a thing that stands in a gore drives into the gore."""
+    """The behavior with the striker of an object in a gore driving into the gore."""
     things = {a.id for a in behavior.actors if a.gore and a.kind == "object"}
     by = {c.striker for c in behavior.contacts[:1] if c.struck in things}
     if not by:
@@ -66,7 +66,7 @@ def middle_of(gore: Gore) -> Floats:
 
 
 def _standing(gore: Gore, course: Course) -> Course:
-    """Along the middle of the gore, in which its own part lies."""
+    """Along the middle of the gore, which is its own part of the course."""
     start, end = middle_of(gore)
     ahead = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
     path = draw(np.array([start - _LED_M * ahead, start, end, end + _LED_M * ahead]))

@@ -1,4 +1,4 @@
-"""A lane for every way of a route, and the connections between them; who is in a lane that is closed ahead leaves it.
+"""The lane of every road of a route and the connections between them; lanes that are closed ahead are left.
 
 Knows the lane graph and the route; no time, no other actor.
 """
@@ -64,13 +64,15 @@ def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple
 
 
 def from_right(way: Way, lane: Lane) -> int:
+    """Number of lanes to the right of a lane."""
     return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), 0)
 
 
 def merged(
     graph: LaneGraph, route: Route, lanes: list[Lane], links: list[Connection | None], actor: Actor
 ) -> tuple[list[Lane], list[Connection | None]]:
-    """The chain of one who leaves a lane that is closed ahead along the taper; who changes lanes does so himself."""
+    """The chain with a merge along the taper where its lane is closed ahead; maneuvers that change lanes are left
+    alone."""
     if actor.maneuver in _CHANGES:
         return lanes, links
     for i, way in enumerate(route.ways[:-1]):

@@ -1,4 +1,4 @@
-"""A way over the ground: a smooth line with a station and a heading at each of its points.
+"""A smooth line with a station and a heading at each of its points.
 
 Plane geometry only; knows neither roads nor time. The station is the arc length of the line as it was
 first drawn; a line moved sideways keeps its stations, so that places on it keep their names. Metres,
@@ -19,15 +19,15 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 
 STEP_M = 0.5
 TURN_BACK_M = 5.6
-"""Of the rear axle in a turn back: what a car with a turning circle of about 11 m between curbs can do."""
+"""Radius of the rear axle in a U-turn: that of a car with a turning circle of about 11 m between curbs."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
 _EXTENSION_STEP_M = 4.0
 _DENSE_M = 100.0
-"""So much of the runs at both ends is as dense as the line itself: who shifts there must do so smoothly."""
+"""Length of the runs at both ends that is as dense as the line itself, so that lane changes there are smooth."""
 _TURN_HALF_M = 20.0
 _TURN_RAD = math.radians(25)
-"""Over twice that length: less is no turn but a shift from lane to lane across a junction."""
+"""Over twice that length; less is a shift between lanes across a junction."""
 _WINDOWS_M = (2.0, 3.0, 4.5, 6.0, 9.0, 13.0, 18.0, 25.0)
 _EVEN_M = 6.0
 _TAPER = 0.35
@@ -60,7 +60,7 @@ class Path:
 
     @cached_property
     def derived(self) -> dict[Hashable, tuple[Path, Path, bool]]:
-        """What was made of this line, by what it was made for: whoever makes it keeps it here."""
+        """Results computed from this line, by their inputs."""
         return {}
 
     @cached_property
@@ -79,28 +79,19 @@ class Path:
         slopes: Floats = np.gradient(self._columns, self.s_m, axis=0)
         return slopes
 
+    @cached_property
     def lengths(self) -> Floats:
         """(n,) true distance along the line at each point, metres from its first."""
-        return self._lengths
-
-    @cached_property
-    def _lengths(self) -> Floats:
         return arc_lengths(self.points)
 
+    @cached_property
     def curvature(self) -> Floats:
         """(n,) curvature of the line (not of a box that skids on it), 1/m, left positive."""
-        return self._curvature
+        return np.gradient(self.tangents, self.lengths)
 
     @cached_property
-    def _curvature(self) -> Floats:
-        return np.gradient(self._tangent, self._lengths)
-
     def tangents(self) -> Floats:
         """(n,) unwrapped heading of the line (not of a box that skids on it), radians."""
-        return self._tangent
-
-    @cached_property
-    def _tangent(self) -> Floats:
         return _tangents(self.points)
 
     def moved(self, left_m: ArrayLike) -> Path:
@@ -111,7 +102,7 @@ class Path:
 
     def _directions(self, half_m: float) -> Floats:
         """(n,) heading of the line, averaged over a stretch: a line far inside a bend must not fold."""
-        angle = self._tangent
+        angle = self.tangents
         shifts = np.linspace(-half_m, half_m, 5)
         mean: Floats = np.mean([np.interp(self.s_m + d, self.s_m, angle) for d in shifts], axis=0)
         return mean
@@ -119,11 +110,11 @@ class Path:
     def displaced(self, by_m: Floats) -> Path:
         """The line moved by (n, 2) metres east and north, point by point; stations stay."""
         points = self.points + by_m
-        slip = self.heading_rad - self._tangent
+        slip = self.heading_rad - self.tangents
         return replace(self, points=points, heading_rad=_tangents(points) + slip)
 
     def reversed(self) -> Path:
-        """The line walked from its end; stations change sign, the box faces where it goes."""
+        """The line in the opposite direction; stations change sign."""
         return Path(self.points[::-1], -self.s_m[::-1], self.heading_rad[::-1] + math.pi)
 
     def turned(self, angle_rad: ArrayLike) -> Path:
@@ -170,18 +161,18 @@ def _spread(points: Floats, speed_mps: float, least_m: float) -> Floats:
 
 
 def swing(angle: Floats, at: Floats) -> Floats:
-    """(n,) how far a line turns from _TURN_HALF_M before each point to as far behind it, radians."""
+    """(n,) turn of a line from _TURN_HALF_M before each point to _TURN_HALF_M behind it, radians."""
     ahead, behind = np.interp(at + _TURN_HALF_M, at, angle), np.interp(at - _TURN_HALF_M, at, angle)
     turned: Floats = ahead - behind
     return turned
 
 
-def tamed(line: Path, most_per_m: float) -> Path:
+def widened_bends(line: Path, most_per_m: float) -> Path:
     """The line with tighter bends than `most_per_m` (1/m) widened: a little of the corner is cut.
 
     As tight as before where the widest window is not enough.
     """
-    points, curvature = line.points, line.curvature()
+    points, curvature = line.points, line.curvature
     for window_m in _WINDOWS_M:
         over = np.abs(curvature) > most_per_m
         if not over.any():
@@ -193,7 +184,7 @@ def tamed(line: Path, most_per_m: float) -> Path:
 
 
 def _even(half: Floats) -> Floats:
-    """Windows without corners: where a window changes abruptly, so does the direction of the line."""
+    """Windows smoothed over _EVEN_M: an abrupt window gives the line an abrupt direction."""
     n = round(_EVEN_M / STEP_M)
     for _ in range(2):
         half = np.convolve(np.pad(half, n, mode="edge"), np.ones(2 * n + 1) / (2 * n + 1), mode="valid")
@@ -214,7 +205,7 @@ def _steps_to(marked: NDArray[np.bool_]) -> Floats:
 
 
 def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch: float = 0.42) -> Floats:
-    """(m, 2) cubic arc between two points with given headings; a turn back swings out to stay drivable."""
+    """(m, 2) cubic arc between two points with given headings; a U-turn swings out to stay drivable."""
     gap = float(np.hypot(*(end - start)))
     if abs(math.remainder(end_rad - start_rad, 2 * math.pi)) > 2.4:
         return turned_back(start, start_rad, end)

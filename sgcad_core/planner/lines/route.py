@@ -1,7 +1,7 @@
-"""From an actor's road, direction, exit and maneuver to the chain of lanes that it drives.
+"""The chain of roads that an actor drives, from its road, direction, exit and maneuver.
 
-Knows the lane graph and the specs; no time, no other actor. Where the network offers no way (an illegal
-turn, a driveway that was not drawn, a road without this direction), a way is made up and noted.
+Knows the lane graph and the specs; no time, no other actor. Where the network offers no such way (an illegal turn, a
+driveway that was not drawn, a missing direction), a way is made up and noted.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BEHIND_M = 160.0
 _FITTING = math.radians(25)
 _INTO = 0.9
 OPENING_M = 60.0
-"""A leg opens into a roundabout at an angle; so far from it it runs as it is told."""
+"""A leg opens into a roundabout at an angle; its direction is taken at this distance."""
 TURN_RAD = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2, "u_turn": math.pi}
 
 
@@ -61,7 +61,7 @@ class Route(NamedTuple):
     """A turn behind the last way that the network does not have; 0: none."""
     notes: tuple[str, ...] = ()
     astray: bool = False
-    """Whether the network has no such way: another was taken, or a made-up turn."""
+    """Whether the network lacks the way: another one was taken, or a made-up turn."""
 
 
 def find_route(graph: LaneGraph, actor: Actor) -> Route:
@@ -126,7 +126,7 @@ def _circle(graph: LaneGraph, start: str, end: str) -> list[Way]:
 
 
 def _through_circles(graph: LaneGraph, ways: list[Way], turn: int | None) -> tuple[list[Way], int | None]:
-    """The same chain with the pieces of the roundabouts on its way; who turns off in one turns at no one place."""
+    """The chain with the pieces of the roundabouts on it; a turn inside a roundabout has no single place (None)."""
     if not graph.circles:
         return ways, turn
     found, place = ways[:1], turn
@@ -151,14 +151,14 @@ def _way(graph: LaneGraph, edge: str) -> Way:
 
 
 def _driven(edge: Edge) -> tuple[Lane, ...]:
-    """Lanes for cars; one that a work zone closes keeps its number, as one comes to it by the lane before it."""
+    """Lanes for cars, including lanes that a work zone closes, which are entered from the lane before."""
     return edge.laid_lanes or edge.lanes
 
 
 def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:
-    """Ways out of the node at the end of a way, in the network's order; its own reverse only if `back`.
+    """Ways out of the node at the end of a way, in the network's order; its own reverse only with `back`.
 
-    Out of a roundabout one gets by all its legs.
+    A roundabout is left by any of its legs.
     """
     center = graph.center_of.get(way.to_node)
     ids = [e.id for e in graph.edges.values() if e.from_node == way.to_node]
@@ -168,12 +168,8 @@ def _leaving(graph: LaneGraph, way: Way, *, back: bool = False) -> list[Way]:
     return [_way(graph, e) for e in ids if back or road_of(e)[0] != way.road]
 
 
-def _reverse(graph: LaneGraph, way: Way) -> Way:
-    return _way(graph, way.id[1:] if way.id.startswith("-") else f"-{way.id}")
-
-
 def _straightest(graph: LaneGraph, way: Way, limit_rad: float = math.radians(50)) -> Way | None:
-    """Where a driver goes who does not turn: the least heading change, connected ways first."""
+    """The way straight on: the least heading change, connected ways first."""
     fitting = [w for w in _leaving(graph, way) if abs(turn_angle(way, w)) < limit_rad]
     return min(fitting, key=lambda w: _bend(graph, way, w), default=None)
 
@@ -188,11 +184,7 @@ def _onward(graph: LaneGraph, start: Way, actor: Actor, notes: list[str]) -> tup
             return _extended(graph, found), len(found) - 2, 0.0
         notes.append(f"no way from {actor.road} to {actor.exit_road} for {actor.id}; its maneuver decides")
     wanted = TURN_RAD.get(actor.maneuver)
-    return _straight(graph, start) if wanted is None else _turning(graph, start, wanted)
-
-
-def _straight(graph: LaneGraph, start: Way) -> tuple[list[Way], int | None, float]:
-    return _extended(graph, [start]), None, 0.0
+    return (_extended(graph, [start]), None, 0.0) if wanted is None else _turning(graph, start, wanted)
 
 
 def _extended(graph: LaneGraph, ways: list[Way]) -> list[Way]:
@@ -228,7 +220,7 @@ def _fits(angle: float, wanted: float) -> bool:
 
 
 def _turned_back(graph: LaneGraph, start: Way, actor: Actor) -> tuple[list[Way], int | None, float]:
-    back = _reverse(graph, start)
+    back = _way(graph, start.id[1:] if start.id.startswith("-") else f"-{start.id}")
     if actor.exit_road not in (None, actor.road):
         reachable = [w for w in _leaving(graph, start) if w.road == actor.exit_road]
         back = reachable[0] if reachable else back

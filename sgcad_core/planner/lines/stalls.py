@@ -1,4 +1,4 @@
-"""The way out of a stall of a parking lot: straight back, then along the aisle, nose to where one will drive on.
+"""The line out of a parking stall: straight back, then along the aisle, facing the later direction of travel.
 
 Plane geometry on a course along the aisle. Metres, radians; knows no time and no other actor.
 """
@@ -18,16 +18,16 @@ from sgcad_core.planner.lines.path import draw
 RADIUS_M = 5.0
 """Of the rear axle when it backs out with the wheel turned full."""
 STRAIGHT_M = 4.5
-"""First it goes straight, until its nose clears the cars beside."""
+"""Straight part, until the nose clears the cars beside."""
 REACH_M = 1.0
-"""Behind the edge of the lane to where it is met there."""
+"""From the edge of the lane to the place of the contact behind it."""
 _ALONG_M = 12.0
 _BEFORE_NODE_M = 6.0
 _STEPS = 16
 
 
 def out_of_stall(course: Course, length_m: float) -> Course:
-    """The course of one who backs out of a stall beside his way, standing in it first; `length_m`: of the box."""
+    """The course out of a stall beside the aisle, beginning in the stall; `length_m`: of the box."""
     nodes = [p.entry_m for p in course.passages if p.entry_m > course.start_m]
     at_m = (nodes[0] if nodes else (course.start_m + course.end_m) / 2) - _BEFORE_NODE_M
     line = _line(course.path.poses([at_m])[0], course.beside_m["parking"] - REAR_AXLE * length_m)

@@ -1,4 +1,4 @@
-"""The lines on which a corner is turned: as the road has it, cut, swung wide, or from beside the lane.
+"""Lines of a turn: as the road has it, cut, swung wide, or from beside the lane.
 
 Costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
 """
@@ -11,11 +11,11 @@ from sgcad_core.planner.actor_plan import Drift, Role, along_with
 from sgcad_core.planner.lines.actor_course import Passage
 
 _CORNER_RUN_M = 10.0
-"""Before and behind a junction in which one who cuts its corner is beside the lane."""
+"""Length before and behind a junction on which a cut corner is beside the lane."""
 
 
 def corner_lines(role: Role) -> list[Drift]:
-    """Cutting a corner or swinging wide."""
+    """Lines that cut a corner, swing wide or come from beside the lane."""
     turn = role.course.turn
     if turn is None:
         return []
@@ -24,11 +24,6 @@ def corner_lines(role: Role) -> list[Drift]:
     if role.actor.maneuver == "turn_right":
         return [*cut, *_from_the_left(role, turn)]
     return [*cut, *_from_the_right(role, turn)] if role.actor.maneuver in ("turn_left", "u_turn") else cut
-
-
-def turning_lines(role: Role) -> list[Drift]:
-    """The usual line of a turn, and those that cut its corner, swing wide or come from beside."""
-    return [Drift(0.0), *corner_lines(role)]
 
 
 def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
@@ -45,7 +40,7 @@ def _from_the_left(role: Role, turn: Passage) -> list[Drift]:
 
 
 def _from_beside_it(role: Role, turn: Passage, asides_m: Sequence[float]) -> list[Drift]:
-    """A turn that comes from so far to the left of its lane, and is back on its line where it ends."""
+    """A turn from given offsets to the left of its lane, back on its line at the end of the junction."""
     length, cost = turn.exit_m - turn.entry_m + 6.0, 0.15 if along_with(role) else 0.3
     return [
         Drift(cost, -aside, length, turn.exit_m, before_m=aside,

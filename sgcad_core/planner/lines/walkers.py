@@ -1,6 +1,6 @@
-"""Courses for those who follow no lane: pedestrians who cross, and cyclists at the edge.
+"""Courses outside the lanes: crossing pedestrians, and cyclists at the edge.
 
-A pedestrian's line is drawn across the way of the one whom it meets. Knows courses, no time.
+The line of a pedestrian crosses that of the driver. Knows courses, no time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ _HEADINGS: dict[Area, tuple[int, ...]] = {
 
 
 def crosswalk_station(driver: Actor, course: Course, length_m: float, walker: Actor) -> float:
-    """Where on a driver's course a pedestrian crosses: on the pedestrian's road, close to the junction."""
+    """The station of a driver's course at which a pedestrian crosses: on the pedestrian's road, close to the
+    junction."""
     wish = preferred_station(driver, course, length_m)
     span = course.on_road(walker.road)
     if span is None or driver.maneuver in ("stopped", "parked"):
@@ -42,7 +43,7 @@ def crosswalk_station(driver: Actor, course: Course, length_m: float, walker: Ac
 
 
 def walking_courses(course: Course, station_m: float, side: Area | None) -> list[tuple[float, Course, Place]]:
-    """Lines across (or along) a driver's way at a station, with the cost of their oddity, likeliest first."""
+    """Lines across (or along) a driver's course at a station with their costs, likeliest first."""
     degrees = _HEADINGS[side] if side else (90, -90)
     return [(0.3 * i, *_line(course, station_m, math.radians(d))) for i, d in enumerate(degrees)]
 
@@ -59,6 +60,6 @@ def _line(course: Course, station_m: float, turn_rad: float) -> tuple[Course, Pl
 
 
 def at_the_edge(course: Course) -> Course:
-    """The course of a cyclist, who keeps to the bicycle lane, else to the right edge of the road."""
+    """The course of a cyclist: on the bicycle lane, else at the right edge of the road."""
     aside = course.beside_m.get("biking", max(course.right_edge_m - _EDGE_M, 0.0))
     return replace(course, path=course.path.moved(-aside * np.ones(len(course.path.s_m))))

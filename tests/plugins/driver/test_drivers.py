@@ -14,7 +14,7 @@ from plugins.driver.replay import Replay
 from plugins.driver.script import Script
 from sgcad_core.errors import ConfigError
 from sgcad_core.handover.drive import drive
-from sgcad_core.handover.script import staged
+from sgcad_core.handover.script import staging_for
 from tests.plugins.driver.seats import ride, task, user, view
 from tests.sgcad_core.handover.scenes import crossing, rear_end
 
@@ -92,7 +92,7 @@ def test_a_given_trajectory_is_driven_whatever_happens(tmp_path):
     file = tmp_path / "made.csv"
     lines = [f"{t:.2f},V1,{-63.23 + 8 * t:.3f},2.0,0.0" for t in np.arange(0, 10, 0.5)]
     file.write_text("t_s,actor,x_m,y_m,heading_rad\n" + "\n".join(lines) + "\n0.0,V2,1,1,1\n")
-    driven = drive(staged(crossing(), "V1"), Replay(file=tmp_path / "{case}.csv"))
+    driven = drive(staging_for(crossing(), "V1"), Replay(file=tmp_path / "{case}.csv"))
     k = 40
     assert driven.ego.x_m[k] == pytest.approx(-63.23 + 8 * 2.0, abs=1e-3)
     assert driven.ego.y_m[k] == pytest.approx(2.0)
@@ -116,5 +116,5 @@ def test_the_script_goes_on_at_the_factor_with_which_it_began():
 
 
 def test_aeb_makes_a_rear_end_softer_or_avoids_it():
-    driven = drive(staged(rear_end(own=15.0), "V1"), Aeb(ttc_s=1.8))
+    driven = drive(staging_for(rear_end(own=15.0), "V1"), Aeb(ttc_s=1.8))
     assert driven.contact is None or driven.ego.speed_mps[-1] < 8

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 from plugins.driver.external import External, _Line
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.handover.drive import drive
-from sgcad_core.handover.outcome import came
-from sgcad_core.handover.script import staged
+from sgcad_core.handover.outcome import judge_drive
+from sgcad_core.handover.script import staging_for
 from tests.sgcad_core.handover.scenes import rear_end
 
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "driver_socket.py"
@@ -51,7 +51,7 @@ def nonsense(message):
 
 
 def staged_rear_end():
-    return staged(rear_end(own=15.0), "V1")
+    return staging_for(rear_end(own=15.0), "V1")
 
 
 def test_a_callable_sees_itself_and_the_others_20_times_a_second():
@@ -74,7 +74,7 @@ def test_the_example_avoids_a_standing_car_over_its_socket():
     program = subprocess.Popen([sys.executable, str(EXAMPLE), "0"], stdout=subprocess.PIPE, text=True)
     try:
         port = int(program.stdout.readline())
-        assert came(drive(staged_rear_end(), External(port=port))).outcome == "avoided"
+        assert judge_drive(drive(staged_rear_end(), External(port=port))).outcome == "avoided"
     finally:
         program.kill()
         program.wait()

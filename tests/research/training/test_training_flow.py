@@ -88,12 +88,6 @@ def test_a_short_training_is_in_mlflow_when_its_flow_ends(tmp_path):
 def test_a_trainer_that_fails_fails_the_flow(tmp_path, monkeypatch):
     from research.training.training_flow import train
 
-<<<<<<<< HEAD:tests/research/training/test_training_log.py
-    monkeypatch.setattr(training_log, "TRAINER", ("-c", "raise SystemExit(5)"))
-    with pytest.raises(RuntimeError, match=r"training\.train ended with code 5"):
-        train_flow.fn(str(tmp_path / "mini"), [], str(tmp_path / "mlflow.db"))
-========
     monkeypatch.setattr(training_flow, "TRAINER", ("-c", "raise SystemExit(5)"))
     with pytest.raises(RuntimeError, match=r"training\.train ended with code 5"):
         train(str(tmp_path / "mini"), [], str(tmp_path / "mlflow.db"))
->>>>>>>> research:tests/research/training/test_training_flow.py

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.handover.family.cross_entropy import decides, search
-from sgcad_core.handover.family.parameter_priors import spreads
+from sgcad_core.handover.family.cross_entropy import rank_correlations, search
+from sgcad_core.handover.family.parameter_priors import open_parameters
 from sgcad_core.handover.family.variant import basis_of, member, undisturbed
 from sgcad_core.planner.aftermath.impact import mass_kg
 from tests.sgcad_core.handover.scenes import crossing, rear_end
@@ -23,7 +23,7 @@ STATED = [
 
 
 def by_name(made, facts=()):
-    return {p.name: p for p in spreads(made, facts)}
+    return {p.name: p for p in open_parameters(made, facts)}
 
 
 def test_what_is_stated_is_narrow_and_what_is_not_is_wide():
@@ -39,14 +39,14 @@ def test_what_is_stated_is_narrow_and_what_is_not_is_wide():
 
 @given(latent=st.floats(-12, 12))
 def test_no_value_leaves_its_limits_and_all_rise_with_their_latents(latent):
-    for p in spreads(crossing(), STATED):
+    for p in open_parameters(crossing(), STATED):
         assert p.low <= p.value(latent) <= p.high
         assert p.value(latent) <= p.value(latent + 0.5) + 1e-12
 
 
 def test_the_middle_of_a_distribution_is_the_script():
     made = crossing()
-    middle = {p.name: p.value(0.0) for p in spreads(made, STATED)}
+    middle = {p.name: p.value(0.0) for p in open_parameters(made, STATED)}
     assert {k: v for k, v in middle.items() if k != "friction"} == pytest.approx(
         {k: p.nominal for k, p in by_name(made, STATED).items() if k != "friction"}
     )
@@ -68,7 +68,7 @@ def test_a_member_is_the_declared_crash_and_its_energy_never_grows(seed, own, ot
     made = crossing(own, other)
     basis = basis_of(made)
     latents = np.random.default_rng(seed)
-    values = {p.name: p.value(float(latents.standard_normal())) for p in spreads(made, ())}
+    values = {p.name: p.value(float(latents.standard_normal())) for p in open_parameters(made, ())}
     found = member(basis, values)
     if found is None:
         return
@@ -127,7 +127,7 @@ def test_equal_seeds_search_alike_and_no_member_is_no_hardness():
 
 def test_what_decides_is_the_rank_correlation():
     z = np.random.default_rng(0).standard_normal((200, 3))
-    found = decides(z, np.exp(z[:, 1]))
+    found = rank_correlations(z, np.exp(z[:, 1]))
     assert found[1] == pytest.approx(1.0)
     assert abs(found[0]) < 0.2
-    assert decides(z[:2], np.array([1.0, 2.0])).tolist() == [0.0, 0.0, 0.0]
+    assert rank_correlations(z[:2], np.array([1.0, 2.0])).tolist() == [0.0, 0.0, 0.0]

@@ -9,11 +9,11 @@ import pytest
 from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.handover.family.discrete_parameters import LIGHTS, light_of, unvaried
-from sgcad_core.handover.family.parameter_priors import spreads
+from sgcad_core.handover.family.parameter_priors import open_parameters
 from sgcad_core.handover.family.shifted_evasion import delay_of
 from sgcad_core.handover.family.variant import basis_of, member, undisturbed
-from sgcad_core.handover.lanes import beside
-from sgcad_core.handover.script import staged
+from sgcad_core.handover.parallel_lanes import lane_offsets
+from sgcad_core.handover.script import staging_for
 from tests.sgcad_core.handover.scenes import LENGTH, STEP, WIDTH, crossing, rear_end
 
 LANES = "".join(
@@ -52,7 +52,7 @@ def braking(contact_s=6.0, onset_s=4.5, speed=18.0, rate=5.0):
 
 def by_name(made, *facts):
     basis = basis_of(made)
-    return {p.name: p for p in spreads(made, facts, basis.delays if basis else {})}
+    return {p.name: p for p in open_parameters(made, facts, basis.delays if basis else {})}
 
 
 # ------------------------------------------------------------------ lanes
@@ -62,18 +62,18 @@ def poses(x, y, heading):
 
 def test_lanes_beside_are_counted_from_the_own_one_to_the_left():
     x = np.linspace(-200, 100, 200)
-    assert beside(ROAD, poses(x, 0.1, 0.0)) == pytest.approx({-1: -3.5, 1: 3.5})
-    assert beside(ROAD, poses(x, -3.4, 0.0)) == pytest.approx({1: 3.5, 2: 7.0})
-    assert beside(ROAD, poses(x[:1], 0.0, 0.0)) == pytest.approx({-1: -3.5, 1: 3.5})
+    assert lane_offsets(ROAD, poses(x, 0.1, 0.0)) == pytest.approx({-1: -3.5, 1: 3.5})
+    assert lane_offsets(ROAD, poses(x, -3.4, 0.0)) == pytest.approx({1: 3.5, 2: 7.0})
+    assert lane_offsets(ROAD, poses(x[:1], 0.0, 0.0)) == pytest.approx({-1: -3.5, 1: 3.5})
 
 
 def test_who_drives_against_the_road_off_it_or_turns_has_no_other_lane():
     x = np.linspace(-200, 100, 200)
-    assert beside(ROAD, poses(x, 0.0, math.pi)) == {}
-    assert beside(ROAD, poses(x, 40.0, 0.0)) == {}
+    assert lane_offsets(ROAD, poses(x, 0.0, math.pi)) == {}
+    assert lane_offsets(ROAD, poses(x, 40.0, 0.0)) == {}
     turning = poses(x, 0.0, 0.0)
     turning[:, 2] = np.linspace(0, 0.6, len(x))
-    assert beside(ROAD, turning) == {}
+    assert lane_offsets(ROAD, turning) == {}
 
 
 def test_two_that_drive_in_one_direction_change_the_lane_together():
@@ -137,7 +137,7 @@ def test_an_undelayed_reaction_is_the_script_and_times_of_samples_rise():
 def test_who_does_not_brake_before_the_contact_cannot_do_it_later():
     assert basis_of(crossing()).delays == {}
     early = braking(onset_s=1.0, rate=5.0, speed=18.0)  # stands long before the contact
-    way = staged(replace(early, declared=None), "V2").way
+    way = staging_for(replace(early, declared=None), "V2").way
     assert delay_of(way, 6.0) is None
 
 

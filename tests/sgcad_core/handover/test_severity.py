@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.handover.contact_figures import impact_told
+from sgcad_core.handover.contact_figures import impact_summary
 from sgcad_core.handover.severity import fatality_risk, severity
 from sgcad_core.planner.aftermath.impact import RESTITUTION, body, collide
 from tests.sgcad_core.handover.scenes import crossing, rear_end
@@ -77,7 +77,7 @@ def test_rest_is_the_last_pose_with_way_and_turn_since_the_contact():
     moved = struck.model_copy(
         update={"x_m": struck.x_m + 0.2 * pushed, "heading_rad": struck.heading_rad + 0.01 * pushed}
     )
-    told = impact_told(replace(made, trajectories=(made.trajectories[0], moved)), made.contact_of("V1"))
+    told = impact_summary(replace(made, trajectories=(made.trajectories[0], moved)), made.contact_of("V1"))
     one, two = told["actors"]
     assert (one["id"], two["id"]) == ("V1", "V2")
     assert two["rest"] == {
@@ -92,6 +92,6 @@ def test_who_still_moves_at_the_end_has_no_rest_and_without_a_contact_nothing_is
     made = rear_end(own=20.0)
     last = made.trajectories[1]
     rolling = last.model_copy(update={"x_m": last.x_m + 0.1 * np.clip(np.arange(len(last.t_s)) - 120, 0, None)})
-    told = impact_told(replace(made, trajectories=(made.trajectories[0], rolling)), made.contact_of("V1"))
+    told = impact_summary(replace(made, trajectories=(made.trajectories[0], rolling)), made.contact_of("V1"))
     assert told["actors"][1]["rest"]["from_s"] is None
-    assert impact_told(made, None) is None
+    assert impact_summary(made, None) is None

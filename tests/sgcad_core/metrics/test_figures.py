@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.case.records import ActorInfo, Execution, Scenario, Trajectory
-from sgcad_core.metrics import Thresholds, criticality, displacement, generation, measure, road_network
+from sgcad_core.metrics import Thresholds, criticality, displacement, generation, measure
+from sgcad_core.metrics.labels.label_match import relative_error
 
 LIMITS = Thresholds()
 
@@ -17,7 +18,7 @@ LIMITS = Thresholds()
     ("truth", "made", "error"), [(1, 1, 0), (2, 1, 0.5), (1, 3, 1), (4, 3, 0.25), (0, 0, 0), (0, 1, 1)]
 )
 def test_relative_error_is_capped_at_one(truth, made, error):
-    assert road_network.relative_error(truth, made) == error
+    assert relative_error(truth, made) == error
 
 
 def test_success_is_counted_per_scenario_and_errors_per_file():

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.case.records import Finding
-from sgcad_core.metrics.generation import LAYERS, AttemptSeen, CaseSeen, layer_of, quality
+from sgcad_core.metrics.generation import LAYERS, AttemptRecord, CaseRecord, layer_of, quality
 
 
 def finding(source, where="", severity="repair"):
@@ -15,14 +15,14 @@ def finding(source, where="", severity="repair"):
 
 
 def road(*sources):
-    return AttemptSeen("road", tuple(finding(s, "here") for s in sources))
+    return AttemptRecord("road", tuple(finding(s, "here") for s in sources))
 
 
 def scenario(*sources):
-    return AttemptSeen("scenario", tuple(finding(s, "here") for s in sources))
+    return AttemptRecord("scenario", tuple(finding(s, "here") for s in sources))
 
 
-REFUSED = AttemptSeen("road", (finding("road", severity="refuse"),))
+REFUSED = AttemptRecord("road", (finding("road", severity="refuse"),))
 
 
 @pytest.mark.parametrize(("source", "where", "layer"), [
@@ -45,16 +45,16 @@ def test_a_finding_belongs_to_the_layer_of_its_source(source, where, layer):
 
 def test_an_attempt_fails_in_the_first_layer_that_finds_fault():
     assert road("topology", "netconvert", "sumo_xsd").layer == "schema"
-    assert AttemptSeen("road", (finding("netconvert", severity="note"),)).layer is None
+    assert AttemptRecord("road", (finding("netconvert", severity="note"),)).layer is None
     assert REFUSED.refused
 
 
 def test_the_first_attempt_and_the_last_are_counted_apart():
     found = quality([
-        CaseSeen("generated", (road(), scenario())),
-        CaseSeen("generated", (road("netconvert"), road(), scenario("python"), scenario())),
-        CaseSeen("exhausted", (road("sumo_xsd"), road("netconvert"))),
-        CaseSeen("refused", (REFUSED,)),
+        CaseRecord("generated", (road(), scenario())),
+        CaseRecord("generated", (road("netconvert"), road(), scenario("python"), scenario())),
+        CaseRecord("exhausted", (road("sumo_xsd"), road("netconvert"))),
+        CaseRecord("refused", (REFUSED,)),
     ])  # fmt: skip
     assert (found.cases, found.refused, found.attempts) == (4, 1, 2.25)
     assert (found.first_success, found.success) == (0.25, 0.5)
@@ -65,24 +65,24 @@ def test_the_first_attempt_and_the_last_are_counted_apart():
 
 
 def test_a_doubted_attempt_may_be_the_one_that_stands():
-    doubted = AttemptSeen("scenario", (finding("meeting", "contacts[0]", severity="doubt"),))
-    case = CaseSeen("generated", (road(), doubted, scenario("openscenario"), scenario("openscenario")))
+    doubted = AttemptRecord("scenario", (finding("meeting", "contacts[0]", severity="doubt"),))
+    case = CaseRecord("generated", (road(), doubted, scenario("openscenario"), scenario("openscenario")))
     assert case.standing("scenario") is doubted
-    found = quality([case, CaseSeen("generated", (road(), doubted))])
+    found = quality([case, CaseRecord("generated", (road(), doubted))])
     assert (found.first_success, found.success, found.file_errors) == (1.0, 1.0, 0.0)
     assert not found.layers
-    assert CaseSeen("exhausted", (road("netconvert"), road("topology"))).standing("road") == road("topology")
+    assert CaseRecord("exhausted", (road("netconvert"), road("topology"))).standing("road") == road("topology")
     assert case.standing("road") == road()
 
 
 def test_opendrive_alone_at_fault_is_one_file_and_content_is_none():
-    found = quality([CaseSeen("exhausted", (road("opendrive"),)), CaseSeen("exhausted", (road("road_narrative"),))])
+    found = quality([CaseRecord("exhausted", (road("opendrive"),)), CaseRecord("exhausted", (road("road_narrative"),))])
     assert found.layers == {"references": 1}
     assert found.file_errors == 1 / 4
 
 
 def test_a_scenario_that_dies_in_the_simulator_fails_in_execution():
-    found = quality([CaseSeen("failed", (road(), scenario()))])
+    found = quality([CaseRecord("failed", (road(), scenario()))])
     assert found.layers == {"execution": 1}
     assert found.first_layers == {}
 
@@ -92,10 +92,12 @@ def test_an_empty_batch_has_figures():
 
 
 SOURCES = st.sampled_from(["answer", "sumo_xsd", "netconvert", "opendrive", "python", "topology", "x"])
-ATTEMPT = st.builds(lambda s, f: AttemptSeen(s, tuple(finding(x, "w") for x in f)),
+ATTEMPT = st.builds(lambda s, f: AttemptRecord(s, tuple(finding(x, "w") for x in f)),
                     st.sampled_from(["road", "scenario"]), st.lists(SOURCES, max_size=3))  # fmt: skip
 CASE = st.builds(
-    CaseSeen, st.sampled_from(["generated", "refused", "exhausted", "failed"]), st.lists(ATTEMPT, max_size=5).map(tuple)
+    CaseRecord,
+    st.sampled_from(["generated", "refused", "exhausted", "failed"]),
+    st.lists(ATTEMPT, max_size=5).map(tuple),
 )
 
 

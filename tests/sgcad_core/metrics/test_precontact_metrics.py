@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, overlap
 from sgcad_core.metrics.conflict import Track
-from sgcad_core.metrics.precontact_metrics import told
+from sgcad_core.metrics.precontact_metrics import precontact_figures
 
 SIZE = (4.7, 1.8)
 
@@ -31,7 +31,7 @@ def rear_end(own=20.0, other=8.0):
 
 
 def test_in_line_ttc_and_drac_are_the_published_formulas():
-    found = told(rear_end())
+    found = precontact_figures(rear_end())
     for name, before in (("0_5", 0.5), ("1", 1.0), ("2", 2.0)):
         gap = 12.0 * before
         assert found[f"ttc_{name}_s_before_s"] == pytest.approx(gap / 12, abs=1e-3)
@@ -39,7 +39,7 @@ def test_in_line_ttc_and_drac_are_the_published_formulas():
 
 
 def test_exposure_is_the_time_below_the_threshold_and_its_integral():
-    found = told(rear_end())
+    found = precontact_figures(rear_end())
     assert found["time_exposed_ttc_s"] == pytest.approx(1.5, abs=0.051)
     assert found["time_integrated_ttc_s2"] == pytest.approx(1.5**2 / 2, abs=0.05)
     assert found["time_exposed_drac_s"] == pytest.approx(12 / (2 * 3.35), abs=0.051)
@@ -48,20 +48,20 @@ def test_exposure_is_the_time_below_the_threshold_and_its_integral():
 def test_the_onset_of_braking_is_told_with_its_ttc():
     t = np.arange(0.0, 6.051, 0.05)
     speed = np.where(t < 5.0, 20.0, 20.0 - 5.0 * (t - 5.0))
-    found = told({"V1": driven(-4.699, 0, 0, speed), "V2": driven(0, 0, 0, 0.0)})
+    found = precontact_figures({"V1": driven(-4.699, 0, 0, speed), "V2": driven(0, 0, 0, 0.0)})
     assert found["braking_s_before_s"] == pytest.approx(1.0, abs=0.11)
     assert found["ttc_at_braking_s"] == pytest.approx((20 - 2.5) / 20, abs=0.06)
-    assert told(rear_end())["braking_s_before_s"] is None
+    assert precontact_figures(rear_end())["braking_s_before_s"] is None
 
 
 def test_two_that_never_touch_have_no_figures():
-    assert told({"V1": driven(0, 0, 0, 10.0), "V2": driven(0, 9, 0, 10.0)}) == {}
+    assert precontact_figures({"V1": driven(0, 0, 0, 10.0), "V2": driven(0, 9, 0, 10.0)}) == {}
 
 
 def test_a_clock_that_begins_too_late_leaves_the_value_out():
     short = {name: Track(*(v[-35:] for v in track[:3]), track.size) for name, track in rear_end().items()}
-    assert told(short)["ttc_2_s_before_s"] is None
-    assert told(short)["ttc_1_s_before_s"] is not None
+    assert precontact_figures(short)["ttc_2_s_before_s"] is None
+    assert precontact_figures(short)["ttc_1_s_before_s"] is not None
 
 
 @settings(max_examples=25, deadline=None)
@@ -73,12 +73,12 @@ def test_ttc_is_what_a_sweep_finds_however_the_world_is_turned_moved_and_numbere
     own, other, angle, aside, turn, dx, shift, swap
 ):
     tracks = {"V1": driven(-1.0, aside, 0, own), "V2": driven(1.0, 0, angle, other)}
-    found = told(tracks)
+    found = precontact_figures(tracks)
     if not found:
         return
     moved = {name: moved_track(t, turn, dx, shift) for name, t in tracks.items()}
     named = {"V2": moved["V1"], "V1": moved["V2"]} if swap else moved
-    assert told(named) == pytest.approx(found, abs=2e-3, nan_ok=True)
+    assert precontact_figures(named) == pytest.approx(found, abs=2e-3, nan_ok=True)
     k = next(k for k in range(len(tracks["V1"].t_s)) if touch(tracks, k))
     at = k - 20
     if at >= 0 and found["ttc_1_s_before_s"] is not None:

@@ -11,8 +11,7 @@ from lxml import etree
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.metrics import conflict
-from sgcad_core.metrics.conflict import Track
-from sgcad_core.metrics.precontact_metrics import deceleration_rate
+from sgcad_core.metrics.conflict import Track, required_deceleration
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
 
@@ -69,4 +68,4 @@ def measured(rows, k):
         pose = np.array([[x - 2.5 * np.cos(heading), y - 2.5 * np.sin(heading), heading]])
         tracks.append(Track(np.zeros(1), pose, np.array([[vx, vy]]), (5.0, 1.8)))
     ttc = conflict.time_to_collision(*tracks)
-    return float(ttc[0]), float(deceleration_rate(*tracks, ttc)[0])
+    return float(ttc[0]), float(required_deceleration(*tracks, ttc)[0])

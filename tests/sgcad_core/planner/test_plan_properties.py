@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
-from sgcad_core.metrics.drivability import WHEELED, deepest, driven, first_touches
+from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.encounter.maneuver_choices import SLIDES
 from sgcad_core.planner.motion import LEAD_S
@@ -104,10 +104,10 @@ def check_driven(behavior: BehaviorSpec, made: Plan) -> None:
     for actor, track in zip(behavior.actors, made.trajectories, strict=True):
         slides = any(note.startswith(actor.id) and SLIDES in note for note in made.notes)
         if actor.kind in WHEELED and not slides:
-            seen = driven(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
+            seen = driving_peaks(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
             assert not seen.excesses(behavior.surface), (actor, made.notes)
-    assert deepest(made.trajectories, sizes)[0] < 0.06
-    assert deepest(made.trajectories, sizes, at_rest=True)[0] == 0
+    assert deepest_overlap(made.trajectories, sizes)[0] < 0.06
+    assert deepest_overlap(made.trajectories, sizes, at_rest=True)[0] == 0
 
 
 @settings(max_examples=EXAMPLES, deadline=None)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from sgcad_core.case.records import Trajectory
-from sgcad_core.planner.encounter.contact_queries import course_of
-from sgcad_core.planner.maneuver_visible import not_evading, not_shown
+from sgcad_core.planner.lines.maneuver_course import course_of
+from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.records.course import CourseTold
 from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
@@ -53,14 +53,14 @@ def test_an_evasion_that_is_not_seen_is_noted(hand, way) -> None:
     ahead = np.column_stack((np.full(80, t.x_m[0]), north, np.full(80, math.pi / 2)))
     course = course_of(network("four_leg"), actor("V1", "straight", "S"), 3.0)
     steers, brakes = CourseTold(steers=hand), CourseTold(brakes=True)
-    assert [*not_evading("V1", course, steers, ahead)] == ["V1 has hardly begun to steer aside when they touch"]
-    assert [*not_evading("V1", course, brakes, ahead)] == ["V1 has hardly begun to brake when they touch"]
+    assert [*unseen_evasion("V1", course, steers, ahead)] == ["V1 has hardly begun to steer aside when they touch"]
+    assert [*unseen_evasion("V1", course, brakes, ahead)] == ["V1 has hardly begun to brake when they touch"]
     aside = ahead.copy()
     aside[-20:, 0] -= way * np.linspace(0.0, 0.6, 20)  # northbound: left is west
-    assert not [*not_evading("V1", course, steers, aside)]
+    assert not [*unseen_evasion("V1", course, steers, aside)]
     slows = ahead.copy()
     slows[-20:, 1] -= 0.5 * 4.0 * (np.arange(20) * 0.05) ** 2
-    assert not [*not_evading("V1", course, brakes, slows)]
+    assert not [*unseen_evasion("V1", course, brakes, slows)]
 
 
 def test_a_maneuver_that_is_not_seen_is_noted() -> None:
@@ -69,8 +69,8 @@ def test_a_maneuver_that_is_not_seen_is_noted() -> None:
     t = track(made, "V1")
     ahead = np.column_stack((t.x_m, t.y_m, t.heading_rad))
     course = course_of(network("four_leg"), passer, 3.0)
-    assert not_shown(turner, course, ahead) == "V1 has hardly begun to turn when they touch"
-    assert not_shown(passer, course, ahead) == "V2 has hardly begun to change lanes when they touch"
+    assert unseen_maneuver(turner, course, ahead) == "V1 has hardly begun to turn when they touch"
+    assert unseen_maneuver(passer, course, ahead) == "V2 has hardly begun to change lanes when they touch"
     aside = ahead + np.column_stack((np.linspace(0.0, -1.5, len(ahead)), np.zeros((len(ahead), 2))))
-    assert not_shown(passer, course, aside) is None
-    assert not_shown(actor("V1", "straight", "S"), course, ahead) is None
+    assert unseen_maneuver(passer, course, aside) is None
+    assert unseen_maneuver(actor("V1", "straight", "S"), course, ahead) is None

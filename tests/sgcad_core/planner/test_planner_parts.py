@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.encounter.contact_queries import course_of
-from sgcad_core.planner.encounter.encounter_search import meet
+from sgcad_core.planner.encounter.encounter_search import find_meeting
 from sgcad_core.planner.lines.actor_course import find_course
-from sgcad_core.planner.lines.axle_to_box import rolled, swung
-from sgcad_core.planner.lines.path import TURN_BACK_M, bezier, draw, ramp, tamed, turned_back
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path
+from sgcad_core.planner.lines.maneuver_course import course_of
+from sgcad_core.planner.lines.path import TURN_BACK_M, bezier, draw, ramp, turned_back, widened_bends
 from sgcad_core.planner.lines.route import find_route
 from sgcad_core.planner.motion import ACCELERATION_MPS2, BRAKING_MPS2, Motion, Pace, drive
 from sgcad_core.records.specs import Actor
@@ -78,21 +78,21 @@ def test_a_turn_back_ends_on_the_other_line_and_is_no_tighter_than_told(gap):
     path = draw(np.vstack((-run, arc, arc[-1] - run)))
     assert arc[-1] == pytest.approx(gap * np.array([-math.sin(0.3), math.cos(0.3)]), abs=0.01)
     assert path.heading_rad[-1] - path.heading_rad[0] == pytest.approx(math.pi, abs=0.01)
-    assert np.abs(path.curvature()).max() < 1.25 / TURN_BACK_M
+    assert np.abs(path.curvature).max() < 1.25 / TURN_BACK_M
 
 
 def test_bends_that_are_too_tight_are_widened_and_no_others() -> None:
     path = draw(corner(3.0))
-    easier = tamed(path, 1 / 9)
-    assert np.abs(path.curvature()).max() > 1 / 8
-    assert np.abs(easier.curvature()).max() <= 1 / 9
-    assert tamed(easier, 1 / 9) is easier
+    easier = widened_bends(path, 1 / 9)
+    assert np.abs(path.curvature).max() > 1 / 8
+    assert np.abs(easier.curvature).max() <= 1 / 9
+    assert widened_bends(easier, 1 / 9) is easier
 
 
 @pytest.mark.parametrize("length", [4.7, 9.0, 20.0])
 def test_the_rear_axle_of_a_box_rolls_where_it_points(length):
-    line = tamed(draw(corner(10.0)), 1 / 25)
-    box = rolled(line, length)
+    line = widened_bends(draw(corner(10.0)), 1 / 25)
+    box = box_path(line, length)
     axle = box.points - 0.3 * length * np.column_stack((np.cos(box.heading_rad), np.sin(box.heading_rad)))
     way = np.diff(axle, axis=0)
     slip = np.arctan2(way[:, 1], way[:, 0]) - (box.heading_rad[1:] + box.heading_rad[:-1]) / 2
@@ -103,10 +103,10 @@ def test_the_rear_axle_of_a_box_rolls_where_it_points(length):
 @given(st.floats(-2.5, 2.5), st.floats(6, 40))
 def test_who_steers_aside_has_turned_by_the_angle_and_bends_no_tighter(angle, radius):
     line = draw(np.array([[0.0, 0.0], [200.0, 0.0]]))
-    turned = swung(line, angle, 150.0, radius)
+    turned = bent_before(line, angle, 150.0, radius)
     assert turned.poses([150.0])[0, 2] == pytest.approx(angle, abs=0.02)
-    assert np.abs(turned.curvature()).max() <= 1.1 / radius
-    assert turned.lengths()[-1] == pytest.approx(line.lengths()[-1], abs=0.01)
+    assert np.abs(turned.curvature).max() <= 1.1 / radius
+    assert turned.lengths[-1] == pytest.approx(line.lengths[-1], abs=0.01)
 
 
 # ------------------------------------------------------------------ pace
@@ -117,8 +117,8 @@ def test_speed_follows_the_curvature_of_the_driven_line(cruise, left, length, su
     line = base.moved(left * ramp(base.s_m, 10.0, length))
     pace = Pace(cruise, grip_mps2=DRIVING.friction_mps2(surface), hard=True)
     time, station = drive(line, pace, 20.0, (line, base))
-    speed = np.diff(np.interp(station, line.s_m, line.lengths())) / np.diff(time)
-    bend = np.interp((station[1:] + station[:-1]) / 2, line.s_m, np.abs(line.curvature()))
+    speed = np.diff(np.interp(station, line.s_m, line.lengths)) / np.diff(time)
+    bend = np.interp((station[1:] + station[:-1]) / 2, line.s_m, np.abs(line.curvature))
     assert (speed**2 * bend)[speed > 1.2].max() < 0.7 * DRIVING.friction_mps2(surface)
 
 
@@ -209,14 +209,14 @@ def straight_motion(start: tuple[float, float], heading: float, speed: float) ->
 def test_two_that_cross_meet_on_the_wanted_sides():
     east, north = straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 0), math.pi / 2, 12.0)
     for wanted in (("front", "left"), ("right", "front")):
-        found = meet(east, north, wanted)
+        found = find_meeting(east, north, wanted)
         assert found is not None
         assert found.sides == wanted
-    assert meet(east, north, ("left", "front")) is None
+    assert find_meeting(east, north, ("left", "front")) is None
 
 
 def test_two_that_never_come_near_do_not_meet():
-    assert meet(straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 30), 0.0, 12.0), None) is None
+    assert find_meeting(straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 30), 0.0, 12.0), None) is None
 
 
 @pytest.mark.parametrize(
@@ -224,12 +224,12 @@ def test_two_that_never_come_near_do_not_meet():
 )
 def test_a_motion_that_moves_otherwise_is_no_known_one(change):
     east, north = straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 0), math.pi / 2, 12.0)
-    first = meet(east, north, None)
-    assert meet(straight_motion((0, 0), 0.0, 12.0), north, None).second_s == first.second_s
+    first = find_meeting(east, north, None)
+    assert find_meeting(straight_motion((0, 0), 0.0, 12.0), north, None).second_s == first.second_s
     ((field, by),) = change.items()
     old = getattr(east, field)
     changed = old.moved(by) if field == "path" else old + by if isinstance(old, np.ndarray) else by
     other = replace(east, **{field: changed})
     assert other.digest != east.digest
-    found = meet(other, north, None)
+    found = find_meeting(other, north, None)
     assert (found and (found.first_s, found.second_s)) != (first.first_s, first.second_s)

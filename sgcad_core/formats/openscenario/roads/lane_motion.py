@@ -149,7 +149,7 @@ def driven_way(move: Trajectory, roads: XodrRoads, place: LanePlace) -> Way:
 def _route(move: Trajectory, roads: XodrRoads, place: LanePlace, further_m: float) -> tuple[LanePlace, ...]:
     """The start and a place beyond the last junction that the motion reaches; empty where it comes to none."""
     way = driven_way(move, roads, place)
-    gone, at_m = arc_lengths(way.points), arc_lengths(np.column_stack((move.x_m, move.y_m)))[-1] + further_m
+    gone, at_m = arc_lengths(way.points), arc_lengths(move.points)[-1] + further_m
     inner = np.array([roads.road(road).junction != "-1" for road, _, _ in way.lanes])[way.which]
     if not inner[gone <= at_m].any():
         return ()
@@ -166,7 +166,7 @@ def _seen(move: Trajectory, roads: XodrRoads, place: LanePlace, route: tuple[Lan
     sense = roads.road(place.road).sense(place.lane)
     way = roads.drive(place._replace(offset_m=0.0), sense, roads.route(list(route), sense) if route else None)
     along = arc_lengths(way.points)
-    points = np.column_stack((move.x_m, move.y_m))
+    points = move.points
     reach = int(np.searchsorted(along, arc_lengths(points)[-1] + 10.0)) + 2
     begin, step = way.points[: reach - 1], np.diff(way.points[:reach], axis=0)
     length = np.hypot(*step.T)

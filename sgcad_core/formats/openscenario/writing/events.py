@@ -83,7 +83,7 @@ class EventActor:
     @property
     def along_m(self) -> Floats:
         """Distance gone at every row, metres."""
-        return arc_lengths(np.column_stack((self.move.x_m, self.move.y_m)))
+        return arc_lengths(self.move.points)
 
     @property
     def stands(self) -> bool:
@@ -176,7 +176,7 @@ class EventActor:
 
     def _onward(self) -> Trajectory:
         """The motion with a straight way ahead, in the direction in which it last went."""
-        points = np.column_stack((self.move.x_m, self.move.y_m))
+        points = self.move.points
         back = points[-1] - points
         away = np.hypot(*back.T)
         last = int(np.flatnonzero(away > STANDS_M / 2)[-1])
@@ -252,7 +252,7 @@ def _met(actors: Mapping[str, EventActor]) -> list[EventActor]:
 
 
 def _stands(move: Trajectory) -> bool:
-    return bool(arc_lengths(np.column_stack((move.x_m, move.y_m)))[-1] < STANDS_M)
+    return bool(arc_lengths(move.points)[-1] < STANDS_M)
 
 
 def _in_lane(place: LanePlace, facing: xosc.Orientation | None = None) -> xosc.LanePosition:

@@ -76,7 +76,7 @@ class Occasions:
 
     def _gone(self, name: str, actor: str, row: int) -> xosc.EntityTrigger | None:
         move = self.moves[actor]
-        gone = arc_lengths(np.column_stack((move.x_m, move.y_m)))
+        gone = arc_lengths(move.points)
         if gone[row] - gone[row - 1] < GONE_M:
             return None
         return _by_entity(name, actor, xosc.TraveledDistanceCondition(between(gone[row - 1], gone[row])))

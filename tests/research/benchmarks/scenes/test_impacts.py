@@ -8,7 +8,7 @@ import yaml
 
 from research.benchmarks.scenes.impacts import FILE, TOUCH_M, WALL_MODE, impact_point, main, offs, placed, table
 from sgcad_core.handover.severity import exchanged
-from sgcad_core.planner.encounter.box_scalar import apart
+from sgcad_core.planner.aftermath.wreck_bodies import separation
 
 PAIRS = yaml.safe_load(FILE.read_text(encoding="utf-8"))["pairs"]
 
@@ -32,7 +32,7 @@ def test_a_center_of_impact_is_where_its_ray_leaves_the_box():
 @pytest.mark.parametrize("pair", PAIRS, ids=lambda p: p["test"])
 def test_both_only_just_touch_and_come_together(pair):
     first, second = placed(pair)
-    seen = apart(first, second)
+    seen = separation(first, second)
     assert -TOUCH_M - 0.01 <= seen.gap_m <= -TOUCH_M
     closing = (first.vx - second.vx) * seen.normal[0] + (first.vy - second.vy) * seen.normal[1]
     assert closing > 0

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sgcad_core.formats.sumo.net_xml import lanes_between
-from sgcad_core.metrics.labels.label_match import Made, compare, truth_figures
-from sgcad_core.metrics.labels.motion_label_match import Path, first_touch, shown
+from sgcad_core.metrics.labels.label_match import GeneratedCase, compare, truth_figures
+from sgcad_core.metrics.labels.motion_label_match import Path, first_touch, maneuver_shown
 from sgcad_core.roads.lane_graph import road_counts
 
 SHARED = File(__file__).resolve().parents[5] / "shared"
@@ -49,7 +49,7 @@ def star(lanes):
 
 
 CRASH = {"V1": straight(-20, 0, 0, 10), "V2": straight(0, 0, np.pi / 2, 0), "B1": straight(-20, 0, 0, 10)}
-RIGHT = Made(road_counts({(n, "J"): 2 for n in "abc"} | {("J", n): 1 for n in "abc"}), CRASH)
+RIGHT = GeneratedCase(road_counts({(n, "J"): 2 for n in "abc"} | {("J", n): 1 for n in "abc"}), CRASH)
 
 
 def test_the_truth_itself_has_no_error():
@@ -82,9 +82,9 @@ def test_what_a_label_leaves_open_is_not_judged():
 def test_a_left_turn_lane_may_or_may_not_be_counted_in_a_coded_total():
     road = {"lanes_total": 3, "lanes_scope": "both_directions", "twltl": True}
     label = {"network": {"roads": [road], "layout_best": "t"}}
-    assert compare(label, Made(star({"a": 1, "b": 1, "c": 1}), {})) == {"lanes_total": 1.0, "legs": 1.0}
+    assert compare(label, GeneratedCase(star({"a": 1, "b": 1, "c": 1}), {})) == {"lanes_total": 1.0, "legs": 1.0}
     road["twltl"] = False
-    assert compare(label, Made(star({"a": 1, "b": 1, "c": 1}), {}))["lanes_total"] == 0.0
+    assert compare(label, GeneratedCase(star({"a": 1, "b": 1, "c": 1}), {}))["lanes_total"] == 0.0
 
 
 def test_sides_are_told_apart_and_other_actors_overlooked():
@@ -167,4 +167,4 @@ def test_lanes_are_counted_as_the_whole_reader_counts_them():
 def test_a_way_and_a_turn_show_a_maneuver(
     kind: str | None, moved_m: float, turned_deg: float, verdict: bool | None
 ) -> None:
-    assert shown(kind, moved_m, turned_deg) is verdict
+    assert maneuver_shown(kind, moved_m, turned_deg) is verdict

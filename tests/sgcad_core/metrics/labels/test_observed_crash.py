@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from sgcad_core.metrics.labels.motion_label_match import Path
-from sgcad_core.metrics.labels.observed_crash import Crash, Driven, ahead_of
+from sgcad_core.metrics.labels.observed_crash import Crash, VehicleMotion, ahead_of
 from sgcad_core.planner import plan
 from sgcad_core.records.specs import Actor, BehaviorSpec
 from tests.sgcad_core.planner.crash_scenes import network
 
 
-def driven(name: str, road: str, exit_road: str, aside_m: float = 0.0) -> Driven:
+def driven(name: str, road: str, exit_road: str, aside_m: float = 0.0) -> VehicleMotion:
     """One who keeps its lane from one road into another, and at the end moves to the left."""
     actor = Actor(id="V1", kind="car", road=road, direction="forward", exit_road=exit_road, maneuver="straight")
     track = plan(BehaviorSpec(actors=(actor,), contacts=()), network(name)).trajectories[0]
     pose = np.column_stack((track.x_m, track.y_m, track.heading_rad))
     left = np.linspace(0.0, aside_m, 20)[:, None] * np.column_stack((-np.sin(pose[-20:, 2]), np.cos(pose[-20:, 2])))
     pose[-20:, :2] += left
-    return Driven(Crash({"V1": Path(track.t_s, pose, (4.7, 1.8))}, network(name)), "V1")
+    return VehicleMotion(Crash({"V1": Path(track.t_s, pose, (4.7, 1.8))}, network(name)), "V1")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from sgcad_core.metrics.rest_error import attitude_of, rest_errors
 from sgcad_core.planner import plan
-from sgcad_core.planner.aftermath.ground_friction import Drag, Released, RunOut, run_out, slow
+from sgcad_core.planner.aftermath.ground_friction import Drag, Released, RunOut, apply_friction, run_out_paths
 from sgcad_core.planner.aftermath.impact import body
 from sgcad_core.planner.aftermath.rest_candidates import all_runs
 from sgcad_core.records.course import CourseTold, RestTold
@@ -124,12 +124,12 @@ def test_many_ways_at_once_end_where_each_alone_ends(bend, turning, rolls_s) -> 
     other, slides = body((9.0, 2.0, 1.3), (9.0, 2.5), 9000.0), Drag(2.0, 5.0)
     other.vx, other.spin = -4.0, 0.2
     released = [Released(other, 0.0), Released(one, 0.0)]
-    both = run_out(released, [slides, drag], [[RunOut(0.0, 1.0)], [run, RunOut(0.0, 6.0)]], end, step)
+    both = run_out_paths(released, [slides, drag], [[RunOut(0.0, 1.0)], [run, RunOut(0.0, 6.0)]], end, step)
     assert [ways.shape[1] for ways in both] == [1, 2]
     together = both[1][-1][0]
     for k in range(round(end / step)):
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
-        slow(one, drag, step, max(end - k * step, 0.1), run, k * step)
+        apply_friction(one, drag, step, max(end - k * step, 0.1), run, k * step)
     assert together == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
 
 
@@ -137,7 +137,7 @@ def test_who_rolls_on_comes_further_before_it_brakes() -> None:
     one, drag = body((0.0, 0.0, 0.0), CAR, 1450.0), Drag(4.5, 7.0)
     one.vx = 6.0
     ways = [RunOut(0.0, 3.0), RunOut(0.0, 3.0, rolls_s=1.5)]
-    ends = run_out([Released(one, 0.0)], [drag], [ways], 8.0, 0.05)[0][-1]
+    ends = run_out_paths([Released(one, 0.0)], [drag], [ways], 8.0, 0.05)[0][-1]
     assert ends[1][0] - ends[0][0] == pytest.approx(9.0, abs=0.4)  # 6 m/s for 1.5 s
 
 
@@ -155,7 +155,7 @@ def test_a_steered_run_bends_to_its_side_within_friction(bend) -> None:
     for _ in range(200):
         before = (one.vx, one.vy)
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
-        slow(one, drag, step, 4.0, RunOut(0.0, 1.0, bend))
+        apply_friction(one, drag, step, 4.0, RunOut(0.0, 1.0, bend))
         assert math.hypot(one.vx - before[0], one.vy - before[1]) / step < 7.0 * 1.2
     assert one.y * bend > 0
     assert one.heading * bend > 0

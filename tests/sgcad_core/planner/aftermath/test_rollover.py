@@ -14,7 +14,7 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.metrics.rest_error import attitude_of
-from sgcad_core.planner.aftermath.rollover import TRIPPED_S, rolled, rolls_over
+from sgcad_core.planner.aftermath.rollover import TRIPPED_S, roll_angles, rolls_over
 from sgcad_core.records.course import CourseTold, RestTold
 
 attitudes = st.sampled_from(["wheels", "roof", "left", "right"])
@@ -34,7 +34,7 @@ def told(attitude: str | None) -> CourseTold:
 @settings(max_examples=60, deadline=None)
 @given(attitudes, st.floats(-8, 8), st.integers(2, 60))
 def test_it_lies_as_told_and_rolls_the_way_it_slides(attitude, left_mps, hit):
-    roll = rolled(sliding(left_mps), hit, told(attitude))
+    roll = roll_angles(sliding(left_mps), hit, told(attitude))
     assert attitude_of(float(roll[-1])) == attitude
     assert not roll[: hit + round(TRIPPED_S / 0.05)].any()
     assert np.abs(np.diff(roll)).max() <= math.radians(410.0) * 0.05
@@ -44,12 +44,12 @@ def test_it_lies_as_told_and_rolls_the_way_it_slides(attitude, left_mps, hit):
 
 
 def test_without_a_told_end_it_comes_to_lie_on_the_side_to_which_it_slides():
-    assert attitude_of(float(rolled(sliding(3.0), 10, told(None))[-1])) == "left"
-    assert attitude_of(float(rolled(sliding(-3.0), 10, told(None))[-1])) == "right"
+    assert attitude_of(float(roll_angles(sliding(3.0), 10, told(None))[-1])) == "left"
+    assert attitude_of(float(roll_angles(sliding(-3.0), 10, told(None))[-1])) == "right"
 
 
 def test_one_who_stands_where_it_is_struck_still_lies_as_told_in_the_end():
-    roll = rolled(np.zeros((100, 3)), 20, told("roof"))
+    roll = roll_angles(np.zeros((100, 3)), 20, told("roof"))
     assert attitude_of(float(roll[-1])) == "roof"
 
 
@@ -79,7 +79,7 @@ def actors() -> list[ActorInfo]:
 
 
 def test_the_roll_stands_in_the_scenario_and_is_played():
-    roll = rolled(sliding(2.0), 10, told("roof"))
+    roll = roll_angles(sliding(2.0), 10, told("roof"))
     text = write_xosc(actors(), [motion("V1", roll), motion("V2", None)], None)
     first, second = play(text)
     assert np.abs(first.rolls - roll).max() < math.radians(3.0)
@@ -91,7 +91,7 @@ def test_the_roll_stands_in_the_scenario_and_is_played():
 
 
 def test_the_roll_is_a_column_where_somebody_rolls(tmp_path):
-    roll = rolled(sliding(2.0), 10, told("left"))
+    roll = roll_angles(sliding(2.0), 10, told("left"))
     file = tmp_path / "trajectories.csv"
     case_folder.write_trajectories(file, [motion("V1", roll), motion("V2", None)])
     first, second = case_folder.read_trajectories(file)

@@ -7,7 +7,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sgcad_core.execution.contact import poses
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import plan
 from sgcad_core.records.course import CourseTold, RestTold
@@ -35,7 +34,7 @@ def thing(number: int, kind: str = "object") -> Actor:
 def touches(behavior: BehaviorSpec, **more) -> tuple[list[tuple[str, str]], tuple[str, ...]]:
     """Pairs in the order in which they first overlap, and the notes."""
     made = plan(behavior, network("four_leg"), **more)
-    tracks = {t.actor: poses(t) for t in made.trajectories}
+    tracks = {t.actor: t.pose for t in made.trajectories}
     sizes = {a.id: size_m(a) for a in behavior.actors}
     found = []
     for a, b in combinations(sorted(tracks), 2):
@@ -80,6 +79,6 @@ def test_a_thing_is_struck_so_fast_that_a_file_shows_it() -> None:
     made = plan(behavior, network("four_leg"))
     track = next(t for t in made.trajectories if t.actor == "V2")
     post = next(t for t in made.trajectories if t.actor == "O1")
-    gaps = box_gaps(poses(track), (4.7, 1.8), poses(post), (0.4, 0.4))
+    gaps = box_gaps(track.pose, (4.7, 1.8), post.pose, (0.4, 0.4))
     hit = int(np.flatnonzero(gaps <= 0)[0])
-    assert np.hypot(*(poses(track)[hit - 1, :2] - poses(track)[hit - 2, :2])) > 0.11
+    assert np.hypot(*(track.pose[hit - 1, :2] - track.pose[hit - 2, :2])) > 0.11

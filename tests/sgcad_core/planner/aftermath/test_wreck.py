@@ -11,12 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import box_gaps
-from sgcad_core.planner.aftermath.ground_friction import Drag, slow
+from sgcad_core.planner.aftermath.ground_friction import Drag, apply_friction
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
 from sgcad_core.planner.aftermath.wreck import Wreck
-from sgcad_core.planner.aftermath.wreck_bodies import Mover
-from sgcad_core.planner.encounter.box_scalar import apart, mean, touch_points
+from sgcad_core.planner.aftermath.wreck_bodies import Mover, center_of, separation, touch_points
 
 CAR = (4.7, 1.8)
 DRAG = Drag(4.5, 7.0)
@@ -88,13 +87,13 @@ def test_what_a_vehicle_tows_adds_to_its_mass() -> None:
 def test_scalar_gaps_are_those_of_the_arrays(x, y, first, second):
     a, b = body((0.0, 0.0, first), CAR, 1.0), body((x / 3, y / 3, second), (9.0, 2.5), 1.0)
     want = box_gaps(np.array([[0.0, 0.0, first]]), CAR, np.array([[x / 3, y / 3, second]]), (9.0, 2.5))[0]
-    assert apart(a, b).gap_m == pytest.approx(want, abs=1e-9)
+    assert separation(a, b).gap_m == pytest.approx(want, abs=1e-9)
 
 
 def test_two_that_meet_face_to_face_touch_in_the_middle() -> None:
     a, b = body((0.0, 0.0, 0.0), CAR, 1.0), body((4.69, 0.0, math.pi), CAR, 1.0)
-    assert mean(touch_points(a, b)) == pytest.approx((2.345, 0.0), abs=0.01)
-    assert apart(a, b).normal == pytest.approx((1.0, 0.0))
+    assert center_of(touch_points(a, b)) == pytest.approx((2.345, 0.0), abs=0.01)
+    assert separation(a, b).normal == pytest.approx((1.0, 0.0))
 
 
 # ------------------------------------------------------------------ the ground
@@ -105,7 +104,7 @@ def test_whatever_slides_is_at_rest_in_the_time_that_is_left(vx, vy, spin, along
     one, step, energies = body((0.0, 0.0, 0.3), CAR, 1500.0), 0.01, [math.inf]
     one.vx, one.vy, one.spin = vx, vy, spin
     for k in range(420):
-        slow(one, Drag(along, across), step, max(4.0 - k * step, 0.1))
+        apply_friction(one, Drag(along, across), step, max(4.0 - k * step, 0.1))
         energies.append(one.energy)
         assert energies[-1] <= energies[-2]
     assert one.speed < 0.1
@@ -116,7 +115,7 @@ def test_a_body_stops_as_soon_as_its_friction_says() -> None:
     one = body((0.0, 0.0, 0.0), CAR, 1500.0)
     one.vx = 10.0
     for _ in range(100):
-        slow(one, Drag(5.0, 7.0), 0.01, 4.0)
+        apply_friction(one, Drag(5.0, 7.0), 0.01, 4.0)
     assert one.vx == pytest.approx(5.0)
     assert one.vy == one.spin == 0
 

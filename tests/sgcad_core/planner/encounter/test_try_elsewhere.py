@@ -7,9 +7,9 @@ import pytest
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.contact_queries import course_of
 from sgcad_core.planner.encounter.encounter_search import _root, along_sides
-from sgcad_core.planner.encounter.try_elsewhere import Unfolded, least_missed
+from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
+from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.planner.crash_scenes import network
@@ -20,7 +20,7 @@ def test_without_an_encounter_nothing_else_is_tried() -> None:
 
     def unfold(found, impacts):
         calls.append((found, impacts))
-        return Unfolded(Scene(10, 2), (), 0.0, 9.0)
+        return WholeCourse(Scene(10, 2), (), 0.0, 9.0)
 
     assert least_missed(None, unfold).missed == 9.0
     assert calls == [(None, IMPACTS)]
@@ -55,7 +55,7 @@ def test_what_is_missed_is_tried_at_other_places_and_untold_speeds_until_it_is_h
 
     def unfold(found, impacts):
         tried.append(found)
-        return Unfolded(Scene(10, 2), (), 0.0, 0.0 if len(tried) == 4 else 2.0)
+        return WholeCourse(Scene(10, 2), (), 0.0, 0.0 if len(tried) == 4 else 2.0)
 
     assert least_missed(crossing(), unfold).missed == 0.0
     assert len(tried) == 4
@@ -68,7 +68,7 @@ def test_a_told_speed_is_kept_in_every_attempt() -> None:
 
     def unfold(found, impacts):
         tried.append(found)
-        return Unfolded(Scene(10, 2), (), 0.0, 2.0)
+        return WholeCourse(Scene(10, 2), (), 0.0, 2.0)
 
     first = crossing(V1=30.0, V2=25.0)
     least_missed(first, unfold)

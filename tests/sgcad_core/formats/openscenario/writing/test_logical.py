@@ -15,8 +15,8 @@ from sgcad_core.formats.openscenario.writing.entities import SUNS
 from sgcad_core.formats.openscenario.writing.logical import Meets, Range, deterministic, logical_xosc, stochastic
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.handover.family.discrete_parameters import LIGHTS
-from sgcad_core.handover.family.parameter_priors import spreads
-from sgcad_core.handover.family.variant import basis_of, prolonged, undisturbed
+from sgcad_core.handover.family.parameter_priors import open_parameters
+from sgcad_core.handover.family.variant import basis_of, undisturbed, with_earlier_start
 from tests.sgcad_core.handover.scenes import crossing
 from tests.sgcad_core.handover.test_open_choices import braking, on_road
 
@@ -38,7 +38,7 @@ def files(tmp_path_factory):
     basis = basis_of(crossing())
     nominal = undisturbed(basis, {})
     back = 2.7
-    text = write_xosc(nominal.actors, prolonged(nominal, back), None)
+    text = write_xosc(nominal.actors, with_earlier_start(nominal, back), None)
     meets = [Meets(a.id, basis.contact_s + back) for a in nominal.actors]
     (folder / "logical.xosc").write_text(logical_xosc(text, RANGES, meets, basis.contact_s))
     (folder / "deterministic.xosc").write_text(deterministic("logical.xosc", SETS))
@@ -98,7 +98,7 @@ def opened(tmp_path_factory):
     made = on_road(braking())
     basis = basis_of(made)
     facts = [{"field": "vehicles.V2.evasion.brakes", "value": True, "status": "stated"}]
-    family = Family(folder, basis, spreads(made, facts, basis.delays), tuple(facts))
+    family = Family(folder, basis, open_parameters(made, facts, basis.delays), tuple(facts))
     rows = members(family, 6, 11)[0]
     for name, text in files_of(family, [values for values, _ in rows], 11).items():
         (folder / f"{name}.xosc").write_text(text)

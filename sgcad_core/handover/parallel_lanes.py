@@ -1,4 +1,4 @@
-"""Which other lanes of its road an actor could have come along: parallel to its own all the way to the contact.
+"""Other lanes of the same road that run parallel to an actor's lane up to the contact.
 
 Knows the lane graph and one motion; no report.
 """
@@ -14,19 +14,19 @@ from sgcad_core.roads.lane_graph import Edge, LaneGraph
 
 _EVERY_M = 4.0
 _IN_LANE_M, _ALONG_RAD = 1.2, math.radians(25)
-"""Within these of a lane's center and direction one drives in it."""
+"""Largest offset from a lane's center and direction of an actor in that lane."""
 _STRAIGHT_RAD = math.radians(20)
-"""Who turns more before the contact keeps the lane: another one would be another turn."""
+"""A larger turn before the contact excludes other lanes: they would be another turn."""
 _KNOWN = 0.5
-"""Share of the way (junctions have no lanes) on which the lane must be known."""
+"""Share of the way on which the lane must be known (junctions have no lanes)."""
 _EVEN_M = 0.6
-"""Lanes that run so evenly beside each other are parallel."""
+"""Variation of the distance between parallel lanes."""
 
 
-def beside(graph: LaneGraph, pose: Floats) -> dict[int, float]:
-    """Other car lanes of the road along (n, 3) poses: lanes to the left (negative: right) -> metres to the left.
+def lane_offsets(graph: LaneGraph, pose: Floats) -> dict[int, float]:
+    """Other car lanes along (n, 3) poses: lanes to the left (negative: right) -> metres to the left.
 
-    Empty where the actor turns, or is in no lane for most of the way; of one who stands the place counts.
+    Empty where the actor turns, or is in no lane for most of the way; while it stands its place counts.
     """
     some = _sampled(pose)
     if abs(some[-1, 2] - some[0, 2]) > _STRAIGHT_RAD:
@@ -49,7 +49,7 @@ def _sampled(pose: Floats) -> Floats:
 
 
 def _at(graph: LaneGraph, row: Floats) -> dict[int, float] | None:
-    """Lanes of the edge that one drives on here: steps to the left of the own one -> metres to the left of one."""
+    """Lanes of the edge at a pose: steps to the left of the own one -> metres to the left of the actor."""
     found = [own for edge in graph.edges.values() if (own := _on(edge, row)) is not None]
     return min(found, key=lambda lanes: abs(lanes[0]), default=None)
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.handover.route import poses_of, route_of
+from sgcad_core.handover.lane_following import poses_of, route_of
 from tests.sgcad_core.formats.xosc_samples import crossroads
 
 LANE = 4.8
