@@ -53,7 +53,7 @@ class LibSumo(Simulator):
     def _replay(self, scenario: Scenario, network: RoadNetwork, net_xml: str) -> Execution:
         wanted = played(scenario, network)
         movers = [
-            (actor.id, actor.length_m, actor.width_m, np.column_stack((poses(t), t.speed_mps)))
+            (actor.id, actor.length_m, actor.width_m, np.column_stack((t.pose, t.speed_mps)))
             for actor, t in zip(scenario.actors, wanted, strict=True)
         ]
         back = self._call("replay", net_xml, movers, DT_S)
