@@ -26,8 +26,6 @@ from sgcad_core.roads.lane_graph import LaneGraph
 BEYOND_S = 15.0
 """How long lines go on behind the contact."""
 _SLOW_MPS = 0.3
-DRIVEN = frozenset({"car", "suv", "pickup", "van", "truck", "bus", "motorcycle"})
-"""Kinds that a driver can be put into."""
 _TREND = 4
 """Steps over which the trend of an actor's course is taken."""
 _TIGHTEST_PER_M = 0.2
@@ -69,7 +67,7 @@ class Script:
 
     def ego_of(self, role: str) -> str | None:
         """The first actor of a role that somebody can drive."""
-        return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.type in DRIVEN), None)
+        return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.record.driven), None)
 
     def contact_of(self, ego: str) -> ObservedContact | None:
         """The script's first contact of an actor with anybody that is not coupled to it."""
@@ -81,8 +79,8 @@ class Script:
     def coupled_to(self, ego: str) -> frozenset[str]:
         """Trailers that keep their distance from the ego (or what tows it) from the start, and do so moving."""
         track = {t.actor: t for t in self.trajectories}
-        kinds = {a.id: a.type for a in self.actors}
-        pairs = [a for a in track if a != ego and "trailer" in (kinds[a], kinds[ego])]
+        pulled = {a.id: a.record.pulled for a in self.actors}
+        pairs = [a for a in track if a != ego and (pulled[a] or pulled[ego])]
         return frozenset(a for a in pairs if _coupled(track[ego], track[a], self.sizes))
 
 
@@ -114,8 +112,8 @@ class Staging:
 def staged(script: Script, ego: str) -> Staging:
     """Put an actor's seat at a driver's disposal. Raises ConfigError for one that nobody can drive."""
     info = script.info(ego)
-    if info.type not in DRIVEN:
-        known = ", ".join(a.id for a in script.actors if a.type in DRIVEN) or "none"
+    if not info.record.driven:
+        known = ", ".join(a.id for a in script.actors if a.record.driven) or "none"
         raise ConfigError(f"{script.case}: {ego} is a {info.type}, which no driver drives; drivable: {known}")
     contact = script.contact_of(ego)
     lines = {t.actor: _line(script, t, _cut(script, ego, t)) for t in script.trajectories}
@@ -165,7 +163,7 @@ def _start(table: Floats) -> tuple[Start, float]:
 def _beyond(script: Script, actor: str, pose: Floats, start: Start, speed_mps: float) -> Floats:
     """(m, 3) poses from the next sample on, along the lanes; the box keeps its angle to its way."""
     info = script.info(actor)
-    graph = script.graph if info.type in DRIVEN or info.type in ("trailer", "bicycle") else LaneGraph({}, (), {})
+    graph = script.graph if info.record.axles else LaneGraph({}, (), {})
     points = gone_on(graph, start, speed_mps * BEYOND_S, info.maneuver)
     along = arc_lengths(points)
     way = np.diff(points, axis=0)

@@ -13,10 +13,11 @@ import numpy as np
 
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near
+from sgcad_core.kinds import actor_kind, mass_kg
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import Hitch, hitched
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body
 from sgcad_core.planner.aftermath.rollover import rolled, rolls_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
@@ -33,7 +34,6 @@ ROLLING_MPS2 = 2.2
 """Of a vehicle that is to reach something else."""
 THROWN_MPS2 = 5.5
 """Of people, and of two-wheelers on their side, over the ground."""
-_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 _REACTION_S = 0.5
 _BRAKING_MPS2 = 5.0
 _STANDS_MPS, _SHOWN_MPS = 0.02, 2.6
@@ -155,14 +155,14 @@ class Scene:
         return hitched((tractor, trailer), first, second, behind_m)
 
     def _mover(self, track: Track) -> Mover:
-        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)
+        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size[0])
         start = body((0.0, 0.0, 0.0), track.size, mass)
         return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
     def drag(self, track: Track) -> Drag:
         """What slows an actor of whom nothing is chosen."""
         grip = DRIVING.sliding_mps2(self.surface)
-        if track.kind in _TUMBLE:
+        if actor_kind(track.kind).tumbles:
             return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
         return Drag(min(ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2, grip), grip)
 

@@ -20,11 +20,12 @@ from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.handover.family.discrete_parameters import PAIR
 from sgcad_core.handover.family.shifted_evasion import Delay, delay_of
-from sgcad_core.handover.script import DRIVEN, Script, staged
+from sgcad_core.handover.script import Script, staged
+from sgcad_core.kinds import actor_kind, mass_kg
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag
 from sgcad_core.planner.aftermath.hitch import hitched
-from sgcad_core.planner.aftermath.impact import body, mass_kg
+from sgcad_core.planner.aftermath.impact import body
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover
 from sgcad_core.planner.scene import AFTER_S, BRAKED_MPS2, THROWN_MPS2
@@ -33,7 +34,6 @@ from sgcad_core.records.specs import ActorKind
 
 Values = Mapping[str, float]
 _CREEPS_MPS = 1.0
-_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ def _crossing(line: Way, other: Way, contact_s: float) -> float:
 
 
 def _drivable(script: Script, name: str) -> bool:
-    return script.info(name).type in DRIVEN
+    return script.info(name).record.driven
 
 
 def undisturbed(basis: Basis, values: Values) -> Script:
@@ -186,7 +186,7 @@ def _settled(made: Script, basis: Basis) -> tuple[Trajectory, ...]:
 def _mover(made: Script, track: Trajectory) -> Mover:
     info = made.info(track.actor)
     size: Size = (info.length_m, info.width_m)
-    mass = None if info.type == "object" else mass_kg(info.type, size)
+    mass = None if info.record.thing else mass_kg(info.type, info.length_m)
     script = np.column_stack((track.x_m, track.y_m, track.heading_rad))
     return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), script, _drag(made, info.type))
 
@@ -194,6 +194,6 @@ def _mover(made: Script, track: Trajectory) -> Mover:
 def _drag(made: Script, kind: ActorKind) -> Drag:
     """As the planner has it: struck vehicles brake along their wheels, people slide."""
     grip = min(DRIVING.sliding_mps2(made.surface), made.friction_mps2)
-    if kind in _TUMBLE:
+    if actor_kind(kind).tumbles:
         return Drag(min(THROWN_MPS2, grip), min(THROWN_MPS2, grip))
     return Drag(min(BRAKED_MPS2, grip), grip)

@@ -14,7 +14,7 @@ from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
 from sgcad_core.planner.encounter.contact_queries import pair_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
@@ -28,7 +28,10 @@ class Ended(NamedTuple):
 
 _ASIDE = 0.3
 """Of a side's length: what a vehicle knocks over and pushes along is not between it and the next thing."""
-_THINGS = ("object", "pedestrian", "bicycle")
+
+
+def _stands_by(actor: Actor) -> bool:
+    return actor.record.thing or actor.record.exposed
 
 
 def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
@@ -39,7 +42,7 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     actors = {a.id: a for a in behavior.actors}
     found: list[Strike] = []
     met = {contacts[0].striker, contacts[0].struck} if contacts else set()
-    things = {c.struck for c in contacts[1:] if actors[c.struck].kind in _THINGS} - met
+    things = {c.struck for c in contacts[1:] if _stands_by(actors[c.struck])} - met
     for number, contact in enumerate(contacts[1:], 1):
         if contact.struck in things and contact.striker not in things:
             goes_on = any(c.striker == contact.striker for c in contacts[number + 1 :])
