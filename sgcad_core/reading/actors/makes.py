@@ -24,9 +24,11 @@ ANIMAL = "animal"
 _MAKE_KIND: dict[str, ActorKind] = {
     word: make["kind"] for word, make in values("make").items() if isinstance(make, dict)
 }
+_USUAL = kind_of_letter("V")
 _MODEL_KIND: dict[ActorKind, tuple[str, ...]] = {
-    kind: words(f"model_{kind}") for kind in ACTORS if f"model_{kind}" in vocabulary().classes
+    kind: words(f"model_{kind}") for kind in ACTORS if kind != _USUAL and f"model_{kind}" in vocabulary().classes
 }
+"""Models of kinds that are not the usual one, which stands where no model is known."""
 
 
 def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
@@ -43,7 +45,7 @@ def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
     known = _by_model(text, model) or _by_make(text)
     if known is None and (other := rule("makes.other").fullmatch(text.strip(" ,."))):
         return ("pedestrian" if other["person"] else "object"), True
-    return known or "car", False
+    return known or _USUAL, False
 
 
 def is_model(name: str) -> bool:
