@@ -90,6 +90,11 @@ class ActorRecord:
     drawn_m: tuple[float, float]
     """Length and width there: what is small is drawn larger than it is, so that it can be told apart."""
 
+    def __post_init__(self) -> None:
+        """Raises ValueError for a vehicle without axles and for anything else with them."""
+        if (self.sort == "vehicle") != (self.axles is not None):
+            raise ValueError(f"kind {self.id}: give every vehicle axles, and nothing else (a {self.sort})")
+
     @property
     def size(self) -> tuple[float, float]:
         """Usual length and width, metres."""

@@ -27,6 +27,7 @@ from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.handover.script import Script, staged
 from sgcad_core.kinds import ACTORS, learned_actors, mass_kg
+from sgcad_core.kinds.actors import Axles
 from sgcad_core.reading.actors import makes
 from sgcad_core.records.answer_schema import trained_schema
 from sgcad_core.records.specs import ActorKind, BehaviorSpec, Leg, RoadLayout
@@ -116,6 +117,12 @@ def test_people_and_large_models_may_answer_it_and_the_embedded_model_is_asked_a
 def test_a_kind_that_there_is_not_is_refused_with_those_there_are() -> None:
     with pytest.raises(ValidationError, match=r"Input should be 'car', 'suv',.* or 'e_scooter'"):
         TypeAdapter(ActorKind).validate_python(BUGGY)
+
+
+@pytest.mark.parametrize(("kind", "axles"), [("car", None), ("pedestrian", ACTORS["car"].axles)])
+def test_a_record_that_no_file_could_be_written_of_is_refused(kind: str, axles: Axles | None) -> None:
+    with pytest.raises(ValueError, match="give every vehicle axles"):
+        replace(ACTORS[kind], axles=axles)
 
 
 @pytest.mark.parametrize("kind", ACTORS)

@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from sgcad_core.kinds import FOUR_LEG, Maneuver
+from sgcad_core.kinds import ACTORS, FOUR_LEG, Maneuver
 from sgcad_core.reading.contacts.near_crash import NearFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.second_reader.seven_question_gist import (
