@@ -243,7 +243,7 @@ _RECORDS = (
     # A rental of 1.2 m and 20 kg; width, height and most of the mass are the standing rider's.
     ActorRecord(
         id="e_scooter", called="an e-scooter", letter="B", length_m=1.2, width_m=0.6, height_m=1.9, mass_kg=95.0,
-        axles=Axles(Overhang(0.15, 0.3), Overhang(0.15, 0.3), 0.25), max_speed_mps=12.0, max_acceleration_mps2=3.0,
+        axles=Axles(Overhang(0.14, 0.3), Overhang(0.16, 0.3), 0.25), max_speed_mps=12.0, max_acceleration_mps2=3.0,
         max_deceleration_mps2=6.0, exposed=True, tumbles=True, keeps_right=True, pace_mps=4.5, category="bicycle",
         blueprint="vehicle.gazelle.omafiets", symbol="bicycle", drawn_m=(2.4, 1.3),
     ),

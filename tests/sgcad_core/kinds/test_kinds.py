@@ -100,9 +100,8 @@ def _spelled(file: Path) -> list[str]:
 
 
 def test_no_module_outside_the_registry_spells_a_kind() -> None:
-    files = [
-        f for folder in ("sgcad_core", "plugins", "research", "flows") for f in sorted((ROOT / folder).rglob("*.py"))
-    ]
+    folders = "sgcad_core", "plugins", *MADE, "flows"
+    files = [f for folder in folders for f in sorted((ROOT / folder).rglob("*.py"))]
     found = [line for f in files if f.parent != ROOT / "sgcad_core" / "kinds" for line in _spelled(f)]
     assert found == [], "take the name from sgcad_core.kinds"
 
