@@ -237,7 +237,7 @@ _RECORDS = (
     ActorRecord(
         id="tram", called="a tram", length_m=20.1, width_m=2.46, height_m=3.5, mass_kg=30000.0, towed_kg_per_m=1450.0,
         axles=Axles(Overhang(0.22, 4.4), Overhang(0.22, 4.4)), max_speed_mps=25.0, max_acceleration_mps2=2.0,
-        max_deceleration_mps2=4.0, large=True, category="tram", also=("train",),
+        max_deceleration_mps2=4.0, category="tram", also=("train",),
         blueprint="vehicle.mitsubishi.fusorosa", symbol="bus", drawn_m=(20.1, 2.7),
     ),
     # A rental of 1.2 m and 20 kg; width, height and most of the mass are the standing rider's.

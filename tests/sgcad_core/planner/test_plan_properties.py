@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
-from sgcad_core.kinds import ACTORS
+from sgcad_core.kinds import learned_actors
 from sgcad_core.metrics.drivability import deepest, driven, first_touches
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.encounter.maneuver_choices import SLIDES
@@ -25,7 +25,7 @@ STEP_S = 0.05
 EXAMPLES = many(20, 200)
 LONGEST_S = LEAD_S[1] + AFTER_S + 3.0
 """A lead, the usual time behind the contact, and more for who runs on far."""
-KINDS, MANEUVERS, AREAS = tuple(ACTORS), Maneuver.__args__, Area.__args__
+KINDS, MANEUVERS, AREAS = learned_actors(), Maneuver.__args__, Area.__args__
 
 
 @st.composite
