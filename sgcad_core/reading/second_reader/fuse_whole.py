@@ -66,7 +66,8 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
 
 def _sayable(heard: Claims, crash: CrashFacts) -> Claims:
     """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word."""
-    beyond = {f"kind.{one.id}" for one in (*crash.vehicles, *crash.others) if not actor_kind(one.kind).learned}
+    kinds = {v.id: v.kind for v in crash.vehicles} | {other.id: other.kind for other in crash.others}
+    beyond = {f"kind.{name}" for name, kind in kinds.items() if not actor_kind(kind).learned}
     return {key: claim for key, claim in heard.items() if key not in beyond}
 
 
